@@ -1,0 +1,67 @@
+"""Faults of a table, each tied to the key path it stands at."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One fault: where it stands (file, key path, key or value), what is wrong, what to do."""
+
+    file: str
+    path: tuple[str, ...]
+    part: str
+    message: str
+    help: str | None = None
+
+    def as_json(self) -> dict[str, object]:
+        """The diagnostic as the driver reads it."""
+        return {
+            "file": self.file,
+            "path": list(self.path),
+            "part": self.part,
+            "message": self.message,
+            "help": self.help,
+        }
+
+
+class TableError(Exception):
+    """A table that cannot be used; carries every fault found in it."""
+
+    def __init__(self, diagnostics: list[Diagnostic]) -> None:
+        super().__init__("; ".join(d.message for d in diagnostics))
+        self.diagnostics = diagnostics
+
+
+@dataclass
+class Faults:
+    """Collects the faults of one file, so that a user sees all of them at once."""
+
+    file: str
+    found: list[Diagnostic] = field(default_factory=list)
+
+    def key(self, path: Iterable[str], message: str, help: str | None = None) -> None:
+        """Record a fault of the key at `path`."""
+        self.found.append(Diagnostic(self.file, tuple(path), "key", message, help))
+
+    def value(self, path: Iterable[str], message: str, help: str | None = None) -> None:
+        """Record a fault of the value at `path`."""
+        self.found.append(Diagnostic(self.file, tuple(path), "value", message, help))
+
+    def raise_any(self) -> None:
+        """Raise `TableError` when a fault was recorded."""
+        if self.found:
+            raise TableError(self.found)
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """A help line: the nearest of the known words, or all of them."""
+    words = list(known)
+    folded = {w.lower(): w for w in words}
+    near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
+    if near:
+        return f"did you mean `{folded[near[0]]}`?"
+    return "known here: " + ", ".join(f"`{w}`" for w in words)

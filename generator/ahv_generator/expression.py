@@ -1,0 +1,89 @@
+"""CasADi scalar expressions as trees, and the check of their dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import casadi as ca
+
+from . import units
+
+Tree = str | float | list["Tree"]
+
+_BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
+_UNARY = {ca.OP_NEG: "neg", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_EXP: "exp", ca.OP_SQRT: "sqrt"}
+
+
+class ExpressionError(Exception):
+    """An expression that the IR cannot hold, or whose dimensions do not agree."""
+
+
+def tree(expr: ca.SX) -> Tree:
+    """The expression as nested lists: a name, a number, or an operator and its arguments."""
+    if expr.is_constant():
+        return float(expr)
+    if expr.is_symbolic():
+        return str(expr.name())
+    op = expr.op()
+    args = [tree(expr.dep(i)) for i in range(expr.n_dep())]
+    if op in _BINARY:
+        return [_BINARY[op], *args]
+    if op in _UNARY:
+        return [_UNARY[op], *args]
+    if op == ca.OP_SQ:
+        return ["pow", args[0], 2.0]
+    if op == ca.OP_TWICE:
+        return ["*", 2.0, args[0]]
+    if op == ca.OP_INV:
+        return ["/", 1.0, args[0]]
+    if op in (ca.OP_POW, ca.OP_CONSTPOW) and isinstance(args[1], float) and args[1].is_integer():
+        return ["pow", *args]
+    raise ExpressionError(f"the IR has no form for the CasADi operation {op} in {expr}")
+
+
+def check_dimensions(name: str, expr: ca.SX, unit: str, known: Mapping[str, str]) -> None:
+    """Raise `ExpressionError` unless `expr` has the dimensions of `unit`; an angle is a pure number."""
+    found = _dimensions(tree(expr), known)
+    wanted = units.dimensions(unit)
+    if found is not None and not _same(found, wanted):
+        raise ExpressionError(f"{name} is declared in {unit}, but its expression has the dimensions {found}")
+
+
+def _same(a: units.Dimensions, b: units.Dimensions) -> bool:
+    return all(abs(a.get(k, 0.0) - b.get(k, 0.0)) < 1e-9 for k in {*a, *b})
+
+
+def _product(a: units.Dimensions, b: units.Dimensions, sign: float) -> units.Dimensions:
+    return {k: a.get(k, 0.0) + sign * b.get(k, 0.0) for k in sorted({*a, *b})}
+
+
+def _dimensions(node: Tree, known: Mapping[str, str]) -> units.Dimensions | None:
+    """Dimensions of a tree; None for the number zero, which fits everything."""
+    if isinstance(node, float):
+        return None if node == 0 else {}
+    if isinstance(node, str):
+        return units.dimensions(known[node])
+    op, *args = node
+    parts = [_dimensions(a, known) for a in args]
+    if op == "neg":
+        return parts[0]
+    if op in ("sin", "cos", "exp"):
+        if parts[0] and not _same(parts[0], {}):
+            raise ExpressionError(f"{op} of a quantity with dimensions: {args[0]}")
+        return {}
+    if op == "sqrt":
+        return {k: v / 2 for k, v in (parts[0] or {}).items()}
+    if op == "pow":
+        exponent = args[1]
+        assert isinstance(exponent, float)
+        return {k: v * exponent for k, v in (parts[0] or {}).items()}
+    left, right = parts
+    if op in ("+", "-"):
+        if left is None or right is None:
+            return left if right is None else right
+        if not _same(left, right):
+            raise ExpressionError(f"a sum of unlike dimensions {left} and {right}: {node}")
+        return left
+    if left is None or right is None:
+        return None
+    return _product(left, right, 1.0 if op == "*" else -1.0)

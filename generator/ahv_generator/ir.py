@@ -1,0 +1,121 @@
+"""The intermediate representation: JSON whose lines are stable, one quantity or entry a line."""
+
+from __future__ import annotations
+
+import json
+
+import casadi as ca
+
+from . import __version__
+from .expression import tree
+from .model import Function, Model, Output
+from .schema import VariableSpec
+from .table import Parameter, Table
+
+SCHEMA_VERSION = 1
+
+
+class _Line:
+    """A value that is written on one line, whatever its depth."""
+
+    def __init__(self, value: object) -> None:
+        self.value = value
+
+
+def render(table: Table, models: list[Model]) -> str:
+    """The IR of a table and its models as JSON text."""
+    document = {
+        "schema_version": SCHEMA_VERSION,
+        "provenance": {"table": table.name, "generator": __version__, "casadi": ca.__version__},
+        "parameters": [_Line(_parameter(p)) for p in table.parameters],
+        "validity": [_Line({"name": v.name, "unit": v.unit, "doc": v.doc}) for v in table.validity],
+        "models": [_model(m) for m in models],
+    }
+    return _dump(document, 0) + "\n"
+
+
+def _parameter(p: Parameter) -> dict[str, object]:
+    return {
+        "name": p.name,
+        "path": list(p.path),
+        "symbol": p.symbol,
+        "unit": p.unit,
+        "doc": p.doc,
+        "source": p.source,
+        "status": p.status,
+        "uncertainty": p.uncertainty,
+    }
+
+
+def _variable(v: VariableSpec) -> dict[str, object]:
+    return {"name": v.name, "symbol": v.symbol, "unit": v.unit, "doc": v.doc, "validity": v.validity}
+
+
+def _model(m: Model) -> dict[str, object]:
+    return {
+        "name": m.name,
+        "title": m.title,
+        "equations": m.equations,
+        "bases": {name: [_Line(_variable(v)) for v in basis] for name, basis in m.bases.items()},
+        "quantities": [
+            _Line(
+                {
+                    "name": q.name,
+                    "symbol": q.symbol,
+                    "unit": q.unit,
+                    "doc": q.doc,
+                    "equation": q.equation,
+                    "section": q.section,
+                    "expr": _plain(tree(q.expr)),
+                }
+            )
+            for q in m.graph.quantities.values()
+        ],
+        "functions": [_function(f) for f in m.functions],
+    }
+
+
+def _function(f: Function) -> dict[str, object]:
+    return {
+        "name": f.name,
+        "group": f.group,
+        "doc": f.doc,
+        "equation": f.equation,
+        "outputs": [_output(o) for o in f.outputs],
+    }
+
+
+def _output(o: Output) -> dict[str, object]:
+    return {
+        "name": o.name,
+        "basis": list(o.basis),
+        "unit": o.unit,
+        "entries": [_Line({"at": list(e.at), "expr": _plain(tree(e.expr))}) for e in o.entries],
+    }
+
+
+def _plain(node: object) -> object:
+    """Whole numbers without a fraction, so that the text is the same on every platform."""
+    if isinstance(node, float) and node.is_integer():
+        return int(node)
+    if isinstance(node, list):
+        return [_plain(child) for child in node]
+    return node
+
+
+def _dump(value: object, depth: int) -> str:
+    inner, outer = "  " * (depth + 1), "  " * depth
+    if isinstance(value, _Line):
+        return json.dumps(value.value, ensure_ascii=False, allow_nan=False)
+    if isinstance(value, dict):
+        if not value:
+            return "{}"
+        items = [f"{inner}{json.dumps(k)}: {_dump(v, depth + 1)}" for k, v in value.items()]
+        return "{\n" + ",\n".join(items) + f"\n{outer}}}"
+    if isinstance(value, list):
+        if not value:
+            return "[]"
+        if not isinstance(value[0], dict | list | _Line):
+            return json.dumps(value, ensure_ascii=False)
+        return "[\n" + ",\n".join(inner + _dump(v, depth + 1) for v in value) + f"\n{outer}]"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)

@@ -1,0 +1,163 @@
+"""What the models share: air, forces and moment, and the motion of the rigid body, eq. (1)-(3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+
+from ..model import Model
+from ..schema import QuantitySpec
+
+
+def define_air(m: Model) -> None:
+    """Density, dynamic pressure and reference force, (2)."""
+    define = m.graph.define
+    ratio = define(
+        "density_ratio",
+        ca.exp((m.parameter("h_0") - m["altitude"]) / m.parameter("h_s")),
+        symbol=r"\rho/\rho_0",
+        unit="1",
+        doc="air density over its reference",
+        equation="(2)",
+        section="Air",
+    )
+    density = define(
+        "density",
+        m.parameter("rho_0") * ratio,
+        symbol=r"\rho",
+        unit="slug/ft^3",
+        doc="air density",
+        equation="(2)",
+        section="Air",
+    )
+    pressure = define(
+        "dynamic_pressure",
+        0.5 * density * m["velocity"] ** 2,
+        symbol=r"\bar q",
+        unit="lb/ft^2",
+        doc="dynamic pressure",
+        equation="(2)",
+        section="Air",
+    )
+    define(
+        "reference_force",
+        pressure * m.parameter("s"),
+        symbol=r"\bar q S",
+        unit="lb/ft",
+        doc="dynamic pressure times reference area",
+        equation="(2)",
+        section="Air",
+    )
+
+
+def define_angles(m: Model) -> None:
+    """Sines and cosines of angle of attack and flight-path angle."""
+    for angle, doc in (("alpha", "angle of attack"), ("gamma", "flight-path angle")):
+        for function, word in ((ca.sin, "sin"), (ca.cos, "cos")):
+            m.graph.define(
+                f"{word}_{angle}",
+                function(m[angle]),
+                symbol=rf"\{word}\{angle}",
+                unit="1",
+                doc=f"{word} of the {doc}",
+                equation="(1)",
+                section="Angles",
+            )
+
+
+def coefficient_symbols(m: Model, variables: Mapping[str, ca.SX]) -> dict[str, ca.SX]:
+    """What a polynomial is written in: the coefficients of the table and the given variables."""
+    return {p.name: m.parameter(p.name) for p in m.table.parameters} | dict(variables)
+
+
+def define_polynomial(
+    m: Model, spec: QuantitySpec, name: str, doc: str, variables: Mapping[str, ca.SX], equation: str = "(3)"
+) -> ca.SX:
+    """A curve-fitted quantity; what depends on the fuel equivalence ratio is factored as in (3)."""
+    symbols = coefficient_symbols(m, variables)
+    polynomial = m.table.polynomials[spec.key]
+    section = "Curve fits"
+    slope = polynomial.linear_part("phi")
+    expr = polynomial.without_linear("phi").expression(symbols)
+    if slope.terms:
+        base, _, index = spec.symbol.partition("_")
+        per_phi = m.graph.define(
+            f"{name}_phi",
+            slope.expression(symbols),
+            symbol=f"{base}_{{{index},\\phi}}" if index else f"{base}_\\phi",
+            unit=spec.unit,
+            doc=f"slope of the {doc} in the fuel equivalence ratio",
+            equation=equation,
+            section=section,
+        )
+        expr = per_phi * variables["phi"] + expr
+    return m.graph.define(
+        name, expr, symbol=spec.symbol, unit=spec.unit, doc=doc, equation=equation, section=section
+    )
+
+
+def define_force(m: Model, name: str, symbol: str, unit: str, doc: str, expr: ca.SX) -> ca.SX:
+    """A force or moment of (2)."""
+    return m.graph.define(name, expr, symbol=symbol, unit=unit, doc=doc, equation="(2)", section="Forces and moment")
+
+
+@dataclass(frozen=True)
+class Resultants:
+    """What acts on the rigid body: forces along and across the flight path, and the pitching moment."""
+
+    path_force: ca.SX
+    normal_force: ca.SX
+    moment: ca.SX
+
+
+def resultants(m: Model, thrust: ca.SX, lift: ca.SX, drag: ca.SX, moment: ca.SX) -> Resultants:
+    """T cos(alpha) - D and L + T sin(alpha) of (1), and M."""
+    return Resultants(thrust * m["cos_alpha"] - drag, lift + thrust * m["sin_alpha"], moment)
+
+
+def rigid_rates(m: Model, acting: Resultants) -> dict[str, ca.SX]:
+    """Right-hand sides of the rigid rows of (1), but for the angle of attack, by state."""
+    mass, g, velocity = m.parameter("m"), m.parameter("g"), m["velocity"]
+    return {
+        "velocity": acting.path_force / mass - g * m["sin_gamma"],
+        "altitude": velocity * m["sin_gamma"],
+        "gamma": acting.normal_force / (mass * velocity) - g / velocity * m["cos_gamma"],
+        "pitch_rate": acting.moment / m.parameter("i_yy"),
+    }
+
+
+def define_rigid_rates(m: Model) -> dict[str, ca.SX]:
+    """The rigid rows of (1) as named quantities, by state."""
+    acting = resultants(m, m["thrust"], m["lift"], m["drag"], m["pitching_moment"])
+    forces = (
+        ("path_force", r"T\cos\alpha-D", "force along the flight path", acting.path_force),
+        ("normal_force", r"L+T\sin\alpha", "force across the flight path", acting.normal_force),
+    )
+    named = [
+        m.graph.define(name, expr, symbol=symbol, unit="lb/ft", doc=doc, equation="(1)", section="Motion")
+        for name, symbol, doc, expr in forces
+    ]
+    exprs = rigid_rates(m, Resultants(named[0], named[1], acting.moment))
+    rows = {
+        "velocity": ("velocity_rate", r"\dot V", "ft/s^2", "rate of the velocity"),
+        "altitude": ("altitude_rate", r"\dot h", "ft/s", "rate of the altitude"),
+        "gamma": ("gamma_rate", r"\dot\gamma", "rad/s", "rate of the flight-path angle"),
+        "pitch_rate": ("pitch_acceleration", r"\dot Q", "rad/s^2", "pitch acceleration"),
+    }
+    rates = {}
+    for row, (name, symbol, unit, doc) in rows.items():
+        rates[row] = m.graph.define(
+            name, exprs[row], symbol=symbol, unit=unit, doc=doc, equation="(1)", section="Motion"
+        )
+    rates["alpha"] = m.graph.define(
+        "alpha_rate",
+        m["pitch_rate"] - rates["gamma"],
+        symbol=r"\dot\alpha",
+        unit="rad/s",
+        doc="rate of the angle of attack",
+        equation="(1)",
+        section="Motion",
+    )
+    return rates

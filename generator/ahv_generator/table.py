@@ -1,0 +1,328 @@
+"""Reads and checks a table; every fault is tied to the key it stands at."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import units
+from .diagnostics import Faults, suggestion
+from .polynomial import MonomialError, Polynomial, Powers, Term, monomial_name, parse_monomial
+from .schema import STATUSES, ParameterSpec, QuantitySpec, Schema, VariableSpec, com_schema, dcom_schema
+
+_HEADER_KEYS = ("name", "models", "units", "source", "status", "uncertainty")
+_ENTRY_KEYS = ("value", "unit", "source", "status", "uncertainty")
+_BOX_KEYS = ("min", "max", "unit")
+_MODELS = {"com": "com", "dcom": "dcom", "sdcom": "dcom"}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter or coefficient of a table; its value stays in the table."""
+
+    name: str
+    path: tuple[str, str]
+    symbol: str
+    unit: str
+    doc: str
+    source: str
+    status: str
+    uncertainty: float
+
+
+@dataclass(frozen=True)
+class Table:
+    """A checked table: parameters in order, and the polynomial of each quantity."""
+
+    name: str
+    models: tuple[str, ...]
+    schema: Schema
+    parameters: tuple[Parameter, ...]
+    polynomials: dict[str, Polynomial]
+    validity: tuple[VariableSpec, ...]
+
+
+def load(path: Path) -> Table:
+    """Read and check the table at `path`.
+
+    Raises:
+        TableError: with every fault found.
+    """
+    faults = Faults(path.name)
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        faults.key((), f"cannot read the table: {error}")
+        faults.raise_any()
+        raise AssertionError("unreachable") from error
+    table = _Reader(document, faults).read()
+    faults.raise_any()
+    return table
+
+
+class _Reader:
+    def __init__(self, document: Mapping[str, object], faults: Faults) -> None:
+        self.document = document
+        self.faults = faults
+        self.header = self._section("table")
+        self.sources = self._section("sources")
+
+    def read(self) -> Table:
+        name, models = self._identity()
+        schema = self._schema(models)
+        known = ("table", "sources", "validity", *schema.parameters, *(q.key for q in schema.quantities))
+        for section in self.document:
+            if section not in known:
+                self.faults.key((section,), f"unknown section `{section}`", suggestion(section, known))
+        parameters: list[Parameter] = []
+        for section, specs in schema.parameters.items():
+            parameters += self._parameters(section, specs)
+        polynomials: dict[str, Polynomial] = {}
+        for quantity in schema.quantities:
+            polynomials[quantity.key], found = self._quantity(quantity, schema.variable_units())
+            parameters += found
+        self._validity(schema.validity)
+        return Table(name, models, schema, tuple(parameters), polynomials, schema.validity)
+
+    def _section(self, name: str) -> Mapping[str, object]:
+        section = self.document.get(name)
+        if section is None:
+            self.faults.key((), f"the section `[{name}]` is missing")
+            return {}
+        if not isinstance(section, dict):
+            self.faults.value((name,), f"`{name}` must be a section")
+            return {}
+        return section
+
+    def _identity(self) -> tuple[str, tuple[str, ...]]:
+        for key in self.header:
+            if key not in _HEADER_KEYS:
+                self.faults.key(("table", key), f"unknown key `{key}`", suggestion(key, _HEADER_KEYS))
+        for key in _HEADER_KEYS:
+            if self.header and key not in self.header:
+                self.faults.key(("table",), f"`{key}` is missing in `[table]`")
+        name = self.header.get("name", "")
+        if "name" in self.header and not (isinstance(name, str) and name.isidentifier() and name == name.lower()):
+            self.faults.value(("table", "name"), "`name` must be a lower-case identifier")
+        if self.header.get("units", units.SYSTEM) != units.SYSTEM:
+            self.faults.value(("table", "units"), "unknown unit system", f"known is `{units.SYSTEM}`")
+        listed = self.header.get("models", [])
+        models = tuple(m for m in listed if isinstance(m, str)) if isinstance(listed, list) else ()
+        for model in models:
+            if model not in _MODELS:
+                self.faults.value(("table", "models"), f"unknown model `{model}`", suggestion(model, _MODELS))
+        families = {_MODELS[m] for m in models if m in _MODELS}
+        if "models" in self.header and len(families) != 1:
+            self.faults.value(
+                ("table", "models"), '`models` must be ["com"], ["dcom"] or ["dcom", "sdcom"]'
+            )
+        elif len(set(models)) != len(models) or (models and models[0] == "sdcom"):
+            self.faults.value(
+                ("table", "models"), "`sdcom` is the stochastic form of `dcom` and is listed once, after it"
+            )
+        self._provenance(self.header, ("table",))
+        return str(name), models
+
+    def _schema(self, models: tuple[str, ...]) -> Schema:
+        if models and _MODELS.get(models[0]) == "com":
+            return com_schema()
+        numbered = [int(s[4:]) for s in self.document if s.startswith("C_N_") and s[4:].isdigit()]
+        modes = max(numbered, default=1)
+        return dcom_schema(min(modes, 9))
+
+    def _entry(self, path: tuple[str, str], expected: str) -> tuple[float, Mapping[str, object]] | None:
+        section = self.document[path[0]]
+        entry = section[path[1]] if isinstance(section, dict) else None
+        if not isinstance(entry, dict):
+            self.faults.value(path, "an entry is a table like { value = 1.0, unit = \"1/rad\" }")
+            return None
+        for key in entry:
+            if key not in _ENTRY_KEYS:
+                self.faults.key((*path, key), f"unknown key `{key}`", suggestion(key, _ENTRY_KEYS))
+        for key in ("value", "unit"):
+            if key not in entry:
+                self.faults.key(path, f"`{key}` is missing")
+        value = self._number(entry, (*path, "value")) if "value" in entry else None
+        if "unit" in entry:
+            self._unit(entry["unit"], (*path, "unit"), expected)
+        self._provenance(entry, path)
+        return None if value is None else (value, entry)
+
+    def _number(self, entry: Mapping[str, object], path: tuple[str, ...]) -> float | None:
+        value = entry[path[-1]]
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            self.faults.value(path, f"`{path[-1]}` must be a number")
+            return None
+        if not math.isfinite(value):
+            self.faults.value(path, f"`{path[-1]}` must be finite, not {value}")
+            return None
+        return float(value)
+
+    def _unit(self, text: object, path: tuple[str, ...], expected: str) -> None:
+        if not isinstance(text, str):
+            self.faults.value(path, "`unit` must be a text")
+            return
+        try:
+            scale = units.factor(text, expected)
+        except units.UnitError as error:
+            self.faults.value(path, str(error), f"the unit here is `{expected}`")
+            return
+        if scale != 1.0:
+            self.faults.value(
+                path,
+                f"`{text}` measures the right thing, but the table is in {units.SYSTEM}",
+                f"write the value in `{expected}`",
+            )
+
+    def _provenance(self, entry: Mapping[str, object], path: tuple[str, ...]) -> None:
+        source = entry.get("source")
+        if "source" in entry and source not in self.sources:
+            self.faults.value((*path, "source"), f"unknown source `{source}`", suggestion(str(source), self.sources))
+        status = entry.get("status")
+        if "status" in entry and status not in STATUSES:
+            self.faults.value((*path, "status"), f"unknown status `{status}`", suggestion(str(status), STATUSES))
+        if "uncertainty" in entry:
+            number = self._number(entry, (*path, "uncertainty"))
+            if number is not None and number < 0:
+                self.faults.value((*path, "uncertainty"), "a relative uncertainty is not negative")
+
+    def _parameter(
+        self, path: tuple[str, str], name: str, symbol: str, unit: str, doc: str, entry: Mapping[str, object]
+    ) -> Parameter:
+        def inherited(key: str) -> object:
+            return entry.get(key, self.header.get(key))
+
+        uncertainty = inherited("uncertainty")
+        return Parameter(
+            name,
+            path,
+            symbol,
+            unit,
+            doc,
+            str(inherited("source")),
+            str(inherited("status")),
+            float(uncertainty) if isinstance(uncertainty, int | float) else math.nan,
+        )
+
+    def _parameters(self, section: str, specs: Iterable[ParameterSpec]) -> list[Parameter]:
+        content = self._section(section)
+        by_key = {spec.key: spec for spec in specs}
+        for key in content:
+            if key not in by_key:
+                self.faults.key((section, key), f"unknown key `{key}`", suggestion(key, by_key))
+        found: list[Parameter] = []
+        for key, spec in by_key.items():
+            if key not in content:
+                if content:
+                    self.faults.key((section,), f"`{key}` ({spec.doc}) is missing in `[{section}]`")
+                continue
+            path = (section, key)
+            checked = self._entry(path, spec.unit)
+            if checked is None:
+                continue
+            value, entry = checked
+            if spec.positive and value <= 0 or value < spec.lowest:
+                bound = "positive" if spec.positive else f"at least {spec.lowest:g}"
+                self.faults.value((*path, "value"), f"`{key}` ({spec.doc}) must be {bound}")
+            found.append(self._parameter(path, key.lower(), spec.symbol, spec.unit, spec.doc, entry))
+        return found
+
+    def _quantity(
+        self, spec: QuantitySpec, variable_units: Mapping[str, str]
+    ) -> tuple[Polynomial, list[Parameter]]:
+        content = self._section(spec.key)
+        terms: list[Term] = []
+        found: list[Parameter] = []
+        seen: dict[Powers, str] = {}
+        if not content and spec.key in self.document:
+            self.faults.key((spec.key,), f"`[{spec.key}]` has no coefficient")
+        for key in content:
+            powers = self._monomial(spec, key)
+            if powers is None:
+                continue
+            if powers in seen:
+                self.faults.key((spec.key, key), f"`{key}` is the same monomial as `{seen[powers]}`")
+                continue
+            seen[powers] = key
+            unit = spec.unit
+            for variable, exponent in powers:
+                for _ in range(exponent):
+                    unit = units.quotient(unit, variable_units[variable])
+            checked = self._entry((spec.key, key), unit)
+            if checked is None:
+                continue
+            value, entry = checked
+            if powers == (("delta_c", 1),) and spec.required and value == 0:
+                self.faults.value((spec.key, key, "value"), f"law (4) divides by the {spec.key} of `delta_c`")
+            name = f"{spec.key.lower()}_{monomial_name(powers)}"
+            doc = f"coefficient of {key} in {spec.key}" if powers else f"constant part of {spec.key}"
+            symbol = _coefficient_symbol(spec, powers)
+            entry_unit = str(entry.get("unit", unit))
+            found.append(self._parameter((spec.key, key), name, symbol, entry_unit, doc, entry))
+            terms.append(Term(name, powers))
+        for variable in spec.required:
+            if content and ((variable, 1),) not in seen:
+                self.faults.key(
+                    (spec.key,), f"the coefficient of `{variable}` is missing in `[{spec.key}]`", "law (4) needs it"
+                )
+        return Polynomial(tuple(terms)), found
+
+    def _monomial(self, spec: QuantitySpec, key: str) -> Powers | None:
+        try:
+            powers = parse_monomial(key, spec.variables)
+        except MonomialError as error:
+            advice = suggestion(error.word, spec.variables) if error.word else None
+            self.faults.key((spec.key, key), str(error), advice)
+            return None
+        if sum(exponent for name, exponent in powers if name.startswith("eta_")) > 1:
+            self.faults.key((spec.key, key), f"`{key}` is not affine in the flexible coordinates, as (27) needs it")
+            return None
+        return powers
+
+    def _validity(self, specs: Iterable[VariableSpec]) -> None:
+        content = self._section("validity")
+        by_name = {spec.name: spec for spec in specs}
+        for key in content:
+            if key not in by_name:
+                self.faults.key(("validity", key), f"unknown key `{key}`", suggestion(key, by_name))
+        for name, spec in by_name.items():
+            if name not in content:
+                if content:
+                    self.faults.key(("validity",), f"`{name}` ({spec.doc}) is missing in `[validity]`")
+                continue
+            self._box(name, spec, content[name])
+
+    def _box(self, name: str, spec: VariableSpec, box: object) -> None:
+        path = ("validity", name)
+        if not isinstance(box, dict):
+            self.faults.value(path, 'a range is a table like { min = -5.0, max = 5.0, unit = "deg" }')
+            return
+        for key in box:
+            if key not in _BOX_KEYS:
+                self.faults.key((*path, key), f"unknown key `{key}`", suggestion(key, _BOX_KEYS))
+        missing = [key for key in _BOX_KEYS if key not in box]
+        for key in missing:
+            self.faults.key(path, f"`{key}` is missing")
+        if missing:
+            return
+        low, high = self._number(box, (*path, "min")), self._number(box, (*path, "max"))
+        if low is not None and high is not None and low >= high:
+            self.faults.value((*path, "min"), "`min` must be below `max`")
+        try:
+            units.factor(str(box["unit"]), spec.unit)
+        except units.UnitError as error:
+            self.faults.value((*path, "unit"), str(error))
+
+
+def _coefficient_symbol(spec: QuantitySpec, powers: Powers) -> str:
+    latex = {"phi": r"\phi", "alpha": r"\alpha", "delta_e": r"\delta_e", "delta_c": r"\delta_c"}
+
+    def factor(name: str, exponent: int) -> str:
+        base = latex.get(name) or rf"\eta_{name.removeprefix('eta_')}"
+        return base if exponent == 1 else f"{base}^{exponent}"
+
+    above = " ".join(factor(n, k) for n, k in powers) or "0"
+    return f"{spec.symbol}^{{{above}}}"
