@@ -1,0 +1,21 @@
+"""Independent 50-digit reference for the ahv models, derived with SymPy and evaluated with mpmath.
+
+Shares nothing with ``ahv_generator`` but the coefficient tables.
+"""
+
+from .evaluate import Evaluation, Number, Oracle
+from .sampling import Point, sample
+from .table import Table, TableError, load_table
+from .vectors import write_vectors
+
+__all__ = [
+    "Evaluation",
+    "Number",
+    "Oracle",
+    "Point",
+    "Table",
+    "TableError",
+    "load_table",
+    "sample",
+    "write_vectors",
+]

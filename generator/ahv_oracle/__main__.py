@@ -1,0 +1,35 @@
+"""Command line: ``python -m ahv_oracle vectors --table T --model M --points N --seed S --out F``."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from .evaluate import Oracle
+from .model import MODELS
+from .table import TableError
+from .vectors import write_vectors
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; return the exit status."""
+    parser = argparse.ArgumentParser(prog="ahv_oracle", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    vectors = commands.add_parser("vectors", help="write reference vectors")
+    vectors.add_argument("--table", type=Path, required=True, help="coefficient table (TOML)")
+    vectors.add_argument("--model", choices=MODELS, required=True)
+    vectors.add_argument("--points", type=int, required=True, help="number of sample points")
+    vectors.add_argument("--seed", type=int, required=True)
+    vectors.add_argument("--out", type=Path, required=True, help="file to write")
+    options = parser.parse_args(arguments)
+    try:
+        oracle = Oracle(options.table, options.model)
+        write_vectors(oracle, options.points, options.seed, options.out)
+    except (OSError, ValueError) as error:
+        kind = "" if isinstance(error, (TableError, OSError)) else f"{type(error).__name__}: "
+        print(f"ahv_oracle: {options.table}: {kind}{error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
