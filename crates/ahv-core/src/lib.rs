@@ -1,0 +1,23 @@
+//! Traits that the flight models, the steppers and the analyses share.
+//!
+//! * [`Real`]: the scalar, with elementary functions that give the same bits on every machine.
+//! * [`Vector`]: a vector whose components have names and units (a state, an input, a row of a Jacobian).
+//! * [`Model`], [`DifferentiableModel`], [`StochasticModel`]: what a generated model can do.
+//! * [`Bounds`]: an interval of validity.
+//!
+//! No heap and no panic: an index out of range is an [`Option`], never an abort.
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod bounds;
+mod model;
+mod nalgebra;
+mod provenance;
+mod real;
+mod vector;
+
+pub use bounds::{Bounds, Outside, first_outside};
+pub use model::{DifferentiableModel, Model, StochasticModel};
+pub use provenance::{Provenance, Status};
+pub use real::Real;
+pub use vector::Vector;

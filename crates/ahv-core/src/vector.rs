@@ -1,0 +1,165 @@
+//! Vectors whose components have names.
+
+/// A vector of `T` whose components have names and units.
+///
+/// A Jacobian is a vector of vectors: `State<Input<T>>` is a `Vector<Input<T>>` whose rows are `Vector<T>`.
+/// Implemented by [`impl_vector!`](crate::impl_vector).
+pub trait Vector<T>: Copy {
+    /// Number of components.
+    const LEN: usize;
+    /// Names of the components, in order.
+    const NAMES: &'static [&'static str];
+    /// Units of the components, in order; `1` where there is none.
+    const UNITS: &'static [&'static str];
+
+    /// The vector whose components all are `value`.
+    fn splat(value: T) -> Self;
+
+    /// The vector whose component `i` is `component(i)`.
+    fn from_fn(component: impl FnMut(usize) -> T) -> Self;
+
+    /// Component `index`; `None` out of range.
+    fn get(&self, index: usize) -> Option<T>;
+
+    /// Writes component `index`; `None`, and no change, out of range.
+    fn set(&mut self, index: usize, value: T) -> Option<()>;
+
+    /// Applies `f` to each component.
+    fn map(self, f: impl FnMut(T) -> T) -> Self;
+
+    /// Applies `f` to each pair of components.
+    fn zip_with(self, other: Self, f: impl FnMut(T, T) -> T) -> Self;
+
+    /// The first component for which `test` holds, with its name.
+    fn find(&self, test: impl FnMut(T) -> bool) -> Option<(&'static str, T)>;
+
+    /// Index of the component called `name`.
+    fn index_of(name: &str) -> Option<usize> {
+        Self::NAMES.iter().position(|&own| own == name)
+    }
+}
+
+/// Makes `struct Name<T>` of `len` components a [`Vector`], with conversions.
+///
+/// The struct is `Copy` where `T` is, and has inherent `NAMES: [&'static str; len]`,
+/// `UNITS: [&'static str; len]`, `to_array(self) -> [T; len]` and `from_array([T; len]) -> Self` in
+/// `impl<T> Name<T>`.
+///
+/// ```
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// pub struct Pair<T> {
+///     pub left: T,
+///     pub right: T,
+/// }
+///
+/// impl<T> Pair<T> {
+///     pub const NAMES: [&'static str; 2] = ["left", "right"];
+///     pub const UNITS: [&'static str; 2] = ["ft", "rad"];
+///     pub fn to_array(self) -> [T; 2] {
+///         [self.left, self.right]
+///     }
+///     pub fn from_array([left, right]: [T; 2]) -> Self {
+///         Self { left, right }
+///     }
+/// }
+///
+/// ahv_core::impl_vector!(Pair, 2);
+///
+/// let jacobian = Pair { left: Pair { left: 1, right: 2 }, right: Pair { left: 3, right: 4 } };
+/// assert_eq!(jacobian.to_matrix(), [[1, 2], [3, 4]]);
+/// ```
+#[macro_export]
+macro_rules! impl_vector {
+    ($name:ident, $len:literal) => {
+        impl<T: Copy> $crate::Vector<T> for $name<T> {
+            const LEN: usize = $len;
+            const NAMES: &'static [&'static str] = &$name::<T>::NAMES;
+            const UNITS: &'static [&'static str] = &$name::<T>::UNITS;
+
+            #[inline]
+            fn splat(value: T) -> Self {
+                Self::from_array([value; $len])
+            }
+
+            #[inline]
+            fn from_fn(component: impl FnMut(usize) -> T) -> Self {
+                Self::from_array(::core::array::from_fn(component))
+            }
+
+            #[inline]
+            fn get(&self, index: usize) -> Option<T> {
+                (*self).to_array().get(index).copied()
+            }
+
+            #[inline]
+            fn set(&mut self, index: usize, value: T) -> Option<()> {
+                let mut components = (*self).to_array();
+                *components.get_mut(index)? = value;
+                *self = Self::from_array(components);
+                Some(())
+            }
+
+            #[inline]
+            fn map(self, f: impl FnMut(T) -> T) -> Self {
+                self.map_into(f)
+            }
+
+            #[inline]
+            fn zip_with(self, other: Self, mut f: impl FnMut(T, T) -> T) -> Self {
+                let mut components = self.to_array();
+                for (own, other) in components.iter_mut().zip(other.to_array()) {
+                    *own = f(*own, other);
+                }
+                Self::from_array(components)
+            }
+
+            #[inline]
+            fn find(&self, mut test: impl FnMut(T) -> bool) -> Option<(&'static str, T)> {
+                $name::<T>::NAMES
+                    .into_iter()
+                    .zip((*self).to_array())
+                    .find(|&(_, component)| test(component))
+            }
+        }
+
+        impl<T> $name<T> {
+            /// Applies `f` to each component; the type of the components may change.
+            #[inline]
+            pub fn map_into<U>(self, f: impl FnMut(T) -> U) -> $name<U> {
+                $name::from_array(self.to_array().map(f))
+            }
+
+            /// Rows of a vector of vectors, such as a Jacobian.
+            #[inline]
+            pub fn to_matrix<E, const COLUMNS: usize>(self) -> [[E; COLUMNS]; $len]
+            where
+                T: Into<[E; COLUMNS]>,
+            {
+                self.to_array().map(Into::into)
+            }
+
+            /// The vector of vectors with these rows.
+            #[inline]
+            pub fn from_matrix<E, const COLUMNS: usize>(rows: [[E; COLUMNS]; $len]) -> Self
+            where
+                T: From<[E; COLUMNS]>,
+            {
+                Self::from_array(rows.map(T::from))
+            }
+        }
+
+        impl<T> From<[T; $len]> for $name<T> {
+            #[inline]
+            fn from(components: [T; $len]) -> Self {
+                Self::from_array(components)
+            }
+        }
+
+        impl<T> From<$name<T>> for [T; $len] {
+            #[inline]
+            fn from(vector: $name<T>) -> Self {
+                vector.to_array()
+            }
+        }
+    };
+}
