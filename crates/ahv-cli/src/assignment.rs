@@ -1,0 +1,158 @@
+//! `name=value` on the command line, for the components of a named vector.
+
+use std::f64::consts::PI;
+
+use ahv_core::Vector;
+
+use crate::failure::Failure;
+
+const RAD_PER_DEG: f64 = PI / 180.0;
+
+/// Similarity above which an unknown name is taken for a slip of a known one.
+const SIMILAR: f64 = 0.7;
+
+/// Values given for components of a vector.
+pub(crate) struct Assignments(Vec<(usize, f64)>);
+
+impl Assignments {
+    /// Reads `name=value` pairs for a `V`, given by `option`.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] that says what is wrong and what would be right.
+    pub(crate) fn parse<V: Vector<f64>>(option: &str, texts: &[String]) -> Result<Self, Failure> {
+        let mut assignments: Vec<(usize, f64)> = Vec::new();
+        for text in texts {
+            let assignment = parse_one::<V>(text)
+                .and_then(|new| match assignments.iter().any(|old| old.0 == new.0) {
+                    true => Err(format!("`{text}` gives a value a second time")),
+                    false => Ok(new),
+                })
+                .map_err(|message| Failure::Request(format!("{option}: {message}")))?;
+            assignments.push(assignment);
+        }
+        Ok(Self(assignments))
+    }
+
+    /// The value given for `name`.
+    pub(crate) fn get<V: Vector<f64>>(&self, name: &str) -> Option<f64> {
+        let index = V::index_of(name)?;
+        self.0
+            .iter()
+            .find_map(|&(own, value)| (own == index).then_some(value))
+    }
+
+    /// Writes the values into `vector`, but for those of the components `except`.
+    pub(crate) fn apply<V: Vector<f64>>(&self, vector: &mut V, except: &[&str]) {
+        for &(index, value) in &self.0 {
+            if V::NAMES
+                .get(index)
+                .is_some_and(|name| !except.contains(name))
+            {
+                vector.set(index, value);
+            }
+        }
+    }
+}
+
+fn parse_one<V: Vector<f64>>(text: &str) -> Result<(usize, f64), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or_else(|| format!("`{text}` is not of the form NAME=VALUE"))?;
+    let name = name.trim();
+    let index = V::index_of(name).ok_or_else(|| unknown_name::<V>(name))?;
+    let unit = V::UNITS.get(index).copied().unwrap_or("1");
+    Ok((index, parse_value(name, value.trim(), unit)?))
+}
+
+fn unknown_name<V: Vector<f64>>(name: &str) -> String {
+    let names = V::NAMES.join(", ");
+    let nearest = V::NAMES
+        .iter()
+        .map(|known| (strsim::jaro_winkler(&name.to_lowercase(), known), known))
+        .filter(|&(similarity, _)| similarity > SIMILAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    match nearest {
+        Some((_, known)) => {
+            format!("unknown name `{name}`; did you mean `{known}`? Known: {names}")
+        }
+        None => format!("unknown name `{name}`; known: {names}"),
+    }
+}
+
+/// Units in which a quantity of unit `unit` may be given, with their size in `unit`.
+fn accepted(unit: &'static str) -> Vec<(&'static str, f64)> {
+    match unit {
+        "rad" => vec![("deg", RAD_PER_DEG), ("rad", 1.0)],
+        "rad/s" => vec![("deg/s", RAD_PER_DEG), ("rad/s", 1.0)],
+        "1" => Vec::new(),
+        other => vec![(other, 1.0)],
+    }
+}
+
+fn parse_value(name: &str, text: &str, unit: &'static str) -> Result<f64, String> {
+    let units = accepted(unit);
+    let with_unit = units
+        .iter()
+        .find_map(|&(unit, factor)| Some((text.strip_suffix(unit)?, factor)));
+    let (number, factor) = with_unit.unwrap_or((text, 1.0));
+    let number: f64 = number.trim().parse().map_err(|_| match units.first() {
+        Some((first, _)) => {
+            format!("`{text}` is no value for {name}; write for example {name}=1.5{first}")
+        }
+        None => format!("`{text}` is no value for {name}, which is a bare number"),
+    })?;
+    let is_angle = unit.starts_with("rad");
+    if is_angle && with_unit.is_none() {
+        let examples: Vec<String> = units
+            .iter()
+            .map(|(unit, _)| format!("{name}={text}{unit}"))
+            .collect();
+        return Err(format!(
+            "{name} is an angle and needs a unit: {}",
+            examples.join(" or ")
+        ));
+    }
+    let value = number * factor;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("`{text}` is not a finite number"))
+    }
+}
+
+/// A value with its unit for a person to read: angles are in deg.
+pub(crate) fn show(value: f64, unit: &str) -> String {
+    match unit {
+        "1" => number(value),
+        "rad" => format!("{} deg", number(value / RAD_PER_DEG)),
+        "rad/s" => format!("{} deg/s", number(value / RAD_PER_DEG)),
+        other => format!("{} {other}", number(value)),
+    }
+}
+
+/// Six decimals at most; powers of ten where decimals would be unreadable.
+fn number(value: f64) -> String {
+    if value.abs() >= 1e9 {
+        return format!("{value:.6e}");
+    }
+    let decimals = format!("{value:.6}");
+    match decimals.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => "0".to_owned(),
+        trimmed => trimmed.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::show;
+
+    #[test]
+    fn numbers_are_shown_for_a_person() {
+        assert_eq!(show(85_000.0, "ft"), "85000 ft");
+        assert_eq!(show(-1e-9, "1"), "0");
+        assert_eq!(show(0.5_f64.to_radians(), "rad"), "0.5 deg");
+        assert_eq!(show(-0.1_f64.to_radians(), "rad/s"), "-0.1 deg/s");
+        assert_eq!(show(-1.25e50, "ft/s"), "-1.250000e50 ft/s");
+    }
+}

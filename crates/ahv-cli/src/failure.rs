@@ -1,0 +1,45 @@
+//! How a command fails.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// Why a command failed, in words for the person at the terminal.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The request cannot be carried out: bad input, a file that cannot be written. Exit code 2.
+    Request(String),
+    /// The computation failed: no trim, a state that is not finite. Exit code 3.
+    Numeric(String),
+}
+
+impl Failure {
+    /// Says on stderr what went wrong and gives the exit code.
+    pub(crate) fn report(&self) -> ExitCode {
+        let (message, code) = match self {
+            Self::Request(message) => (message, 2),
+            Self::Numeric(message) => (message, 3),
+        };
+        complain(&format!("error: {message}"));
+        ExitCode::from(code)
+    }
+}
+
+/// Writes a line to stderr. A closed stderr leaves nobody to tell, and is no reason to stop.
+pub(crate) fn complain(message: &str) {
+    let _ = writeln!(io::stderr(), "{message}");
+}
+
+/// Writes `text` and a line end to stdout. A reader that has gone away is no failure.
+///
+/// # Errors
+///
+/// [`Failure::Request`] if stdout cannot be written for another reason.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut stdout = io::stdout();
+    match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::Request(format!("cannot write to stdout: {error}")))
+        }
+        _ => Ok(()),
+    }
+}

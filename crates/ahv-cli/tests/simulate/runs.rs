@@ -1,0 +1,190 @@
+//! `ahv simulate` that succeeds.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Output;
+
+use crate::bench::{Bench, DCOM, stderr, with};
+use serde_json::Value;
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).expect("JSON on stdout")
+}
+
+const SDCOM: [&str; 6] = ["--model", "sdcom", "--t-end", "0.5", "--dt", "0.01"];
+
+#[test]
+fn a_trimmed_flight_stays_at_its_trim() {
+    let bench = Bench::new();
+    let output = bench.succeed(&with(&DCOM, &["--json"]));
+    assert!(stderr(&output).is_empty(), "{}", stderr(&output));
+    let text = bench.text();
+    let header = text.lines().next().expect("a header");
+    assert!(
+        header.starts_with("time [s],velocity [ft/s],altitude [ft],gamma [rad],alpha [rad],pitch_rate [rad/s],eta_1 ["),
+        "{header}"
+    );
+    let rows = bench.rows();
+    assert_eq!(rows.len(), 51);
+    assert!(rows.iter().all(|row| row.len() == 12));
+    let (first, last) = (&rows[0], &rows[50]);
+    assert_eq!((first[0], rows[35][0], last[0]), (0.0, 0.35, 0.5));
+    assert_eq!(&first[1..3], [7702.0808, 85_000.0]);
+    assert!((first[4].to_degrees() - 1.5018).abs() < 1e-4);
+    assert!(
+        first
+            .iter()
+            .zip(last)
+            .skip(1)
+            .all(|(a, b)| (a - b).abs() < 1e-6)
+    );
+
+    let json = json(&output);
+    assert_eq!(json["model"], "dcom");
+    assert_eq!(json["steps"], 50);
+    assert_eq!(json["seed"], Value::Null);
+    assert_eq!(json["left_validity_box"], Value::Null);
+    // serde_json reads back to a last digit.
+    let alpha = json["final_state"]["alpha"].as_f64().expect("a number");
+    assert!((alpha - last[4]).abs() < 1e-15);
+    assert_eq!(json["units"]["alpha"], "rad");
+    assert_eq!(json["out"], bench.out.display().to_string());
+    assert_eq!(bench.files(), ["run.csv"]);
+}
+
+#[test]
+fn the_seed_decides_the_noise() {
+    let bench = Bench::new();
+    let run = |seed| {
+        let output = bench.succeed(&with(&SDCOM, &["--json", "--seed", seed]));
+        assert_eq!(json(&output)["seed"].to_string(), seed);
+        bench.text()
+    };
+    let (zero, one, again) = (run("0"), run("1"), run("0"));
+    assert_eq!(zero, again);
+    assert_ne!(zero, one);
+    bench.succeed(&SDCOM);
+    assert_eq!(bench.text(), zero, "the default seed is 0");
+}
+
+#[test]
+fn the_canard_decides_the_trim() {
+    let bench = Bench::new();
+    let alpha = |arguments: &[&str]| {
+        bench.succeed(&with(&DCOM, arguments));
+        bench.rows()[0][4].to_degrees()
+    };
+    let none = alpha(&[]);
+    assert!((alpha(&["--canard", "slaved"]) - 3.6558).abs() < 1e-4);
+    assert_eq!(alpha(&["--canard", "free"]), none);
+    assert_ne!(
+        alpha(&["--canard", "free", "--input", "delta_c=2deg"]),
+        none
+    );
+    bench.fail(
+        &with(&DCOM, &["--input", "delta_c=2deg"]),
+        2,
+        &["there is none", "--canard free"],
+    );
+}
+
+#[test]
+fn inputs_and_initial_states_replace_those_of_the_trim() {
+    let bench = Bench::new();
+    let more = [
+        "--input",
+        "phi=0.3,delta_e=0.2rad",
+        "--initial",
+        "velocity=7800 ft/s,pitch_rate=-1deg/s",
+        "--json",
+    ];
+    let output = bench.succeed(&with(&DCOM, &more));
+    let first = &bench.rows()[0];
+    assert_eq!(first[1], 7800.0);
+    assert!((first[5].to_degrees() + 1.0).abs() < 1e-12);
+    assert!(
+        (first[4].to_degrees() - 1.5018).abs() < 1e-4,
+        "the rest of the trim stays"
+    );
+    let json = json(&output);
+    assert_eq!(
+        (
+            json["input"]["phi"].as_f64(),
+            json["input"]["delta_e"].as_f64()
+        ),
+        (Some(0.3), Some(0.2))
+    );
+}
+
+#[test]
+fn the_last_step_ends_at_the_end() {
+    let bench = Bench::new();
+    let output = bench.succeed(&[
+        "--model", "dcom", "--t-end", "0.1", "--dt", "0.03", "--json",
+    ]);
+    assert_eq!(json(&output)["steps"], 4);
+    let times: Vec<f64> = bench.rows().iter().map(|row| row[0]).collect();
+    assert_eq!((times.len(), times[3], times[4]), (5, 0.09, 0.1));
+}
+
+#[test]
+fn leaving_the_validity_box_is_a_warning() {
+    let bench = Bench::new();
+    let arguments = with(
+        &DCOM,
+        &["--initial", "alpha=11deg", "--input", "phi=1.5", "--json"],
+    );
+    let output = bench.succeed(&arguments);
+    let message = stderr(&output);
+    assert!(
+        message.contains("at 0 s alpha is 11 deg, outside its validity box of -5"),
+        "{message}"
+    );
+    assert!(message.contains("the input phi is 1.5"), "{message}");
+    let json = json(&output);
+    assert_eq!(json["left_validity_box"]["time"], 0.0);
+    assert_eq!(json["left_validity_box"]["state"], "alpha");
+    assert!(
+        json["left_validity_box"]["value"]
+            .as_f64()
+            .is_some_and(|v| (v - 0.19199).abs() < 1e-5)
+    );
+    assert_eq!(json["input_outside_validity_box"]["input"], "phi");
+}
+
+#[test]
+fn a_file_in_the_working_folder_needs_no_path() {
+    let mut bench = Bench::new();
+    let out = std::mem::replace(&mut bench.out, PathBuf::from("run.csv"));
+    let status = bench
+        .command(&DCOM)
+        .current_dir(bench.folder.path())
+        .output()
+        .expect("starts")
+        .status;
+    assert!(status.success());
+    assert!(out.exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_permissions_are_kept() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let mut bench = Bench::new();
+    let target = std::mem::replace(&mut bench.out, bench.folder.path().join("link.csv"));
+    fs::write(&target, "old").expect("the folder is writable");
+    fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).expect("it is ours");
+    symlink(&target, &bench.out).expect("the folder is writable");
+    bench.succeed(&DCOM);
+    assert!(bench.out.is_symlink());
+    assert!(
+        fs::read_to_string(&target)
+            .expect("it is there")
+            .starts_with("time [s],")
+    );
+    let mode = fs::metadata(&target)
+        .expect("it is there")
+        .permissions()
+        .mode();
+    assert_eq!(mode & 0o777, 0o640);
+}
