@@ -1,0 +1,63 @@
+//! Emits Rust from the intermediate representation of vehicle models.
+//!
+//! [`emit()`] is a function from tables (their values) and IR (their structure) to a [`Tree`] of files. Writing that
+//! tree and comparing it with the one on disk are the business of the caller.
+#![forbid(unsafe_code)]
+
+mod body;
+mod dag;
+mod emit;
+mod format;
+pub mod ir;
+mod manifest;
+mod model;
+mod names;
+mod print;
+mod table;
+
+use std::collections::BTreeMap;
+
+pub use emit::{Options, emit};
+pub use manifest::{Manifest, sha256};
+pub use table::{Part, Table, TableError};
+
+/// Files by their path relative to the folder of the generated package, with `/` between its parts.
+pub type Tree = BTreeMap<String, String>;
+
+/// Why nothing was emitted.
+#[derive(Debug, thiserror::Error)]
+pub enum EmitError {
+    /// The IR was made for another version of this crate.
+    #[error(
+        "the IR of table `{table}` has schema version {found}, but this version of ahv reads {}; derive it again",
+        ir::SCHEMA_VERSION
+    )]
+    SchemaVersion {
+        /// Table of the IR.
+        table: String,
+        /// Version found.
+        found: u64,
+    },
+    /// The text is not an IR.
+    #[error("the IR of table `{table}` cannot be read: {message}")]
+    Ir {
+        /// Table of the IR.
+        table: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// Table and IR do not belong together, or two tables make the same model.
+    #[error("{0}")]
+    Mismatch(String),
+    /// The manifest cannot be read.
+    #[error("generated/manifest.json cannot be read: {0}")]
+    Manifest(String),
+    /// Emitted text is not Rust: a fault of the emitter.
+    #[error("internal error: {path} is not valid Rust: {message}")]
+    NotRust {
+        /// File at fault.
+        path: String,
+        /// What the parser says.
+        message: String,
+    },
+}

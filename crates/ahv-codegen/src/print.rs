@@ -1,0 +1,200 @@
+//! Prints nodes as Rust expressions and counts their operations.
+
+use crate::body::{Scope, Value};
+use crate::dag::{Call, Id, Kind, Node};
+
+/// Operations of a function as emitted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Cost {
+    pub(crate) additions: usize,
+    pub(crate) multiplications: usize,
+    pub(crate) divisions: usize,
+    pub(crate) sin_cos: usize,
+    pub(crate) exp: usize,
+    pub(crate) sqrt: usize,
+}
+
+impl Cost {
+    /// One line: `71 operations: 30 additions, 35 multiplications, 1 division, …`.
+    pub(crate) fn describe(&self) -> String {
+        let parts = [
+            (self.additions, "addition"),
+            (self.multiplications, "multiplication"),
+            (self.divisions, "division"),
+            (self.sin_cos, "sin_cos"),
+            (self.exp, "exp"),
+            (self.sqrt, "sqrt"),
+        ];
+        let total: usize = parts.iter().map(|(count, _)| count).sum();
+        let listed: Vec<String> = parts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|&(count, word)| {
+                let plural = if count > 1 && word.ends_with("ion") {
+                    "s"
+                } else {
+                    ""
+                };
+                format!("{count} {word}{plural}")
+            })
+            .collect();
+        match total {
+            0 => "no operations".to_owned(),
+            1 => format!("1 operation: {}", listed.join(", ")),
+            _ => format!("{total} operations: {}", listed.join(", ")),
+        }
+    }
+}
+
+/// A sum of this many addends is written one a line, so that a new one is one line of a diff.
+const LISTED: usize = 3;
+/// Longer addends are left to the formatter.
+const WIDEST: usize = 100;
+
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Binding {
+    Sum,
+    Product,
+    Atom,
+}
+
+/// The expression that stands for a node in a scope: its name where it has one.
+pub(crate) fn reference(scope: &mut Scope<'_>, id: Id) -> String {
+    expression(scope, id).0
+}
+
+/// The definition of a node, whether or not it has a name.
+pub(crate) fn definition(scope: &mut Scope<'_>, id: Id) -> Value {
+    if let Node::Sum(terms) = scope.dag.node(id).clone() {
+        let addends = spell_sum(scope, terms);
+        if addends.len() >= LISTED && addends.iter().all(|a| a.chars().count() <= WIDEST) {
+            return Value::Addends(addends);
+        }
+        return Value::Plain(addends.join(" "));
+    }
+    Value::Plain(spell(scope, id).0)
+}
+
+/// A number as a constant of the scalar.
+pub(crate) fn literal(value: f64) -> String {
+    match value {
+        0.0 => "R::ZERO".to_owned(),
+        1.0 => "R::ONE".to_owned(),
+        2.0 => "R::TWO".to_owned(),
+        0.5 => "R::HALF".to_owned(),
+        _ => format!("R::from_f64({value:?})"),
+    }
+}
+
+fn expression(scope: &mut Scope<'_>, id: Id) -> (String, Binding) {
+    match scope.known(id) {
+        Some(name) => (name, Binding::Atom),
+        None => spell(scope, id),
+    }
+}
+
+fn atom(scope: &mut Scope<'_>, id: Id) -> String {
+    enclosed(scope, id, Binding::Atom)
+}
+
+fn enclosed(scope: &mut Scope<'_>, id: Id, least: Binding) -> String {
+    let (text, binding) = expression(scope, id);
+    if binding < least {
+        format!("({text})")
+    } else {
+        text
+    }
+}
+
+fn spell(scope: &mut Scope<'_>, id: Id) -> (String, Binding) {
+    match scope.dag.node(id).clone() {
+        Node::Number(value) => (literal(value), Binding::Atom),
+        Node::Leaf(kind, name) => {
+            scope.used.insert(kind);
+            let argument = match kind {
+                Kind::State => "x",
+                Kind::Input => "u",
+                Kind::Noise => "dw",
+                Kind::Parameter => "p",
+            };
+            (format!("{argument}.{name}"), Binding::Atom)
+        }
+        Node::Sum(terms) => (spell_sum(scope, terms).join(" "), Binding::Sum),
+        Node::Product(coefficient, factors) => spell_product(scope, coefficient, &factors),
+        Node::Power(base, -1) => {
+            scope.cost.divisions += 1;
+            (format!("{}.recip()", atom(scope, base)), Binding::Atom)
+        }
+        Node::Power(base, exponent) => {
+            scope.cost.multiplications += 1;
+            let (low, high) = scope.dag.split_power(base, exponent);
+            let (low, high) = (atom(scope, low), atom(scope, high));
+            (format!("{high} * {low}"), Binding::Product)
+        }
+        Node::Call(call, argument) => {
+            let function = match call {
+                Call::Sin => "sin",
+                Call::Cos => "cos",
+                Call::Exp => "exp",
+                Call::Sqrt => "sqrt",
+            };
+            match call {
+                Call::Sin | Call::Cos => scope.cost.sin_cos += 1,
+                Call::Exp => scope.cost.exp += 1,
+                Call::Sqrt => scope.cost.sqrt += 1,
+            }
+            (
+                format!("{}.{function}()", atom(scope, argument)),
+                Binding::Atom,
+            )
+        }
+    }
+}
+
+fn spell_sum(scope: &mut Scope<'_>, mut terms: Vec<(f64, Id)>) -> Vec<String> {
+    // A sum reads best from a positive addend; addition in another order is the same work.
+    if let Some(first) = terms.iter().position(|&(coefficient, _)| coefficient > 0.0) {
+        let lead = terms.remove(first);
+        terms.insert(0, lead);
+    }
+    scope.cost.additions += terms.len() - 1;
+    let mut addends = Vec::with_capacity(terms.len());
+    for (position, (coefficient, id)) in terms.into_iter().enumerate() {
+        let sign = match (position, coefficient < 0.0) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => "+ ",
+            (_, true) => "- ",
+        };
+        let size = coefficient.abs();
+        let addend = if scope.dag.is_one(id) {
+            literal(size)
+        } else if size == 1.0 {
+            enclosed(scope, id, Binding::Product)
+        } else {
+            scope.cost.multiplications += 1;
+            format!(
+                "{} * {}",
+                literal(size),
+                enclosed(scope, id, Binding::Product)
+            )
+        };
+        addends.push(format!("{sign}{addend}"));
+    }
+    addends
+}
+
+fn spell_product(scope: &mut Scope<'_>, coefficient: f64, factors: &[Id]) -> (String, Binding) {
+    let mut parts: Vec<String> = factors
+        .iter()
+        .map(|&f| enclosed(scope, f, Binding::Product))
+        .collect();
+    scope.cost.multiplications += parts.len() - 1;
+    if coefficient.abs() != 1.0 {
+        scope.cost.multiplications += 1;
+        parts.insert(0, literal(coefficient));
+    } else if coefficient < 0.0 {
+        parts[0].insert(0, '-');
+    }
+    (parts.join(" * "), Binding::Product)
+}

@@ -1,0 +1,135 @@
+//! The text of a table: its values and the places where they stand.
+
+use serde_json::{Map, Value as Json};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toml_edit::{Document, Item, TableLike, Value};
+
+use crate::manifest::sha256;
+
+/// A table as a file holds it.
+#[derive(Debug)]
+pub struct Table {
+    /// `name` in `[table]`; empty where it is missing.
+    pub name: String,
+    /// Name of the file.
+    pub file_name: String,
+    document: Document<String>,
+}
+
+/// Text that is not TOML.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct TableError {
+    /// What is wrong.
+    pub message: String,
+    /// Where, in bytes.
+    pub span: Option<Range<usize>>,
+}
+
+/// The side of an entry that a fault concerns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Its key.
+    Key,
+    /// Its value.
+    Value,
+}
+
+impl Table {
+    /// Reads TOML text.
+    ///
+    /// # Errors
+    /// [`TableError`] with the place of the fault; a key that stands twice is one.
+    pub fn parse(file_name: &str, text: &str) -> Result<Self, TableError> {
+        let document = Document::parse(text.to_owned()).map_err(|error| TableError {
+            message: error.message().trim().replace('\n', "; "),
+            span: error.span(),
+        })?;
+        let name = document
+            .get("table")
+            .and_then(|table| table.get("name"))
+            .and_then(Item::as_str)
+            .unwrap_or_default()
+            .to_owned();
+        Ok(Self {
+            name,
+            file_name: file_name.to_owned(),
+            document,
+        })
+    }
+
+    /// The number at a path of keys.
+    pub fn number(&self, path: &[&str]) -> Option<f64> {
+        let mut item = self.document.as_item();
+        for key in path {
+            item = item.get(key)?;
+        }
+        item.as_float()
+            .or_else(|| item.as_integer().map(|n| n as f64))
+    }
+
+    /// The text at a path of keys.
+    pub fn text(&self, path: &[&str]) -> Option<&str> {
+        let mut item = self.document.as_item();
+        for key in path {
+            item = item.get(key)?;
+        }
+        item.as_str()
+    }
+
+    /// Where the key or the value at a path stands, in bytes; of the nearest enclosing entry where it is missing.
+    pub fn span(&self, path: &[&str], part: Part) -> Option<Range<usize>> {
+        let mut table: &dyn TableLike = self.document.as_table();
+        let mut found = None;
+        for (depth, key) in path.iter().enumerate() {
+            let Some((name, item)) = table.get_key_value(key) else {
+                break;
+            };
+            let last = depth + 1 == path.len();
+            found = match part {
+                Part::Value if last => item.span().or_else(|| name.span()),
+                _ => name.span().or_else(|| item.span()),
+            };
+            match item.as_table_like() {
+                Some(inner) => table = inner,
+                None => break,
+            }
+        }
+        found
+    }
+
+    /// SHA-256 of the values: comments, order and layout do not count.
+    pub fn sha256(&self) -> String {
+        sha256(&canonical_table(self.document.as_table()).to_string())
+    }
+}
+
+// Keys are sorted here, for whether `serde_json::Map` sorts depends on its features; a float prints in its shortest
+// form: one text for one meaning.
+fn canonical_table(table: &dyn TableLike) -> Json {
+    let sorted: BTreeMap<String, Json> = table
+        .iter()
+        .map(|(key, item)| (key.to_owned(), canonical_item(item)))
+        .collect();
+    Json::Object(sorted.into_iter().collect::<Map<_, _>>())
+}
+
+fn canonical_item(item: &Item) -> Json {
+    match item {
+        Item::Value(value) => canonical_value(value),
+        other => other.as_table_like().map_or(Json::Null, canonical_table),
+    }
+}
+
+fn canonical_value(value: &Value) -> Json {
+    match value {
+        Value::String(text) => Json::from(text.value().as_str()),
+        Value::Integer(number) => Json::from(*number.value() as f64),
+        Value::Float(number) => Json::from(*number.value()),
+        Value::Boolean(flag) => Json::from(*flag.value()),
+        Value::Datetime(time) => Json::from(time.value().to_string()),
+        Value::Array(array) => array.iter().map(canonical_value).collect(),
+        Value::InlineTable(table) => canonical_table(table),
+    }
+}

@@ -1,0 +1,32 @@
+//! What {{ label }} computes from its parameters once.
+
+use super::Parameters;
+use ahv_core::Real;
+
+/// Parameters as the functions of this model use them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prepared<R> {
+{%- for field in fields %}
+    /// {{ field.doc }}
+    pub {{ field.name }}: R,
+{%- endfor %}
+}
+
+/// Computes everything that depends on parameters alone.
+///
+/// {{ cost }}.
+pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
+{%- for statement in statements %}
+    {{ statement.source() }}
+{%- endfor %}
+    __section!("");
+    Prepared {
+{%- for field in fields %}
+{%- if field.name == field.value %}
+        {{ field.name }},
+{%- else %}
+        {{ field.name }}: {{ field.value }},
+{%- endif %}
+{%- endfor %}
+    }
+}
