@@ -1,4 +1,6 @@
-"""Command line: `python -m ahv_generator derive --out DIR TABLE...`.
+"""Command line: `python -m ahv_generator derive --out DIR TABLE...` and `... evaluate`.
+
+`evaluate` writes CasADi's own values of a model at points that the oracle drew.
 
 Exit codes: 0 done, 2 a table is at fault (its diagnostics stand on standard output as JSON).
 """
@@ -10,7 +12,7 @@ import json
 import sys
 from pathlib import Path
 
-from . import ir
+from . import ir, reference
 from .diagnostics import Diagnostic, TableError
 from .models import BUILDERS
 from .table import load
@@ -23,11 +25,28 @@ def main() -> int:
     derive = commands.add_parser("derive", help="derive the models of tables and write their IR")
     derive.add_argument("--out", type=Path, required=True, help="folder for <table>.json")
     derive.add_argument("tables", type=Path, nargs="+")
+    evaluate = commands.add_parser("evaluate", help="evaluate a model at the points of an oracle file")
+    evaluate.add_argument("--table", type=Path, required=True)
+    evaluate.add_argument("--model", choices=tuple(BUILDERS), required=True)
+    evaluate.add_argument("--points", type=Path, required=True, help="file of reference vectors")
+    evaluate.add_argument("--out", type=Path, required=True)
     arguments = parser.parse_args()
+    try:
+        if arguments.command == "derive":
+            _derive(arguments.tables, arguments.out)
+        else:
+            model = BUILDERS[arguments.model](load(arguments.table))
+            reference.write(model, arguments.points, arguments.out)
+    except TableError as error:
+        print(json.dumps({"diagnostics": [d.as_json() for d in error.diagnostics]}))
+        return 2
+    return 0
 
+
+def _derive(tables: list[Path], out: Path) -> None:
     texts: dict[str, str] = {}
     diagnostics: list[Diagnostic] = []
-    for path in arguments.tables:
+    for path in tables:
         try:
             table = load(path)
         except TableError as error:
@@ -35,11 +54,9 @@ def main() -> int:
             continue
         texts[table.name] = ir.render(table, [BUILDERS[name](table) for name in table.models])
     if diagnostics:
-        print(json.dumps({"diagnostics": [d.as_json() for d in diagnostics]}))
-        return 2
+        raise TableError(diagnostics)
     for name, text in texts.items():
-        (arguments.out / f"{name}.json").write_text(text, encoding="utf-8", newline="\n")
-    return 0
+        (out / f"{name}.json").write_text(text, encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":

@@ -53,10 +53,6 @@ def _same(a: units.Dimensions, b: units.Dimensions) -> bool:
     return all(abs(a.get(k, 0.0) - b.get(k, 0.0)) < 1e-9 for k in {*a, *b})
 
 
-def _product(a: units.Dimensions, b: units.Dimensions, sign: float) -> units.Dimensions:
-    return {k: a.get(k, 0.0) + sign * b.get(k, 0.0) for k in sorted({*a, *b})}
-
-
 def _dimensions(node: Tree, known: Mapping[str, str]) -> units.Dimensions | None:
     """Dimensions of a tree; None for the number zero, which fits everything."""
     if isinstance(node, float):
@@ -64,26 +60,37 @@ def _dimensions(node: Tree, known: Mapping[str, str]) -> units.Dimensions | None
     if isinstance(node, str):
         return units.dimensions(known[node])
     op, *args = node
-    parts = [_dimensions(a, known) for a in args]
-    if op == "neg":
-        return parts[0]
+    if op == "pow":
+        exponent = args[1]
+        assert isinstance(exponent, float)
+        return _scaled(_dimensions(args[0], known), exponent)
+    parts = [_dimensions(argument, known) for argument in args]
     if op in ("sin", "cos", "exp"):
         if parts[0] and not _same(parts[0], {}):
             raise ExpressionError(f"{op} of a quantity with dimensions: {args[0]}")
         return {}
+    if op == "neg":
+        return parts[0]
     if op == "sqrt":
-        return {k: v / 2 for k, v in (parts[0] or {}).items()}
-    if op == "pow":
-        exponent = args[1]
-        assert isinstance(exponent, float)
-        return {k: v * exponent for k, v in (parts[0] or {}).items()}
-    left, right = parts
+        return _scaled(parts[0], 0.5)
     if op in ("+", "-"):
-        if left is None or right is None:
-            return left if right is None else right
-        if not _same(left, right):
-            raise ExpressionError(f"a sum of unlike dimensions {left} and {right}: {node}")
-        return left
+        return _common(parts[0], parts[1], node)
+    return _product(parts[0], parts[1], 1.0 if op == "*" else -1.0)
+
+
+def _scaled(found: units.Dimensions | None, factor: float) -> units.Dimensions:
+    return {name: power * factor for name, power in (found or {}).items()}
+
+
+def _common(left: units.Dimensions | None, right: units.Dimensions | None, node: Tree) -> units.Dimensions | None:
+    if left is None or right is None:
+        return left if right is None else right
+    if not _same(left, right):
+        raise ExpressionError(f"a sum of unlike dimensions {left} and {right}: {node}")
+    return left
+
+
+def _product(left: units.Dimensions | None, right: units.Dimensions | None, sign: float) -> units.Dimensions | None:
     if left is None or right is None:
         return None
-    return _product(left, right, 1.0 if op == "*" else -1.0)
+    return {k: left.get(k, 0.0) + sign * right.get(k, 0.0) for k in sorted({*left, *right})}

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-
-import casadi as ca
+from importlib.metadata import version
 
 from . import __version__
 from .expression import tree
@@ -22,11 +21,16 @@ class _Line:
         self.value = value
 
 
+def casadi_version() -> str:
+    """The version of CasADi that derives."""
+    return version("casadi")
+
+
 def render(table: Table, models: list[Model]) -> str:
     """The IR of a table and its models as JSON text."""
     document = {
         "schema_version": SCHEMA_VERSION,
-        "provenance": {"table": table.name, "generator": __version__, "casadi": ca.__version__},
+        "provenance": {"table": table.name, "generator": __version__, "casadi": casadi_version()},
         "parameters": [_Line(_parameter(p)) for p in table.parameters],
         "validity": [_Line({"name": v.name, "unit": v.unit, "doc": v.doc}) for v in table.validity],
         "models": [_model(m) for m in models],

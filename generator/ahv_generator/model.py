@@ -11,7 +11,6 @@ from .graph import Graph
 from .schema import VariableSpec
 from .table import Table
 
-
 # Prefixes that tell leaves of different bases apart: a Wiener increment and its intensity share a name.
 LEAVES = {"state": "x", "input": "u", "noise": "w"}
 

@@ -50,9 +50,7 @@ VEHICLE = (
     ParameterSpec("c_bar", r"\bar c", "ft", "mean aerodynamic chord", positive=True),
     ParameterSpec("z_T", "z_T", "ft", "thrust-to-moment coupling arm"),
 )
-CANARD = (
-    ParameterSpec("canard_slaving", "s_c", "1", "share of law (4) in the canard deflection: 1 slaved, 0 free"),
-)
+CANARD = (ParameterSpec("canard_slaving", "s_c", "1", "share of law (4) in the canard deflection: 1 slaved, 0 free"),)
 ENVIRONMENT = (
     ParameterSpec("rho_0", r"\rho_0", "slug/ft^3", "air density at the reference altitude", positive=True),
     ParameterSpec("h_0", "h_0", "ft", "reference altitude of the air density"),

@@ -16,7 +16,8 @@ from .schema import STATUSES, ParameterSpec, QuantitySpec, Schema, VariableSpec,
 _HEADER_KEYS = ("name", "models", "units", "source", "status", "uncertainty")
 _ENTRY_KEYS = ("value", "unit", "source", "status", "uncertainty")
 _BOX_KEYS = ("min", "max", "unit")
-_MODELS = {"com": "com", "dcom": "dcom", "sdcom": "dcom"}
+_COMBINATIONS = (("com",), ("dcom",), ("dcom", "sdcom"))
+_MODELS = ("com", "dcom", "sdcom")
 
 
 @dataclass(frozen=True)
@@ -104,30 +105,27 @@ class _Reader:
         for key in _HEADER_KEYS:
             if self.header and key not in self.header:
                 self.faults.key(("table",), f"`{key}` is missing in `[table]`")
-        name = self.header.get("name", "")
-        if "name" in self.header and not (isinstance(name, str) and name.isidentifier() and name == name.lower()):
+        name = self.header.get("name", "table")
+        if not (isinstance(name, str) and name.isidentifier() and name == name.lower()):
             self.faults.value(("table", "name"), "`name` must be a lower-case identifier")
         if self.header.get("units", units.SYSTEM) != units.SYSTEM:
             self.faults.value(("table", "units"), "unknown unit system", f"known is `{units.SYSTEM}`")
-        listed = self.header.get("models", [])
-        models = tuple(m for m in listed if isinstance(m, str)) if isinstance(listed, list) else ()
-        for model in models:
-            if model not in _MODELS:
-                self.faults.value(("table", "models"), f"unknown model `{model}`", suggestion(model, _MODELS))
-        families = {_MODELS[m] for m in models if m in _MODELS}
-        if "models" in self.header and len(families) != 1:
-            self.faults.value(
-                ("table", "models"), '`models` must be ["com"], ["dcom"] or ["dcom", "sdcom"]'
-            )
-        elif len(set(models)) != len(models) or (models and models[0] == "sdcom"):
-            self.faults.value(
-                ("table", "models"), "`sdcom` is the stochastic form of `dcom` and is listed once, after it"
-            )
         self._provenance(self.header, ("table",))
-        return str(name), models
+        return str(name), self._models()
+
+    def _models(self) -> tuple[str, ...]:
+        path = ("table", "models")
+        listed = self.header.get("models", [])
+        models = tuple(str(m) for m in listed) if isinstance(listed, list) else ()
+        unknown = [m for m in models if m not in _MODELS]
+        for model in unknown:
+            self.faults.value(path, f"unknown model `{model}`", suggestion(model, _MODELS))
+        if "models" in self.header and not unknown and models not in _COMBINATIONS:
+            self.faults.value(path, '`models` must be ["com"], ["dcom"] or ["dcom", "sdcom"]')
+        return models
 
     def _schema(self, models: tuple[str, ...]) -> Schema:
-        if models and _MODELS.get(models[0]) == "com":
+        if "com" in models:
             return com_schema()
         numbered = [int(s[4:]) for s in self.document if s.startswith("C_N_") and s[4:].isdigit()]
         modes = max(numbered, default=1)
@@ -137,7 +135,7 @@ class _Reader:
         section = self.document[path[0]]
         entry = section[path[1]] if isinstance(section, dict) else None
         if not isinstance(entry, dict):
-            self.faults.value(path, "an entry is a table like { value = 1.0, unit = \"1/rad\" }")
+            self.faults.value(path, 'an entry is a table like { value = 1.0, unit = "1/rad" }')
             return None
         for key in entry:
             if key not in _ENTRY_KEYS:
@@ -224,15 +222,13 @@ class _Reader:
             if checked is None:
                 continue
             value, entry = checked
-            if spec.positive and value <= 0 or value < spec.lowest:
+            if (spec.positive and value <= 0) or value < spec.lowest:
                 bound = "positive" if spec.positive else f"at least {spec.lowest:g}"
                 self.faults.value((*path, "value"), f"`{key}` ({spec.doc}) must be {bound}")
             found.append(self._parameter(path, key.lower(), spec.symbol, spec.unit, spec.doc, entry))
         return found
 
-    def _quantity(
-        self, spec: QuantitySpec, variable_units: Mapping[str, str]
-    ) -> tuple[Polynomial, list[Parameter]]:
+    def _quantity(self, spec: QuantitySpec, variable_units: Mapping[str, str]) -> tuple[Polynomial, list[Parameter]]:
         content = self._section(spec.key)
         terms: list[Term] = []
         found: list[Parameter] = []
@@ -247,28 +243,33 @@ class _Reader:
                 self.faults.key((spec.key, key), f"`{key}` is the same monomial as `{seen[powers]}`")
                 continue
             seen[powers] = key
-            unit = spec.unit
-            for variable, exponent in powers:
-                for _ in range(exponent):
-                    unit = units.quotient(unit, variable_units[variable])
-            checked = self._entry((spec.key, key), unit)
-            if checked is None:
-                continue
-            value, entry = checked
-            if powers == (("delta_c", 1),) and spec.required and value == 0:
-                self.faults.value((spec.key, key, "value"), f"law (4) divides by the {spec.key} of `delta_c`")
-            name = f"{spec.key.lower()}_{monomial_name(powers)}"
-            doc = f"coefficient of {key} in {spec.key}" if powers else f"constant part of {spec.key}"
-            symbol = _coefficient_symbol(spec, powers)
-            entry_unit = str(entry.get("unit", unit))
-            found.append(self._parameter((spec.key, key), name, symbol, entry_unit, doc, entry))
-            terms.append(Term(name, powers))
+            parameter = self._coefficient(spec, key, powers, variable_units)
+            if parameter is not None:
+                found.append(parameter)
+                terms.append(Term(parameter.name, powers))
         for variable in spec.required:
             if content and ((variable, 1),) not in seen:
-                self.faults.key(
-                    (spec.key,), f"the coefficient of `{variable}` is missing in `[{spec.key}]`", "law (4) needs it"
-                )
+                message = f"the coefficient of `{variable}` is missing in `[{spec.key}]`"
+                self.faults.key((spec.key,), message, "law (4) needs it")
         return Polynomial(tuple(terms)), found
+
+    def _coefficient(
+        self, spec: QuantitySpec, key: str, powers: Powers, variable_units: Mapping[str, str]
+    ) -> Parameter | None:
+        unit = spec.unit
+        for variable, exponent in powers:
+            for _ in range(exponent):
+                unit = units.quotient(unit, variable_units[variable])
+        checked = self._entry((spec.key, key), unit)
+        if checked is None:
+            return None
+        value, entry = checked
+        if spec.required and powers == (("delta_c", 1),) and value == 0:
+            self.faults.value((spec.key, key, "value"), f"law (4) divides by the {spec.key} of `delta_c`")
+        name = f"{spec.key.lower()}_{monomial_name(powers)}"
+        doc = f"coefficient of {key} in {spec.key}" if powers else f"constant part of {spec.key}"
+        symbol = _coefficient_symbol(spec, powers)
+        return self._parameter((spec.key, key), name, symbol, str(entry.get("unit", unit)), doc, entry)
 
     def _monomial(self, spec: QuantitySpec, key: str) -> Powers | None:
         try:

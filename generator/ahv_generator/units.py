@@ -6,6 +6,8 @@ Only when the dimensions of an equation are checked does an angle count as a pur
 
 from __future__ import annotations
 
+from typing import cast
+
 import pint
 
 SYSTEM = "ft-slug-s-rad"
@@ -24,8 +26,8 @@ _SHORT = {"foot": "ft", "second": "s", "radian": "rad", "degree": "deg", "pound_
 Dimensions = dict[str, float]
 
 
-def _registry() -> pint.UnitRegistry:
-    registry: pint.UnitRegistry = pint.UnitRegistry(None)
+def _registry() -> pint.UnitRegistry[float]:
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry(None)
     for definition in _DEFINITIONS:
         registry.define(definition)
     return registry
@@ -56,15 +58,14 @@ def factor(text: str, expected: str) -> float:
     unit, wanted = _parse(text), _parse(expected)
     if unit.dimensionality != wanted.dimensionality:
         raise UnitError(f"the unit `{text}` does not fit; this quantity is in `{expected}`")
-    ratio = _REGISTRY.Quantity(1.0, unit).to(wanted).magnitude
-    # A value in deg must become the double nearest to value * pi / 180, whatever the route of pint.
-    return float(ratio)
+    ratio: float = _REGISTRY.Quantity(1.0, unit).to(wanted).magnitude
+    return ratio
 
 
 def dimensions(text: str) -> Dimensions:
     """Exponents of length, mass and time; an angle counts as a pure number."""
     found = _parse(text).dimensionality
-    return {str(k): float(v) for k, v in found.items() if str(k) != "[angle]" and v != 0}
+    return {str(k): cast("float", v) * 1.0 for k, v in found.items() if str(k) != "[angle]" and v != 0}
 
 
 def quotient(numerator: str, denominator: str) -> str:

@@ -84,7 +84,5 @@ def _compile(
     build = Magnitude()
     absolutes = [build.absolute(symbol) for symbol in symbols]
     values = sympy.lambdify(symbols, exprs, modules="mpmath", cse=True)
-    magnitudes = sympy.lambdify(
-        symbols + absolutes, [build.of(expr) for expr in exprs], modules="math", cse=True
-    )
+    magnitudes = sympy.lambdify(symbols + absolutes, [build.of(expr) for expr in exprs], modules="math", cse=True)
     return values, magnitudes

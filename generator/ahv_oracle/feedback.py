@@ -94,9 +94,7 @@ def _flexible_derivative(model: Model, row: str, mode: int) -> Expr:
     """Differentiate a row by eta_i at chi = 0, with the generalised forces whole."""
     free = {f"eta_{i}": symbol("free", f"eta_{i}") for i in model.table.modes}
     bind = variables(model.states, model.inputs, free)
-    slopes = {
-        name: sympy.diff(expr, free[f"eta_{mode}"]) for name, expr in aerodynamics(model.table, bind).items()
-    }
+    slopes = {name: sympy.diff(expr, free[f"eta_{mode}"]) for name, expr in aerodynamics(model.table, bind).items()}
     nothing = dict.fromkeys(own_rows(), sympy.Integer(0))
     static = {free[f"eta_{i}"]: _static(i) for i in model.table.modes}
     return rigid_rows(slopes, nothing)[row].xreplace(static)

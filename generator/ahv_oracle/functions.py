@@ -53,9 +53,7 @@ def noise_increment(model: Model) -> Entries:
     return [
         (
             f"noise_increment.{row}",
-            sympy.Add(
-                *(_diffusion_entry(model, row, noise) * symbol("noise", noise) for noise in model.noises)
-            ),
+            sympy.Add(*(_diffusion_entry(model, row, noise) * symbol("noise", noise) for noise in model.noises)),
         )
         for row in model.states
     ]

@@ -66,9 +66,7 @@ def _drift(table: Table, name: str, states: tuple[str, ...], inputs: tuple[str, 
     rigid = variables(states, inputs)
     if name == "sdcom":
         forces = generalised_forces(table, rigid)
-        etas = {
-            f"eta_{i}": force / _omega(i) ** 2 + symbol("state", f"chi_{i}") for i, force in forces.items()
-        }
+        etas = {f"eta_{i}": force / _omega(i) ** 2 + symbol("state", f"chi_{i}") for i, force in forces.items()}
         bind = variables(states, inputs, etas)
     else:
         forces = generalised_forces(table, rigid) if name == "dcom" else {}
@@ -79,9 +77,7 @@ def _drift(table: Table, name: str, states: tuple[str, ...], inputs: tuple[str, 
     return {state: rows[state] for state in states}
 
 
-def variables(
-    states: tuple[str, ...], inputs: tuple[str, ...], replaced: Mapping[str, Expr] | None = None
-) -> Binding:
+def variables(states: tuple[str, ...], inputs: tuple[str, ...], replaced: Mapping[str, Expr] | None = None) -> Binding:
     """Binds the variables of monomials; the canard is the one that the airframe sees, (4)."""
     bound: dict[str, Expr] = {name: symbol("state", name) for name in states}
     bound |= {name: symbol("input", name) for name in inputs}

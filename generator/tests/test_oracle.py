@@ -88,8 +88,7 @@ SLAVING = {0.0: (1.5018, 0.2821, 13.1006), 1.0: (3.6558, 0.2957, 7.1364)}
 def test_dcom_and_sdcom_trim_where_science_says(oracles: dict[str, Oracle], slaving: float) -> None:
     names = ("state.alpha", "input.phi", "input.delta_e")
     dcom, sdcom = (
-        trim(oracles[model], level_flight(oracles[model], canard_slaving=slaving))
-        for model in ("dcom", "sdcom")
+        trim(oracles[model], level_flight(oracles[model], canard_slaving=slaving)) for model in ("dcom", "sdcom")
     )
     found = (shown(dcom, names[0]), float(dcom[names[1]]), shown(dcom, names[2]))
     assert found == pytest.approx(SLAVING[slaving], abs=5.1e-5)
@@ -127,9 +126,7 @@ def assert_close(expected: Number, result: tuple[Number, Number], what: str) -> 
 @pytest.mark.parametrize("model", TABLE_OF)
 def test_derivatives_are_central_differences(oracles: dict[str, Oracle], model: str) -> None:
     oracle = oracles[model]
-    columns = [("state", name) for name in oracle.model.states] + [
-        ("input", name) for name in oracle.model.inputs
-    ]
+    columns = [("state", name) for name in oracle.model.states] + [("input", name) for name in oracle.model.inputs]
     for index in POINTS:
         point: Values = dict(sample(oracle.model, 1, index))
         for kind, column in columns:
@@ -258,15 +255,12 @@ def test_k_is_the_sum_of_absolute_summands(oracles: dict[str, Oracle]) -> None:
     point = sample(oracle.model, 8, 0)
     sine = abs(mpmath.sin(point["state.gamma"]))
     assert float(oracle.evaluate(point)["drift.altitude"][1]) == pytest.approx(float(p["velocity"] * sine))
-    density = p["rho_0"] * mpmath.exp(
-        (point["parameter.h_0"] - point["state.altitude"]) / point["parameter.h_s"]
-    )
+    density = p["rho_0"] * mpmath.exp((point["parameter.h_0"] - point["state.altitude"]) / point["parameter.h_s"])
     force = density * p["velocity"] ** 2 / 2 * p["s"]
     drag = p["c_d_alpha_2"] * p["alpha"] ** 2 + p["c_d_alpha"] * p["alpha"] + p["c_d_0"]
     drag += p["c_d_delta_e_2"] * p["delta_e"] ** 2 + p["c_d_delta_e"] * p["delta_e"]
     thrust = sum(
-        (p["t_phi" + tail] * p["phi"] + p["t" + (tail or "_0")]) * p["alpha"] ** n
-        for n, tail in enumerate(POWERS)
+        (p["t_phi" + tail] * p["phi"] + p["t" + (tail or "_0")]) * p["alpha"] ** n for n, tail in enumerate(POWERS)
     )
     cosine = abs(mpmath.cos(point["state.alpha"]))
     expected = (thrust * cosine + force * drag) / p["m"] + p["g"] * sine

@@ -93,9 +93,7 @@ def define_polynomial(
             section=section,
         )
         expr = per_phi * variables["phi"] + expr
-    return m.graph.define(
-        name, expr, symbol=spec.symbol, unit=spec.unit, doc=doc, equation=equation, section=section
-    )
+    return m.graph.define(name, expr, symbol=spec.symbol, unit=spec.unit, doc=doc, equation=equation, section=section)
 
 
 def define_force(m: Model, name: str, symbol: str, unit: str, doc: str, expr: ca.SX) -> ca.SX:
