@@ -39,9 +39,9 @@ WIENER_LIMIT = 0.3
 """Bound of the bell-shaped Wiener increments."""
 
 ZERO_PROBABILITY = 0.05
-"""How often a coefficient, state, input or increment is exactly zero, where the models allow it."""
+"""How often a coefficient or increment is exactly zero, and a state or input whose box contains zero."""
 
-_NEVER_ZERO = ("state.velocity", "parameter.c_l_delta_c")
+_NEVER_ZERO = ("parameter.c_l_delta_c",)
 _EDGE = 1e-5  # keeps a number inside its range after rounding to seven digits
 
 
@@ -54,17 +54,17 @@ def _number(model: Model, name: str, key: tuple[int, int]) -> float:
     kind, _, short = name.partition(".")
     if kind == "parameter" and short not in model.table.coefficients:
         return _canard_slaving(name, key) if short == "canard_slaving" else _parameter(name, short, key)
-    if name not in _NEVER_ZERO and _uniform(name, key, "zero") < ZERO_PROBABILITY:
-        return 0.0
+    zero = name not in _NEVER_ZERO and _uniform(name, key, "zero") < ZERO_PROBABILITY
     if kind == "parameter":
-        return _coefficient(name, key)
+        return 0.0 if zero else _coefficient(name, key)
     if kind == "noise":
         total = sum(_uniform(name, key, f"increment {i}") for i in range(4))
-        return WIENER_LIMIT * (total / 2.0 - 1.0)
+        return 0.0 if zero else WIENER_LIMIT * (total / 2.0 - 1.0)
     limits = model.table.validity.get(short) or model.table.validity.get(_family(short))
     if limits is None:
         raise TableError(f"{model.table.name}: validity.{short} is missing")
-    return _between(limits, _uniform(name, key, "value"))
+    inside = limits[0] <= 0.0 <= limits[1]
+    return 0.0 if zero and inside else _between(limits, _uniform(name, key, "value"))
 
 
 def _coefficient(name: str, key: tuple[int, int]) -> float:

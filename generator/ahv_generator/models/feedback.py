@@ -10,6 +10,7 @@ import casadi as ca
 from .. import units
 from ..model import Entry, Model, Output
 from ..polynomial import Polynomial
+from ..schema import FLEXIBLE
 from .dcom import total_moment
 from .vehicle import coefficient_symbols, resultants, rigid_rates
 
@@ -152,12 +153,12 @@ class StrictFeedback:
         """A part of a curve fit by a name of its own, unless it is a single term."""
         if len(part.terms) == 1:
             return value
-        unit = self.m.unit(row.control) if kind == "g" and row.control != "phi" else "1"
+        divisors = {"f": "1", "g": self.m.unit(row.control), "h": FLEXIBLE}
         return self.m.graph.define(
             f"{fit.lower()}_of_{kind}_{row.state}",
             value,
             symbol=rf"{fit}|_{{{kind}}}",
-            unit=units.quotient("1", unit),
+            unit=units.quotient("1", divisors[kind[0]]),
             doc=f"part of {fit} that belongs to {kind} of the {row.state} row",
             equation=row.equation,
             section="Strict-feedback form",

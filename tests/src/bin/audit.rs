@@ -1,0 +1,93 @@
+//! `cargo xtask audit`: the generated functions against the oracle at many points, with the worst of each function.
+#![forbid(unsafe_code)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use ahv_tests::evaluate::{MODELS, evaluate};
+use ahv_tests::measure::{Worst, compare};
+use ahv_tests::vectors::read_oracle;
+use clap::Parser;
+
+/// In units of 2⁻⁵²·K.
+const BAR: f64 = 8.0;
+
+/// Audits the generated functions against mpmath at 50 digits.
+#[derive(Parser)]
+struct Arguments {
+    /// Points for each model.
+    #[arg(long, default_value_t = 10_000)]
+    points: u32,
+    /// Seed of the points.
+    #[arg(long, default_value_t = 2)]
+    seed: u64,
+    /// Python interpreter that has SymPy.
+    #[arg(long)]
+    python: PathBuf,
+    /// The project's folder.
+    #[arg(long, default_value = ".")]
+    root: PathBuf,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let mut all_within = true;
+    for model in MODELS {
+        match audit(&arguments, model) {
+            Ok(within) => all_within &= within,
+            Err(message) => {
+                eprintln!("error: {message}");
+                return ExitCode::from(2);
+            }
+        }
+    }
+    if all_within {
+        println!("every error is at most {BAR} in units of 2^-52 K");
+        ExitCode::SUCCESS
+    } else {
+        println!("an error exceeds {BAR} in units of 2^-52 K");
+        ExitCode::FAILURE
+    }
+}
+
+/// Audits one model; whether all its errors are within the bar.
+fn audit(arguments: &Arguments, model: &str) -> Result<bool, String> {
+    let folder = tempfile::tempdir().map_err(|e| format!("no temporary folder: {e}"))?;
+    let file = folder.path().join("vectors.txt");
+    draw(arguments, model, &file)?;
+    let mut worst: BTreeMap<String, Worst> = BTreeMap::new();
+    for point in read_oracle(&file) {
+        compare(&point, &evaluate::<f64>(model, &point.inputs), &mut worst);
+    }
+    println!("{model}, {} points, error in units of 2^-52 K:", arguments.points);
+    for (function, found) in &worst {
+        println!("  {function:<16} {:>6.2}  at {}", found.error, found.label);
+    }
+    if let Some(found) = worst.values().max_by(|a, b| a.error.total_cmp(&b.error)) {
+        let point: Vec<String> = found.point.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        println!("  worst point: {}", point.join(" "));
+    }
+    Ok(worst.values().all(|found| found.error <= BAR))
+}
+
+fn draw(arguments: &Arguments, model: &str, file: &Path) -> Result<(), String> {
+    let table = if model == "com" { "com" } else { "dcom" };
+    let generator = arguments.root.join("generator");
+    let output = Command::new(&arguments.python)
+        .args(["-m", "ahv_oracle", "vectors", "--model", model])
+        .arg("--table")
+        .arg(generator.join(format!("tables/{table}.toml")))
+        .args(["--points", &arguments.points.to_string()])
+        .args(["--seed", &arguments.seed.to_string()])
+        .arg("--out")
+        .arg(file)
+        .env("PYTHONPATH", &generator)
+        .output()
+        .map_err(|e| format!("{} does not run: {e}", arguments.python.display()))?;
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(format!("the oracle failed: {}", String::from_utf8_lossy(&output.stderr).trim()))
+    }
+}
