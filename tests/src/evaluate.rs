@@ -16,7 +16,11 @@ pub const MODELS: [&str; 3] = ["com", "dcom", "sdcom"];
 pub fn vector<R: Real, V: Vector<R>>(kind: &str, inputs: &BTreeMap<String, f64>) -> V {
     V::from_fn(|index| {
         let label = format!("{kind}.{}", V::NAMES[index]);
-        R::from_f64(*inputs.get(&label).unwrap_or_else(|| panic!("the point has no {label}")))
+        R::from_f64(
+            *inputs
+                .get(&label)
+                .unwrap_or_else(|| panic!("the point has no {label}")),
+        )
     })
 }
 
@@ -68,8 +72,16 @@ macro_rules! arrays {
 fn sdcom<R: Real>(inputs: &BTreeMap<String, f64>) -> Values {
     let (mut values, x, u, p) = deterministic!(sdcom, R, inputs);
     let dw: ahv_models::sdcom::Noise<R> = vector("noise", inputs);
-    put_rows(&mut values, "diffusion", &ahv_models::sdcom::diffusion(&x, &u, &p));
-    put(&mut values, "noise_increment", &ahv_models::sdcom::noise_increment(&x, &u, &p, &dw));
+    put_rows(
+        &mut values,
+        "diffusion",
+        &ahv_models::sdcom::diffusion(&x, &u, &p),
+    );
+    put(
+        &mut values,
+        "noise_increment",
+        &ahv_models::sdcom::noise_increment(&x, &u, &p, &dw),
+    );
     scalars!(values, (&x, &u, &p),
         f_V g_V H_V f_V_eta f_gamma g_gamma H_gamma f_gamma_eta
         f_alpha g_alpha H_alpha f_alpha_eta f_Q g_Q H_Q f_Q_eta g_Q_total);

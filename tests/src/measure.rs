@@ -34,11 +34,16 @@ pub fn error(value: f64, reference: Reference) -> f64 {
 pub fn compare(point: &Point, values: &BTreeMap<String, f64>, worst: &mut BTreeMap<String, Worst>) {
     for (label, &value) in values {
         if !point.outputs.contains_key(label) {
-            assert!(value == 0.0, "{label} is {value}, but the oracle has no such entry");
+            assert!(
+                value == 0.0,
+                "{label} is {value}, but the oracle has no such entry"
+            );
         }
     }
     for (label, &reference) in &point.outputs {
-        let value = values.get(label).unwrap_or_else(|| panic!("no generated value for {label}"));
+        let value = values
+            .get(label)
+            .unwrap_or_else(|| panic!("no generated value for {label}"));
         let function = label.split('.').next().unwrap_or(label);
         let found = worst.entry(function.to_owned()).or_default();
         let error = error(*value, reference);

@@ -29,7 +29,12 @@ fn generated_functions_match_the_oracle() {
         }
         for (function, found) in &worst {
             println!("{model}::{function}: {:.2} at {}", found.error, found.label);
-            assert!(found.error <= BAR, "{model}::{function}: {} at {:?}", found.error, found.point);
+            assert!(
+                found.error <= BAR,
+                "{model}::{function}: {} at {:?}",
+                found.error,
+                found.point
+            );
         }
     }
 }
@@ -45,10 +50,17 @@ fn generated_functions_match_casadi() {
             for (label, &value) in values {
                 let reference = point.outputs[label];
                 let own = error(value, reference);
-                assert!(own <= BAR, "CasADi's {model} {label} is {own} away from the oracle");
+                assert!(
+                    own <= BAR,
+                    "CasADi's {model} {label} is {own} away from the oracle"
+                );
                 let apart = (ours[label] - value).abs();
                 let allowed = 2.0 * BAR * f64::EPSILON * reference.magnitude;
-                assert!(apart <= allowed, "{model} {label}: {} against CasADi's {value}", ours[label]);
+                assert!(
+                    apart <= allowed,
+                    "{model} {label}: {} against CasADi's {value}",
+                    ours[label]
+                );
             }
         }
     }
@@ -59,14 +71,25 @@ fn generated_functions_match_casadi() {
 fn single_precision_agrees_with_double() {
     for model in MODELS {
         for point in points(model) {
-            let rounded: BTreeMap<String, f64> =
-                point.inputs.iter().map(|(k, &v)| (k.clone(), f64::from(v as f32))).collect();
-            let (single, double) = (evaluate::<f32>(model, &rounded), evaluate::<f64>(model, &rounded));
+            let rounded: BTreeMap<String, f64> = point
+                .inputs
+                .iter()
+                .map(|(k, &v)| (k.clone(), f64::from(v as f32)))
+                .collect();
+            let (single, double) = (
+                evaluate::<f32>(model, &rounded),
+                evaluate::<f64>(model, &rounded),
+            );
             for (label, reference) in &point.outputs {
                 let apart = (single[label] - double[label]).abs();
                 // The exponent of the density amplifies a rounding by up to 8.
                 let allowed = 64.0 * f64::from(f32::EPSILON) * reference.magnitude + 1e-30;
-                assert!(apart <= allowed, "{model} {label}: {} against {}", single[label], double[label]);
+                assert!(
+                    apart <= allowed,
+                    "{model} {label}: {} against {}",
+                    single[label],
+                    double[label]
+                );
             }
         }
     }
@@ -84,8 +107,10 @@ fn no_generated_function_is_left_out() {
             let point = points(&model.name).remove(0);
             let first = |label: &String| label.split('.').next().unwrap_or_default().to_owned();
             let tested: BTreeSet<String> = point.outputs.keys().map(first).collect();
-            let evaluated: BTreeSet<String> =
-                evaluate::<f64>(&model.name, &point.inputs).keys().map(first).collect();
+            let evaluated: BTreeSet<String> = evaluate::<f64>(&model.name, &point.inputs)
+                .keys()
+                .map(first)
+                .collect();
             assert_eq!(tested, expected, "vectors of {}", model.name);
             assert_eq!(evaluated, expected, "evaluation of {}", model.name);
         }

@@ -3,6 +3,7 @@
 
 mod assignment;
 mod failure;
+mod generate;
 mod simulate;
 
 use std::process::ExitCode;
@@ -19,15 +20,16 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Generate(generate::Arguments),
     Simulate(simulate::Arguments),
 }
 
 fn main() -> ExitCode {
-    let result = match Cli::parse().command {
-        Command::Simulate(arguments) => simulate::run(&arguments),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+    match Cli::parse().command {
+        Command::Generate(arguments) => generate::run(&arguments),
+        Command::Simulate(arguments) => match simulate::run(&arguments) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => failure.report(),
+        },
     }
 }

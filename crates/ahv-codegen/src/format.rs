@@ -84,8 +84,9 @@ fn starts_item(indent: &str, code: &str, previous: &str) -> bool {
     match indent.len() {
         0 => {
             let same = group(code).is_some() && group(code) == group(previous);
-            // Attributes of the file follow its description.
-            !same && !(code.starts_with("#![") && previous.starts_with("//!"))
+            // Attributes of a file follow its description.
+            let attribute = code.starts_with("#![") && previous.starts_with("//!");
+            !(same || attribute)
         }
         4 => {
             (code.starts_with("///") || code.starts_with("#["))

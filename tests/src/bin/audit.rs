@@ -60,12 +60,19 @@ fn audit(arguments: &Arguments, model: &str) -> Result<bool, String> {
     for point in read_oracle(&file) {
         compare(&point, &evaluate::<f64>(model, &point.inputs), &mut worst);
     }
-    println!("{model}, {} points, error in units of 2^-52 K:", arguments.points);
+    println!(
+        "{model}, {} points, error in units of 2^-52 K:",
+        arguments.points
+    );
     for (function, found) in &worst {
         println!("  {function:<16} {:>6.2}  at {}", found.error, found.label);
     }
     if let Some(found) = worst.values().max_by(|a, b| a.error.total_cmp(&b.error)) {
-        let point: Vec<String> = found.point.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let point: Vec<String> = found
+            .point
+            .iter()
+            .map(|(name, value)| format!("{name}={value}"))
+            .collect();
         println!("  worst point: {}", point.join(" "));
     }
     Ok(worst.values().all(|found| found.error <= BAR))
@@ -88,6 +95,9 @@ fn draw(arguments: &Arguments, model: &str, file: &Path) -> Result<(), String> {
     if output.status.success() {
         Ok(())
     } else {
-        Err(format!("the oracle failed: {}", String::from_utf8_lossy(&output.stderr).trim()))
+        Err(format!(
+            "the oracle failed: {}",
+            String::from_utf8_lossy(&output.stderr).trim()
+        ))
     }
 }

@@ -1,0 +1,94 @@
+//! The command line, shared by `ahv generate` and `cargo xtask generate`.
+
+use std::path::PathBuf;
+
+use crate::project::Project;
+
+const PACKAGE: &str = "ahv-models";
+const CORE_PATH: &str = "../crates/ahv-core";
+
+/// Derive the models from the tables and write them as Rust.
+///
+/// Exit code: 0 done (or, with --check, tree and tables agree), 1 they differ, 2 bad input.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Args {
+    /// Write nothing; compare the tree on disk with what the tables give
+    #[arg(long)]
+    pub check: bool,
+
+    /// Check against the IR in the tree instead of deriving again: needs no Python
+    #[arg(long, requires = "check")]
+    pub from_ir: bool,
+
+    /// Folder of the tables [default: generator/tables in the project]
+    #[arg(long, value_name = "DIR")]
+    pub tables: Option<PathBuf>,
+
+    /// Folder of the generated package [default: generated in the project]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// Name of the generated package
+    #[arg(long, value_name = "NAME", default_value = PACKAGE)]
+    pub package: String,
+
+    /// Where the generated package finds ahv-core, relative to itself
+    #[arg(long, value_name = "PATH", default_value = CORE_PATH)]
+    pub core_path: String,
+
+    /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Args {
+    /// The command that brings the tree up to date, with the flags that this one was given.
+    pub(crate) fn mending_command(&self, project: &Project) -> String {
+        // The generator of a repository that holds its own does not need the models to compile.
+        let xtask = project.root.join("xtask").is_dir();
+        let mut command = String::from(if xtask {
+            "cargo xtask generate"
+        } else {
+            "ahv generate"
+        });
+        let mut flag = |name: &str, value: &str| {
+            command.push_str(&format!(" {name} {}", quoted(value)));
+        };
+        if let Some(tables) = &self.tables {
+            flag("--tables", &tables.to_string_lossy());
+        }
+        if let Some(out) = &self.out {
+            flag("--out", &out.to_string_lossy());
+        }
+        if self.package != PACKAGE {
+            flag("--package", &self.package);
+        }
+        if self.core_path != CORE_PATH {
+            flag("--core-path", &self.core_path);
+        }
+        command
+    }
+}
+
+/// Quotes what a shell would take apart, so that the command can be pasted.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:\\+=,@".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn a_command_survives_the_shell() {
+        assert_eq!(quoted("../a/b.toml"), "../a/b.toml");
+        assert_eq!(quoted("my tables"), "'my tables'");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!(quoted(""), "''");
+    }
+}

@@ -1,0 +1,68 @@
+//! The derivation: runs the Python package on the tables and takes the IR.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::process::Output;
+
+use serde::Deserialize;
+
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::python::{Generator, last_lines};
+use crate::tables::{Diagnostic, Tables};
+
+/// The exit code with which the Python package says that a table is at fault.
+const BAD_TABLES: i32 = 2;
+
+#[derive(Deserialize)]
+struct Diagnostics {
+    diagnostics: Vec<Diagnostic>,
+}
+
+/// The IR of each table, by the table's name.
+pub(crate) fn derive(
+    python: &Generator,
+    tables: &Tables,
+) -> Result<BTreeMap<String, String>, Failure> {
+    let folder = tempfile::tempdir()
+        .map_err(|error| Failure::new(format!("cannot make a temporary folder: {error}")))?;
+    let output = {
+        let _progress = Progress::quiet("deriving the models");
+        let mut command = python.command();
+        command.args(["derive", "--out"]).arg(folder.path());
+        command.args(tables.sources.iter().map(|source| &source.path));
+        command
+            .output()
+            .map_err(|error| Failure::new(format!("cannot run Python: {error}")))?
+    };
+    if !output.status.success() {
+        return Err(failure(&output, tables));
+    }
+    let mut irs = BTreeMap::new();
+    for table in &tables.parsed {
+        let path = folder.path().join(format!("{}.json", table.name));
+        let text = fs::read_to_string(&path).map_err(|error| {
+            let message = format!(
+                "the derivation left no IR for table {:?}: {error}",
+                table.name
+            );
+            with_stderr(message, &output)
+        })?;
+        irs.insert(table.name.clone(), text.replace("\r\n", "\n"));
+    }
+    Ok(irs)
+}
+
+fn failure(output: &Output, tables: &Tables) -> Failure {
+    if output.status.code() == Some(BAD_TABLES)
+        && let Ok(found) = serde_json::from_slice::<Diagnostics>(&output.stdout)
+        && !found.diagnostics.is_empty()
+    {
+        return tables.faults(found.diagnostics);
+    }
+    with_stderr(format!("the derivation failed ({})", output.status), output)
+}
+
+fn with_stderr(message: String, output: &Output) -> Failure {
+    Failure::new(format!("{message}{}", last_lines(&output.stderr)))
+}

@@ -1,0 +1,127 @@
+//! Why generation stopped, said once and clearly.
+
+use std::fmt::Write as _;
+use std::io::{self, IsTerminal as _};
+use std::ops::Range;
+use std::path::Path;
+
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, NamedSource, SourceSpan};
+
+/// Something that a table may not say, with the place where it says so.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[error("{message}")]
+pub struct TableFault {
+    /// What is wrong.
+    pub message: String,
+    #[help]
+    help: Option<String>,
+    #[source_code]
+    table: NamedSource<String>,
+    #[label]
+    span: SourceSpan,
+}
+
+impl TableFault {
+    pub(crate) fn new(
+        message: impl Into<String>,
+        help: Option<String>,
+        file: &str,
+        text: &str,
+        span: Range<usize>,
+    ) -> Self {
+        // An empty table has no text to point at.
+        let end = span.end.min(text.len());
+        let start = span.start.min(end);
+        Self {
+            message: message.into(),
+            help,
+            table: NamedSource::new(file, text.to_owned()),
+            span: (start..end).into(),
+        }
+    }
+}
+
+/// Why generation stopped. Exit code 2.
+#[derive(Debug)]
+pub enum Failure {
+    /// Tables that say what they may not.
+    Tables(Vec<TableFault>),
+    /// Everything else.
+    Other {
+        /// What happened.
+        message: String,
+        /// What to do about it.
+        help: Option<String>,
+    },
+}
+
+impl Failure {
+    pub(crate) fn new(message: impl Into<String>) -> Self {
+        Self::Other {
+            message: message.into(),
+            help: None,
+        }
+    }
+
+    pub(crate) fn with_help(self, help: impl Into<String>) -> Self {
+        match self {
+            Self::Other { message, .. } => Self::Other {
+                message,
+                help: Some(help.into()),
+            },
+            tables @ Self::Tables(_) => tables,
+        }
+    }
+
+    /// For `map_err`: what could not be done to which path.
+    pub(crate) fn file(deed: &str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let message = format!("cannot {deed} {}", path.display());
+        move |error| Self::new(format!("{message}: {error}"))
+    }
+
+    /// The text for standard error: drawn on a terminal, plain ASCII elsewhere.
+    #[must_use]
+    pub fn render(&self) -> String {
+        self.render_for(io::stderr().is_terminal())
+    }
+
+    fn render_for(&self, terminal: bool) -> String {
+        let mut text = String::new();
+        match self {
+            Self::Tables(faults) => {
+                let mut theme = if terminal {
+                    GraphicalTheme::unicode()
+                } else {
+                    GraphicalTheme::none()
+                };
+                theme.characters.error = "error:".to_owned();
+                let handler = GraphicalReportHandler::new_themed(theme)
+                    .with_links(false)
+                    .with_wrap_lines(false);
+                for fault in faults {
+                    let mut drawn = String::new();
+                    if handler.render_report(&mut drawn, fault).is_err() {
+                        drawn = format!("error: {fault}\n");
+                    }
+                    // miette indents the first line, too.
+                    text.push_str(drawn.trim_start());
+                }
+            }
+            Self::Other { message, help } => {
+                let _ = writeln!(text, "error: {message}");
+                if let Some(help) = help {
+                    let _ = writeln!(text, "  help: {help}");
+                }
+            }
+        }
+        text
+    }
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(self.render_for(false).trim_end())
+    }
+}
+
+impl std::error::Error for Failure {}

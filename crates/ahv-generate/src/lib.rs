@@ -1,0 +1,174 @@
+//! The act of generating: tables of coefficients in, a tree of Rust models written or checked.
+//!
+//! `ahv generate` and `cargo xtask generate` are both [`run`]. This crate never depends on the
+//! generated package, so that it also mends a tree that does not compile.
+#![forbid(unsafe_code)]
+
+mod args;
+mod compare;
+mod derive;
+mod failure;
+mod progress;
+mod project;
+mod python;
+mod report;
+mod surroundings;
+mod tables;
+mod write;
+
+use std::collections::BTreeMap;
+use std::io::{self, Write as _};
+use std::time::Instant;
+
+use ahv_codegen::{Options, Tree};
+
+pub use args::Args;
+pub use compare::{Difference, Status};
+pub use failure::{Failure, TableFault};
+pub use project::Project;
+pub use python::environment;
+pub use report::{Checked, Generated};
+pub use surroundings::Surroundings;
+
+use report::{Owners, Seconds};
+use tables::Tables;
+
+/// Exit code: done, or tree and tables agree.
+pub const AGREES: u8 = 0;
+/// Exit code of `--check`: tree and tables differ.
+pub const DIFFERS: u8 = 1;
+/// Exit code: bad input, or generation could not do its work. Nothing was written.
+pub const FAILED: u8 = 2;
+
+/// Does what the command line asks for, prints the result, and gives the exit code.
+#[must_use]
+pub fn run(args: &Args) -> u8 {
+    match answer(args) {
+        Ok(code) => code,
+        Err(failure) => {
+            eprint!("{}", failure.render());
+            FAILED
+        }
+    }
+}
+
+fn answer(args: &Args) -> Result<u8, Failure> {
+    let surroundings = Surroundings::of_process()?;
+    if args.check {
+        let checked = check(args, &surroundings)?;
+        if args.json {
+            print(&checked.json())?;
+        } else if checked.agrees() {
+            print(&checked.text())?;
+        } else {
+            eprint!("{}", checked.text());
+        }
+        Ok(if checked.agrees() { AGREES } else { DIFFERS })
+    } else {
+        let generated = generate(args, &surroundings)?;
+        print(&if args.json {
+            generated.json()
+        } else {
+            generated.text()
+        })?;
+        Ok(AGREES)
+    }
+}
+
+/// Writes to standard output; a reader that has gone away (`| head`) is no failure.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(format!(
+            "cannot write to standard output: {error}"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Derives, emits, and brings the tree on disk up to date.
+///
+/// # Errors
+/// Bad tables, no usable Python, or a tree that cannot be written; the tree is then as it was.
+pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, Failure> {
+    let project = Project::locate(args, surroundings);
+    let (tree, _, seconds) = derive_and_emit(args, surroundings, &project)?;
+    let differences = compare::differences(&project.out, &tree)?;
+    write::apply(&project, &differences)?;
+    Ok(Generated::new(&project, differences, seconds))
+}
+
+/// Compares the tree on disk with what the tables give, and writes nothing.
+///
+/// # Errors
+/// Bad tables, no usable Python, an IR of an unknown schema version, or an unreadable tree.
+pub fn check(args: &Args, surroundings: &Surroundings) -> Result<Checked, Failure> {
+    let project = Project::locate(args, surroundings);
+    let (differences, owners) = if args.from_ir {
+        check_from_ir(args, &project)?
+    } else {
+        let (tree, owners, _) = derive_and_emit(args, surroundings, &project)?;
+        (compare::differences(&project.out, &tree)?, owners)
+    };
+    Ok(Checked::new(
+        &project,
+        differences,
+        &owners,
+        args.mending_command(&project),
+    ))
+}
+
+fn derive_and_emit(
+    args: &Args,
+    surroundings: &Surroundings,
+    project: &Project,
+) -> Result<(Tree, Owners, Seconds), Failure> {
+    let tables = Tables::load(project)?;
+    let python = python::for_generation(surroundings)?;
+    let start = Instant::now();
+    let irs = derive::derive(&python, &tables)?;
+    let derived = Instant::now();
+    let tree = emit(args, &tables, &irs)?;
+    let seconds = Seconds {
+        derive: (derived - start).as_secs_f64(),
+        emit: derived.elapsed().as_secs_f64(),
+    };
+    Ok((tree, Owners::new(&tables, &irs), seconds))
+}
+
+fn emit(args: &Args, tables: &Tables, irs: &BTreeMap<String, String>) -> Result<Tree, Failure> {
+    let options = Options {
+        package: args.package.clone(),
+        core_path: args.core_path.clone(),
+    };
+    ahv_codegen::emit(&tables.parsed, irs, &options)
+        .map_err(|error| Failure::new(error.to_string()))
+}
+
+/// The check without Python: the checked-in IR stands in for the derivation, and the manifest
+/// says whether it was derived from the tables as they are now.
+fn check_from_ir(args: &Args, project: &Project) -> Result<(Vec<Difference>, Owners), Failure> {
+    let tables = Tables::load(project)?;
+    let (irs, missing) = compare::checked_in_irs(&project.out, &tables.parsed)?;
+    let owners = Owners::new(&tables, &irs);
+    if !missing.is_empty() {
+        return Ok((missing, owners));
+    }
+    let manifest = compare::manifest(&project.out);
+    match emit(args, &tables, &irs) {
+        Ok(tree) => {
+            let mut found = compare::differences(&project.out, &tree)?;
+            found.extend(compare::edited_irs(manifest.as_ref(), &tree));
+            Ok((found, owners))
+        }
+        Err(failure) => {
+            // A table of another structure than its IR may not be emittable: that is a difference.
+            let stale = compare::stale_irs(manifest.as_ref(), &tables.parsed);
+            if stale.is_empty() {
+                Err(failure)
+            } else {
+                Ok((stale, owners))
+            }
+        }
+    }
+}

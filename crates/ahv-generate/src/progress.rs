@@ -1,0 +1,33 @@
+//! Tells a person who waits what goes on.
+
+use std::io::{self, IsTerminal as _};
+use std::time::Duration;
+
+use indicatif::ProgressBar;
+
+/// A spinner on a terminal, gone when dropped.
+pub(crate) struct Progress(ProgressBar);
+
+impl Progress {
+    /// For work of a second or so: nothing in a pipe.
+    pub(crate) fn quiet(message: impl Into<String>) -> Self {
+        let bar = ProgressBar::new_spinner().with_message(message.into());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self(bar)
+    }
+
+    /// For work of many seconds: a log gets the message as a line.
+    pub(crate) fn announced(message: impl Into<String>) -> Self {
+        let message = message.into();
+        if !io::stderr().is_terminal() {
+            eprintln!("{message}...");
+        }
+        Self::quiet(message)
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

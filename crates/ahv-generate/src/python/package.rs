@@ -1,0 +1,49 @@
+//! The Python package, carried inside this program and unpacked where Python can import it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use crate::failure::Failure;
+
+/// Paths below `ahv_generator/` and texts.
+const PACKAGE: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/modules.rs"));
+
+/// The folder that holds `ahv_generator/`, named after the content, so that two versions of this
+/// program never meet in it.
+pub(super) fn unpack(cache: &Path) -> Result<PathBuf, Failure> {
+    let parent = cache.join("generator");
+    let folder = parent.join(key(PACKAGE.iter().flat_map(|(name, text)| [*name, *text])));
+    if folder.is_dir() {
+        return Ok(folder);
+    }
+    fs::create_dir_all(&parent).map_err(Failure::file("make", &parent))?;
+    let scratch = tempfile::tempdir_in(&parent).map_err(Failure::file("write in", &parent))?;
+    for (name, text) in PACKAGE {
+        let path = scratch.path().join("ahv_generator").join(name);
+        let folder = path.parent().unwrap_or(&path);
+        fs::create_dir_all(folder).map_err(Failure::file("make", folder))?;
+        fs::write(&path, text).map_err(Failure::file("write", &path))?;
+    }
+    // A rename makes the folder appear whole, or not at all when another process was faster.
+    match fs::rename(scratch.path(), &folder) {
+        Err(_) if folder.is_dir() => Ok(folder),
+        Err(error) => Err(Failure::file("make", &folder)(error)),
+        Ok(()) => Ok(folder),
+    }
+}
+
+/// A short name for some texts.
+pub(super) fn key<'a>(texts: impl IntoIterator<Item = &'a str>) -> String {
+    let mut hash = Sha256::new();
+    for text in texts {
+        hash.update(text.len().to_le_bytes());
+        hash.update(text.as_bytes());
+    }
+    hash.finalize()
+        .iter()
+        .take(8)
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}

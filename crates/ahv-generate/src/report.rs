@@ -1,0 +1,209 @@
+//! What was done or found, as text for people and as JSON.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::compare::{Difference, Status};
+use crate::project::Project;
+use crate::tables::Tables;
+
+/// Wall-clock time of the two steps.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Seconds {
+    pub(crate) derive: f64,
+    pub(crate) emit: f64,
+}
+
+/// Which table gives the modules of which name.
+pub(crate) struct Owners(BTreeMap<String, String>);
+
+impl Owners {
+    /// A table gives the module of its own name and those of its models.
+    pub(crate) fn new(tables: &Tables, irs: &BTreeMap<String, String>) -> Self {
+        let mut owners = BTreeMap::new();
+        for (source, table) in tables.sources.iter().zip(&tables.parsed) {
+            let ir = irs
+                .get(&table.name)
+                .and_then(|text| serde_json::from_str::<Value>(text).ok());
+            let models = ir.as_ref().and_then(|ir| ir["models"].as_array());
+            for name in models
+                .into_iter()
+                .flatten()
+                .filter_map(|model| model["name"].as_str())
+            {
+                owners.insert(name.to_owned(), source.shown.clone());
+            }
+            owners.insert(table.name.clone(), source.shown.clone());
+        }
+        Self(owners)
+    }
+
+    /// The table that gives a file, where it is one alone.
+    fn of(&self, path: &str) -> Option<&str> {
+        let module = path.split('/').nth(1)?;
+        let stem = Path::new(module).file_stem()?.to_str()?;
+        self.0.get(stem).map(String::as_str)
+    }
+}
+
+/// What `generate` did.
+pub struct Generated {
+    differences: Vec<(String, Difference)>,
+    seconds: Seconds,
+}
+
+impl Generated {
+    pub(crate) fn new(project: &Project, differences: Vec<Difference>, seconds: Seconds) -> Self {
+        Self {
+            differences: shown(project, differences),
+            seconds,
+        }
+    }
+
+    fn of(&self, status: Status) -> impl Iterator<Item = &(String, Difference)> {
+        self.differences
+            .iter()
+            .filter(move |(_, difference)| difference.status == status)
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for (path, difference) in &self.differences {
+            let (added, removed) = difference.counts();
+            let _ = match difference.status {
+                Status::Differs => writeln!(text, "{path}  +{added} −{removed}"),
+                Status::Missing => writeln!(text, "{path}  created, +{added}"),
+                Status::Stray => writeln!(text, "{path}  removed: no table gives it"),
+            };
+        }
+        let count = |status| self.of(status).count();
+        let (changed, created, removed) = (
+            count(Status::Differs),
+            count(Status::Missing),
+            count(Status::Stray),
+        );
+        if self.differences.is_empty() {
+            text.push_str("nothing changed");
+        } else {
+            let files = if changed == 1 { "file" } else { "files" };
+            let _ = write!(
+                text,
+                "{changed} {files} changed, {created} created, {removed} removed"
+            );
+        }
+        let Seconds { derive, emit } = self.seconds;
+        let _ = writeln!(text, " (derive {derive:.2} s, emit {emit:.2} s)");
+        text
+    }
+
+    /// For programs.
+    #[must_use]
+    pub fn json(&self) -> String {
+        let paths = |status| self.of(status).map(|(path, _)| path).collect::<Vec<_>>();
+        let changed = self.of(Status::Differs).map(|(path, difference)| {
+            let (added, removed) = difference.counts();
+            json!({ "path": path, "added": added, "removed": removed })
+        });
+        let value = json!({
+            "changed": changed.collect::<Vec<_>>(),
+            "created": paths(Status::Missing),
+            "removed": paths(Status::Stray),
+            "up_to_date": self.differences.is_empty(),
+            "seconds": self.seconds,
+        });
+        format!("{value:#}\n")
+    }
+}
+
+/// What `generate --check` found.
+pub struct Checked {
+    differences: Vec<(String, Difference)>,
+    /// One a difference: the table that the file comes from.
+    tables: Vec<String>,
+    places: (String, String),
+    command: String,
+}
+
+impl Checked {
+    pub(crate) fn new(
+        project: &Project,
+        differences: Vec<Difference>,
+        owners: &Owners,
+        command: String,
+    ) -> Self {
+        let places = (project.shown(&project.out), project.shown(&project.tables));
+        let all = format!("the tables in {}", places.1);
+        let table = |it: &Difference| {
+            owners
+                .of(&it.path)
+                .map_or_else(|| all.clone(), str::to_owned)
+        };
+        let tables = differences.iter().map(table).collect();
+        Self {
+            differences: shown(project, differences),
+            tables,
+            places,
+            command,
+        }
+    }
+
+    /// Whether tree and tables agree.
+    #[must_use]
+    pub fn agrees(&self) -> bool {
+        self.differences.is_empty()
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        if self.agrees() {
+            return format!("{} agrees with {}\n", self.places.0, self.places.1);
+        }
+        let mut text = String::new();
+        for ((path, difference), table) in self.differences.iter().zip(&self.tables) {
+            let _ = match difference.status {
+                Status::Differs => writeln!(text, "error: {path} does not match {table}"),
+                Status::Missing => writeln!(text, "error: {path} is missing: {table} gives it"),
+                Status::Stray => writeln!(text, "error: {path} is stray: no table gives it"),
+            };
+            text.push_str(&difference.diff(path));
+        }
+        let (count, it) = match self.differences.len() {
+            1 => ("1 file differs".to_owned(), "it"),
+            count => (format!("{count} files differ"), "them"),
+        };
+        let _ = writeln!(
+            text,
+            "{count}. To bring {it} up to date, run:  {}",
+            self.command
+        );
+        text
+    }
+
+    /// For programs.
+    #[must_use]
+    pub fn json(&self) -> String {
+        let differing = self.differences.iter().map(|(path, difference)| {
+            json!({ "path": path, "status": difference.status, "diff": difference.diff(path) })
+        });
+        let value = json!({
+            "agree": self.agrees(),
+            "differing": differing.collect::<Vec<_>>(),
+            "command": self.command,
+        });
+        format!("{value:#}\n")
+    }
+}
+
+fn shown(project: &Project, differences: Vec<Difference>) -> Vec<(String, Difference)> {
+    differences
+        .into_iter()
+        .map(|it| (project.shown_out(&it.path), it))
+        .collect()
+}

@@ -1,0 +1,178 @@
+//! Reading the tables, and finding where in their text a fault lies.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use ahv_codegen::{Part, Table};
+use serde::Deserialize;
+
+use crate::failure::{Failure, TableFault};
+use crate::project::Project;
+
+/// A table's file.
+pub(crate) struct Source {
+    pub(crate) path: PathBuf,
+    /// As messages name it.
+    pub(crate) shown: String,
+    text: String,
+}
+
+/// All tables of a project, in the order of their files' names.
+pub(crate) struct Tables {
+    pub(crate) sources: Vec<Source>,
+    /// One a source, in the same order.
+    pub(crate) parsed: Vec<Table>,
+}
+
+/// What the derivation finds wrong with a table: a key path, whose position only the text knows.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Diagnostic {
+    file: String,
+    path: Vec<String>,
+    part: DiagnosticPart,
+    message: String,
+    help: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum DiagnosticPart {
+    Key,
+    Value,
+}
+
+impl Tables {
+    /// Reads every `*.toml` in the folder of tables.
+    pub(crate) fn load(project: &Project) -> Result<Self, Failure> {
+        let paths = table_files(project)?;
+        let (mut sources, mut parsed, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+        for path in paths {
+            let shown = project.shown(&path);
+            let bytes = fs::read(&path)
+                .map_err(|error| Failure::new(format!("cannot read {shown}: {error}")))?;
+            match parse(&path, &shown, bytes) {
+                Ok((text, table)) => {
+                    sources.push(Source { path, shown, text });
+                    parsed.push(table);
+                }
+                Err(fault) => faults.push(*fault),
+            }
+        }
+        let tables = Self { sources, parsed };
+        faults.extend(tables.name_faults());
+        if faults.is_empty() {
+            Ok(tables)
+        } else {
+            Err(Failure::Tables(faults))
+        }
+    }
+
+    /// Files are named after tables: each needs a name of its own.
+    fn name_faults(&self) -> Vec<TableFault> {
+        let mut faults = Vec::new();
+        for (index, table) in self.parsed.iter().enumerate() {
+            let earlier = self.parsed[..index]
+                .iter()
+                .position(|it| it.name == table.name);
+            let message = if table.name.is_empty() {
+                "the table has no name".to_owned()
+            } else if let Some(earlier) = earlier {
+                format!(
+                    "{} has the name {:?} already",
+                    self.sources[earlier].shown, table.name
+                )
+            } else {
+                continue;
+            };
+            faults.push(self.fault(index, &["table", "name"], Part::Value, message, None));
+        }
+        faults
+    }
+
+    /// The faults that the derivation reports, each at its place.
+    pub(crate) fn faults(&self, diagnostics: Vec<Diagnostic>) -> Failure {
+        let mut faults = Vec::new();
+        for diagnostic in diagnostics {
+            let named = |table: &Table| table.file_name == diagnostic.file;
+            let Some(index) = self.parsed.iter().position(named) else {
+                return Failure::new(format!("{}: {}", diagnostic.file, diagnostic.message));
+            };
+            let path: Vec<&str> = diagnostic.path.iter().map(String::as_str).collect();
+            let part = match diagnostic.part {
+                DiagnosticPart::Key => Part::Key,
+                DiagnosticPart::Value => Part::Value,
+            };
+            faults.push(self.fault(index, &path, part, diagnostic.message, diagnostic.help));
+        }
+        Failure::Tables(faults)
+    }
+
+    fn fault(
+        &self,
+        index: usize,
+        path: &[&str],
+        part: Part,
+        message: String,
+        help: Option<String>,
+    ) -> TableFault {
+        let source = &self.sources[index];
+        // What is missing has no place of its own, nor may what encloses it.
+        let span = self.parsed[index].span(path, part).unwrap_or(0..0);
+        TableFault::new(message, help, &source.shown, &source.text, span)
+    }
+}
+
+fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
+    let folder = project.shown(&project.tables);
+    let entries = fs::read_dir(&project.tables).map_err(|error| {
+        Failure::new(format!(
+            "cannot read the folder of tables, {folder}: {error}"
+        ))
+        .with_help("run it inside the project, or name the folder with --tables")
+    })?;
+    let mut paths = Vec::new();
+    for entry in entries {
+        let path = entry
+            .map_err(Failure::file("read", &project.tables))?
+            .path();
+        if path.extension() == Some(OsStr::new("toml")) {
+            paths.push(path);
+        }
+    }
+    if paths.is_empty() {
+        return Err(Failure::new(format!("no table (*.toml) lies in {folder}"))
+            .with_help("name the folder that holds the tables with --tables"));
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+fn parse(path: &Path, shown: &str, bytes: Vec<u8>) -> Result<(String, Table), Box<TableFault>> {
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+        let replaced = char::REPLACEMENT_CHARACTER.len_utf8();
+        Box::new(TableFault::new(
+            "this is not UTF-8 text",
+            None,
+            shown,
+            &text,
+            at..at + replaced,
+        ))
+    })?;
+    let file_name = path.file_name().unwrap_or_default().to_string_lossy();
+    match Table::parse(&file_name, &text) {
+        Ok(table) => Ok((text, table)),
+        Err(error) => {
+            let span = error.span.unwrap_or(0..0);
+            Err(Box::new(TableFault::new(
+                error.message,
+                None,
+                shown,
+                &text,
+                span,
+            )))
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Tables that cannot be used: one clear message with file, line and column, and an unchanged tree.
+
+use crate::scratch::Scratch;
+use std::fs;
+
+const COM: &str = "generator/tables/com.toml";
+
+#[test]
+fn text_that_is_not_toml() {
+    let scratch = Scratch::new();
+    scratch.edit(COM, "\"alpha\" = {", "\"alpha\" = [");
+    let message = scratch.refusal();
+    let line = 1 + scratch
+        .read(COM)
+        .lines()
+        .position(|line| line.contains("\"alpha\" = ["))
+        .expect("there");
+    assert!(
+        message.contains(&format!("generator/tables/com.toml:{line}:")),
+        "{message}"
+    );
+    assert!(message.contains("\"alpha\" = ["), "{message}");
+    assert!(
+        message.starts_with("error:") || message.starts_with("  error:"),
+        "{message}"
+    );
+}
+
+#[test]
+fn an_entry_that_stands_twice() {
+    let scratch = Scratch::new();
+    scratch.edit(
+        COM,
+        "[C_L]\n\"alpha\"",
+        "[C_L]\n\"alpha\" = { value = 1.0, unit = \"1/rad\" }\n\"alpha\"",
+    );
+    let message = scratch.refusal();
+    assert!(message.contains("duplicate key"), "{message}");
+    let line = 3 + scratch
+        .read(COM)
+        .lines()
+        .position(|line| line == "[C_L]")
+        .expect("there");
+    assert!(message.contains(&format!("com.toml:{line}:1")), "{message}");
+}
+
+#[test]
+fn all_faulty_tables_are_named() {
+    let scratch = Scratch::new();
+    scratch.edit(COM, "[C_L]", "[C_L");
+    scratch.edit("generator/tables/dcom.toml", "[C_D]", "[C_D");
+    let message = scratch.refusal();
+    assert!(
+        message.contains("com.toml:") && message.contains("dcom.toml:"),
+        "{message}"
+    );
+}
+
+#[test]
+fn bytes_that_are_not_text() {
+    let scratch = Scratch::new();
+    scratch.write(COM, b"[table]\nname = \"\xff\"\n");
+    let message = scratch.refusal();
+    assert!(
+        message.contains("not UTF-8") && message.contains("com.toml:2:9"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_file_that_cannot_be_read() {
+    // A folder, for permissions do not bind whoever runs tests as root.
+    let scratch = Scratch::new();
+    fs::remove_file(scratch.path(COM)).expect("removed");
+    fs::create_dir(scratch.path(COM)).expect("made");
+    let message = scratch.refusal();
+    assert!(
+        message.starts_with("error: cannot read generator/tables/com.toml: "),
+        "{message}"
+    );
+}
+
+#[test]
+fn no_tables() {
+    let scratch = Scratch::new();
+    fs::remove_dir_all(scratch.path("generator/tables")).expect("removed");
+    assert!(
+        scratch
+            .refusal()
+            .contains("cannot read the folder of tables")
+    );
+    fs::create_dir(scratch.path("generator/tables")).expect("made");
+    let message = scratch.refusal();
+    assert!(
+        message.contains("no table (*.toml) lies in generator/tables"),
+        "{message}"
+    );
+}
+
+#[test]
+fn tables_need_names_of_their_own() {
+    let scratch = Scratch::new();
+    scratch.edit(COM, "name = \"com\"", "name = \"dcom\"");
+    let message = scratch.refusal();
+    assert!(
+        message.contains("generator/tables/com.toml has the name \"dcom\" already"),
+        "{message}"
+    );
+    scratch.edit(COM, "name = \"dcom\"\n", "");
+    let message = scratch.refusal();
+    assert!(
+        message.contains("no name") && message.contains("com.toml:"),
+        "{message}"
+    );
+}
+
+#[test]
+fn what_the_derivation_finds_is_shown_in_the_table() {
+    let mut scratch = Scratch::new();
+    scratch.edit(COM, "[C_L]\n\"alpha\"", "[C_L]\n\"alpah\"");
+    let found = r#"{"diagnostics":[
+        {"file":"com.toml","path":["C_L","alpah"],"part":"key","message":"no such variable","help":"did you mean `alpha`?"},
+        {"file":"com.toml","path":["C_L","1","value"],"part":"value","message":"too large","help":null},
+        {"file":"com.toml","path":["vehicle","mass"],"part":"key","message":"`mass` is missing","help":null}]}"#;
+    scratch.use_python(scratch.interpreter("3 11", "", &format!("echo '{found}'; exit 2")));
+    let message = scratch.refusal();
+
+    let text = scratch.read(COM);
+    let at = |start: &str| {
+        1 + text
+            .lines()
+            .position(|line| line.starts_with(start))
+            .expect("there")
+    };
+    let coefficients = at("[C_L]");
+    for expected in [
+        "error: no such variable".to_owned(),
+        format!("com.toml:{}:1]", coefficients + 1),
+        "did you mean `alpha`?".to_owned(),
+        "error: too large".to_owned(),
+        // What is missing is shown where it ought to stand.
+        format!("com.toml:{}:", at("[vehicle]")),
+    ] {
+        assert!(message.contains(&expected), "no {expected:?} in\n{message}");
+    }
+}
+
+#[test]
+fn a_derivation_that_breaks_down_is_shown() {
+    let mut scratch = Scratch::new();
+    for end in ["exit 1", "exit 2"] {
+        let derive = format!("echo 'ImportError: no libcasadi' >&2; {end}");
+        scratch.use_python(scratch.interpreter("3 11", "", &derive));
+        let message = scratch.refusal();
+        assert!(
+            message.starts_with("error: the derivation failed (exit status: "),
+            "{message}"
+        );
+        assert!(message.contains("ImportError: no libcasadi"), "{message}");
+    }
+    scratch.use_python(scratch.interpreter("3 11", "", "true"));
+    assert!(scratch.refusal().contains("left no IR for table \"com\""));
+}

@@ -1,0 +1,7 @@
+//! Generating and checking, in projects of all kinds.
+#![cfg(unix)]
+
+mod bad_tables;
+mod python;
+mod scratch;
+mod tree;

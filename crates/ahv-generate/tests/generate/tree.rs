@@ -1,0 +1,306 @@
+//! What is written and what is found, for trees in every state.
+
+use crate::scratch::Scratch;
+use std::fs;
+
+const DCOM: &str = "generator/tables/dcom.toml";
+const NOMINAL: &str = "generated/src/dcom/nominal.rs";
+
+#[test]
+fn a_tree_that_agrees_is_left_alone() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot("");
+    assert!(scratch.check(&[]).expect("checked").agrees());
+    assert!(scratch.check(&["--from-ir"]).expect("checked").agrees());
+    let text = scratch.generate(&[]).expect("generated").text();
+    assert!(text.starts_with("nothing changed (derive "), "{text}");
+    assert!(before == scratch.snapshot(""));
+}
+
+#[test]
+fn a_changed_value_changes_one_line() {
+    let scratch = Scratch::new();
+    scratch.edit(DCOM, "value = 4.6773,", "value = 4.7773,");
+    for line in [&[][..], &["--from-ir"]] {
+        let text = scratch.disagreement(line);
+        assert!(
+            text.starts_with(&format!("error: {NOMINAL} does not match {DCOM}\n")),
+            "{text}"
+        );
+        assert!(
+            text.contains(&format!("--- a/{NOMINAL}\n+++ b/{NOMINAL}\n@@ -")),
+            "{text}"
+        );
+        assert!(
+            text.contains("-    c_l_alpha: 4.6773,\n+    c_l_alpha: 4.7773,\n"),
+            "{text}"
+        );
+        assert!(
+            text.ends_with("To bring them up to date, run:  ahv generate\n"),
+            "{text}"
+        );
+    }
+    let text = scratch.generate(&[]).expect("generated").text();
+    assert!(text.contains(&format!("{NOMINAL}  +1 −1\n")), "{text}");
+    assert!(
+        text.contains("2 files changed, 0 created, 0 removed (derive "),
+        "{text}"
+    );
+    assert!(scratch.check(&[]).expect("checked").agrees());
+}
+
+#[test]
+fn a_hand_edit_is_found_and_mended() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot("generated");
+    scratch.edit("generated/src/dcom/drift.rs", "let ", "let mut ");
+    let text = scratch.disagreement(&[]);
+    assert!(
+        text.contains("error: generated/src/dcom/drift.rs does not match"),
+        "{text}"
+    );
+    assert!(
+        text.contains("\n1 file differs. To bring it up to date, run:"),
+        "{text}"
+    );
+    scratch.generate(&[]).expect("generated");
+    assert!(before == scratch.snapshot("generated"));
+}
+
+#[test]
+fn conflict_markers_are_mended() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot("generated");
+    for file in [
+        "generated/Cargo.toml",
+        "generated/manifest.json",
+        "generated/src/lib.rs",
+    ] {
+        let text = scratch.read(file);
+        scratch.write(
+            file,
+            format!("<<<<<<< ours\n{text}=======\n{text}>>>>>>> theirs\n"),
+        );
+    }
+    assert!(
+        scratch
+            .disagreement(&["--from-ir"])
+            .contains("generated/manifest.json does not match")
+    );
+    assert!(scratch.disagreement(&[]).contains("3 files differ."));
+    scratch.generate(&[]).expect("generated");
+    assert!(before == scratch.snapshot("generated"));
+}
+
+#[test]
+fn missing_and_stray_files_count() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot("generated");
+    fs::remove_file(scratch.path(NOMINAL)).expect("removed");
+    fs::create_dir(scratch.path("generated/src/old")).expect("made");
+    scratch.write("generated/src/old/old.rs", "");
+    let text = scratch.disagreement(&[]);
+    assert!(
+        text.contains(&format!("error: {NOMINAL} is missing: {DCOM} gives it")),
+        "{text}"
+    );
+    assert!(
+        text.contains("error: generated/src/old/old.rs is stray: no table gives it"),
+        "{text}"
+    );
+    let text = scratch.generate(&[]).expect("generated").text();
+    assert!(
+        text.contains("generated/src/old/old.rs  removed: no table gives it"),
+        "{text}"
+    );
+    assert!(before == scratch.snapshot("generated"));
+    assert!(!scratch.path("generated/src/old").exists());
+}
+
+#[test]
+fn an_empty_folder_is_filled() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot("generated");
+    fs::remove_dir_all(scratch.path("generated")).expect("removed");
+    let text = scratch.disagreement(&["--from-ir"]);
+    assert!(
+        text.contains("error: generated/ir/com.json is missing"),
+        "{text}"
+    );
+    fs::create_dir(scratch.path("generated")).expect("made");
+    scratch.disagreement(&[]);
+    scratch.generate(&[]).expect("generated");
+    assert!(before == scratch.snapshot("generated"));
+}
+
+#[test]
+fn line_ends_do_not_count() {
+    let scratch = Scratch::new();
+    for file in [NOMINAL, "generated/ir/dcom.json", "generated/manifest.json"] {
+        scratch.write(file, scratch.read(file).replace('\n', "\r\n"));
+    }
+    assert!(scratch.check(&[]).expect("checked").agrees());
+    assert!(scratch.check(&["--from-ir"]).expect("checked").agrees());
+}
+
+#[test]
+fn bytes_that_are_not_text_differ() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot("generated");
+    scratch.write(NOMINAL, b"\xff\xfe");
+    scratch.write("generated/ir/com.json", b"\xff\xfe");
+    assert!(
+        scratch
+            .disagreement(&[])
+            .contains(&format!("error: {NOMINAL} does not match"))
+    );
+    assert!(
+        scratch
+            .disagreement(&["--from-ir"])
+            .contains("error: generated/ir/com.json does not")
+    );
+    scratch.generate(&[]).expect("generated");
+    assert!(before == scratch.snapshot("generated"));
+}
+
+#[test]
+fn an_edited_ir_is_named() {
+    let scratch = Scratch::new();
+    scratch.edit(
+        "generated/ir/dcom.json",
+        "\"title\": \"",
+        "\"title\": \"My ",
+    );
+    for line in [&[][..], &["--from-ir"]] {
+        let text = scratch.disagreement(line);
+        assert!(
+            text.contains(&format!("generated/ir/dcom.json does not match {DCOM}")),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_table_that_its_ir_does_not_fit_differs() {
+    let scratch = Scratch::new();
+    scratch.edit(
+        DCOM,
+        "\"delta_e\" = { value = 0.76224, unit = \"1/rad\" }\n",
+        "",
+    );
+    let text = scratch.disagreement(&["--from-ir"]);
+    assert!(
+        text.contains(&format!("generated/ir/dcom.json does not match {DCOM}")),
+        "{text}"
+    );
+}
+
+#[test]
+fn an_ir_of_another_schema_version_is_refused() {
+    let scratch = Scratch::new();
+    scratch.edit(
+        "generated/ir/dcom.json",
+        "\"schema_version\": 1",
+        "\"schema_version\": 99",
+    );
+    let failure = scratch
+        .check(&["--from-ir"])
+        .err()
+        .expect("refused")
+        .to_string();
+    assert!(
+        failure.starts_with("error: ") && failure.contains("99"),
+        "{failure}"
+    );
+    assert_eq!(failure.lines().count(), 1, "{failure}");
+}
+
+#[test]
+fn a_folder_that_was_not_generated_is_not_touched() {
+    let scratch = Scratch::new();
+    fs::create_dir_all(scratch.path("mine/src")).expect("made");
+    scratch.write("mine/src/lib.rs", "//! My work.\n");
+    scratch.write("mine/notes.md", "Mine.\n");
+    let before = scratch.snapshot("mine");
+    let failure = scratch
+        .generate(&["--out", "mine"])
+        .err()
+        .expect("refused")
+        .to_string();
+    assert!(
+        failure.contains("mine/src/lib.rs was not generated, and would be lost"),
+        "{failure}"
+    );
+    assert!(before == scratch.snapshot("mine"));
+    fs::remove_dir_all(scratch.path("mine/src")).expect("removed");
+    scratch.generate(&["--out", "mine"]).expect("generated");
+    assert_eq!(scratch.read("mine/notes.md"), "Mine.\n");
+}
+
+#[test]
+fn a_file_in_the_way_of_a_folder_leaves_the_tree_as_it_was() {
+    let scratch = Scratch::new();
+    fs::remove_dir_all(scratch.path("generated/src/com")).expect("removed");
+    scratch.write("generated/src/com", "in the way");
+    scratch.edit(DCOM, "value = 4.6773,", "value = 4.7773,");
+    let message = scratch.refusal();
+    assert!(message.contains("cannot make the folder"), "{message}");
+    assert!(message.contains("generated/src/com"), "{message}");
+}
+
+#[test]
+fn the_command_names_the_flags_that_were_given() {
+    let scratch = Scratch::new();
+    let line = ["--package", "my-models", "--core-path", "../my core"];
+    let text = scratch.disagreement(&line);
+    assert!(
+        text.ends_with("ahv generate --package my-models --core-path '../my core'\n"),
+        "{text}"
+    );
+    fs::create_dir(scratch.path("xtask")).expect("made");
+    let text = scratch.disagreement(&line);
+    assert!(
+        text.contains("run:  cargo xtask generate --package my-models"),
+        "{text}"
+    );
+}
+
+#[test]
+fn json_says_the_same() {
+    let scratch = Scratch::new();
+    let json = |text: String| serde_json::from_str::<serde_json::Value>(&text).expect("JSON");
+    scratch.edit(NOMINAL, "c_l_alpha: 4.6773", "c_l_alpha: 4.7");
+    fs::remove_file(scratch.path("generated/src/lib.rs")).expect("removed");
+    scratch.write("generated/src/stray.rs", "");
+
+    let checked = json(scratch.check(&[]).expect("checked").json());
+    assert_eq!(checked["agree"], false);
+    assert_eq!(checked["command"], "ahv generate");
+    let differing = checked["differing"].as_array().expect("a list");
+    let found = |path: &str| {
+        differing
+            .iter()
+            .find(|it| it["path"] == path)
+            .expect("named")
+    };
+    assert_eq!(found(NOMINAL)["status"], "differs");
+    assert!(
+        found(NOMINAL)["diff"]
+            .as_str()
+            .expect("text")
+            .contains("-    c_l_alpha: 4.7,\n")
+    );
+    assert_eq!(found("generated/src/lib.rs")["status"], "missing");
+    assert_eq!(found("generated/src/stray.rs")["status"], "stray");
+
+    let done = json(scratch.generate(&[]).expect("generated").json());
+    assert_eq!(done["up_to_date"], false);
+    let line = serde_json::json!([{ "path": NOMINAL, "added": 1, "removed": 1 }]);
+    assert_eq!(done["changed"], line);
+    assert_eq!(done["created"], serde_json::json!(["generated/src/lib.rs"]));
+    assert_eq!(
+        done["removed"],
+        serde_json::json!(["generated/src/stray.rs"])
+    );
+    assert!(done["seconds"]["derive"].as_f64() > Some(0.0));
+}

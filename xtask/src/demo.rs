@@ -1,0 +1,243 @@
+//! `cargo xtask demo`: the main job on real input. Change a number in a table, regenerate, read the
+//! diff, and fly both models with both values.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use ahv_generate::{Args, Surroundings};
+use clap::Parser as _;
+use serde_json::Value;
+
+use crate::plot::{self, Pair};
+use crate::shell;
+use crate::trajectory::{Trajectory, setting};
+
+const TABLE: &str = "generator/tables/dcom.toml";
+const QUANTITY: &str = "[C_L]";
+/// The lift slope by about two per cent: well inside its uncertainty, and plain in the flight.
+const NOMINAL: &str = r#""alpha" = { value = 4.6773,"#;
+const CHANGED: &str = r#""alpha" = { value = 4.7773,"#;
+const MODELS: [&str; 2] = ["dcom", "sdcom"];
+/// The airframe is unstable, so an open-loop flight is short.
+const T_END: &str = "3";
+const DT: &str = "0.01";
+const SEED: &str = "1";
+
+/// Runs the demo, and says where everything lies.
+pub(crate) fn run() -> Result<(), String> {
+    let demo = shell::root().join("target/demo");
+    let scratch = demo.join("scratch");
+    fs::create_dir_all(&demo).map_err(problem("make", &demo))?;
+
+    heading("Regenerate from the tables");
+    print!("{}", generate(shell::root())?);
+    print!("{}", check(shell::root())?);
+
+    heading("Change a coefficient in a scratch copy: C_L alpha, 4.6773 to 4.7773 per rad");
+    copy_project(&scratch)?;
+    change_coefficient(&scratch.join(TABLE))?;
+    print!("{}", check(&scratch)?);
+
+    heading("Regenerate there");
+    print!("{}", generate(&scratch)?);
+
+    heading("Build ahv from both trees");
+    let nominal = build(shell::root(), &shell::target())?;
+    // Cargo names what it builds after paths inside a workspace: in one target folder, the two
+    // trees would pass for the same, and the second would be taken for built.
+    let changed = build(&scratch, &demo.join("build"))?;
+
+    heading("Fly both models with both values");
+    println!(
+        "All flights start at the trim of the nominal table and hold its inputs, so that what"
+    );
+    println!(
+        "differs is the coefficient's doing. The airframe is unstable: they end at {T_END} s."
+    );
+    let mut pairs = Vec::new();
+    for model in MODELS {
+        pairs.push(fly(model, &nominal, &changed, &demo)?);
+    }
+    let picture = demo.join("flights.svg");
+    plot::draw(&pairs, &picture)?;
+
+    heading("Where everything lies");
+    for model in MODELS {
+        println!("{}", demo.join(format!("{model}-nominal.csv")).display());
+        println!("{}", demo.join(format!("{model}-changed.csv")).display());
+    }
+    println!("{}", picture.display());
+    println!("{}  the project with the changed table", scratch.display());
+    Ok(())
+}
+
+fn heading(text: &str) {
+    println!("\n== {text}");
+}
+
+/// The command line of `cargo xtask generate`, for its defaults.
+#[derive(clap::Parser)]
+struct GenerateLine {
+    #[command(flatten)]
+    args: Args,
+}
+
+fn generate(root: &Path) -> Result<String, String> {
+    let (args, surroundings) = generation(root)?;
+    let done = ahv_generate::generate(&args, &surroundings);
+    done.map(|done| done.text())
+        .map_err(|failure| failure.to_string())
+}
+
+fn check(root: &Path) -> Result<String, String> {
+    let (args, surroundings) = generation(root)?;
+    let done = ahv_generate::check(&args, &surroundings);
+    done.map(|done| done.text())
+        .map_err(|failure| failure.to_string())
+}
+
+fn generation(root: &Path) -> Result<(Args, Surroundings), String> {
+    let surroundings = Surroundings::of_process().map_err(|failure| failure.to_string())?;
+    let args = GenerateLine::parse_from(["generate"]).args;
+    Ok((
+        args,
+        Surroundings {
+            current_dir: root.to_owned(),
+            ..surroundings
+        },
+    ))
+}
+
+fn change_coefficient(table: &Path) -> Result<(), String> {
+    let text = fs::read_to_string(table).map_err(problem("read", table))?;
+    let start = text.find(QUANTITY).unwrap_or_default();
+    let (before, quantity) = text.split_at(start);
+    if !quantity.contains(NOMINAL) {
+        return Err(format!(
+            "error: the demo changes `{NOMINAL}` of {QUANTITY}, which {TABLE} lacks"
+        ));
+    }
+    let changed = format!("{before}{}", quantity.replacen(NOMINAL, CHANGED, 1));
+    fs::write(table, changed).map_err(problem("write", table))
+}
+
+fn build(root: &Path, target: &Path) -> Result<PathBuf, String> {
+    let mut cargo = shell::cargo();
+    cargo
+        .current_dir(root)
+        .args(["build", "--package", "ahv-cli", "--bin", "ahv"]);
+    shell::run(cargo.arg("--target-dir").arg(target))?;
+    let built = target
+        .join("debug")
+        .join(format!("ahv{}", std::env::consts::EXE_SUFFIX));
+    println!("{}", built.display());
+    Ok(built)
+}
+
+/// Flies the nominal model from its trim, and the changed one from that same state and inputs.
+fn fly(model: &str, nominal: &Path, changed: &Path, demo: &Path) -> Result<Pair, String> {
+    let simulate = |ahv: &Path, name: &str, start: &[String]| {
+        let out = demo.join(format!("{model}-{name}.csv"));
+        let mut command = shell::program(ahv);
+        command.args([
+            "simulate", "--json", "--model", model, "--t-end", T_END, "--dt", DT,
+        ]);
+        command
+            .args(["--seed", SEED])
+            .args(start)
+            .arg("--out")
+            .arg(&out);
+        let report = shell::output(&mut command)?;
+        Ok::<_, String>((Trajectory::read(&out)?, report))
+    };
+    let (nominal, report) = simulate(nominal, "nominal", &[])?;
+    let start = [
+        "--input".to_owned(),
+        inputs(&report)?,
+        "--initial".to_owned(),
+        nominal.start(),
+    ];
+    let (changed, _) = simulate(changed, "changed", &start)?;
+    println!("{model}: {} {}", start[0], start[1]);
+    println!("{:1$}  {2} {3}", "", model.len(), start[2], start[3]);
+    let end = |flight: &Trajectory| flight.end("alpha").map(f64::to_degrees);
+    match (end(&nominal), end(&changed)) {
+        (Some(a), Some(b)) if a != b => println!(
+            "{:1$}  angle of attack at {T_END} s: {a:.4} deg with 4.6773, {b:.4} deg with 4.7773",
+            "",
+            model.len()
+        ),
+        _ => return Err(format!("error: {model} flies alike with both values")),
+    }
+    Ok(Pair {
+        model: model.to_uppercase(),
+        nominal,
+        changed,
+    })
+}
+
+/// The held inputs of a simulation's report, as `--input` takes them.
+fn inputs(report: &str) -> Result<String, String> {
+    let unreadable = || format!("error: no inputs in the report of ahv simulate:\n{report}");
+    let report: Value = serde_json::from_str(report).map_err(|_| unreadable())?;
+    let inputs = report["input"].as_object().ok_or_else(unreadable)?;
+    let mut settings = Vec::new();
+    for (name, value) in inputs {
+        let value = value.as_f64().ok_or_else(unreadable)?;
+        settings.push(setting(
+            name,
+            value,
+            report["units"][name].as_str().unwrap_or_default(),
+        ));
+    }
+    Ok(settings.join(","))
+}
+
+/// Copies the project, without what is built from it.
+fn copy_project(scratch: &Path) -> Result<(), String> {
+    if scratch.exists() {
+        fs::remove_dir_all(scratch).map_err(problem("remove", scratch))?;
+    }
+    copy_folder(shell::root(), scratch).map_err(problem("copy the project to", scratch))
+}
+
+fn copy_folder(from: &Path, to: &Path) -> io::Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let (name, kind) = (entry.file_name(), entry.file_type()?);
+        let (source, target) = (entry.path(), to.join(&name));
+        let built = ["target", ".git", ".venv", "__pycache__"];
+        if built.iter().any(|skipped| name == *skipped) {
+            continue;
+        } else if kind.is_symlink() {
+            copy_link(&source, &target)?;
+        } else if kind.is_dir() {
+            copy_folder(&source, &target)?;
+        } else {
+            fs::copy(&source, &target)?;
+        }
+    }
+    Ok(())
+}
+
+/// The project's links are relative, so they lead to the same place in the copy.
+#[cfg(unix)]
+fn copy_link(source: &Path, target: &Path) -> io::Result<()> {
+    std::os::unix::fs::symlink(fs::read_link(source)?, target)
+}
+
+#[cfg(not(unix))]
+fn copy_link(source: &Path, target: &Path) -> io::Result<()> {
+    if source.is_dir() {
+        copy_folder(source, target)
+    } else {
+        fs::copy(source, target).map(drop)
+    }
+}
+
+fn problem(deed: &str, path: &Path) -> impl FnOnce(io::Error) -> String {
+    let message = format!("error: cannot {deed} {}", path.display());
+    move |error| format!("{message}: {error}")
+}

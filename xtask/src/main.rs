@@ -1,0 +1,67 @@
+//! What cargo alone cannot do for this project. Run as `cargo xtask <command>`.
+#![forbid(unsafe_code)]
+
+mod demo;
+mod plot;
+mod python;
+mod shell;
+mod steps;
+mod trajectory;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// Chores of the ahv project.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+enum Task {
+    Generate(ahv_generate::Args),
+    /// Make the Python environments for generation and for development
+    Setup,
+    /// Run everything that must hold before a change goes in
+    Test,
+    /// Compare the generated functions with 50-digit arithmetic at many random points
+    Audit {
+        /// Number of points for each function
+        #[arg(long, default_value_t = 10_000)]
+        points: u32,
+    },
+    /// Change a coefficient, regenerate, and fly both models with both values
+    Demo,
+}
+
+fn main() -> ExitCode {
+    let done = match Task::parse() {
+        Task::Generate(args) => return ahv_generate::run(&args).into(),
+        Task::Setup => python::set_up(),
+        Task::Test => steps::run(),
+        Task::Audit { points } => audit(points),
+        Task::Demo => demo::run(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(problem) => {
+            eprintln!("{problem}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn audit(points: u32) -> Result<(), String> {
+    let python = python::development()?;
+    let mut audit = shell::cargo();
+    audit.args([
+        "run",
+        "--release",
+        "--package",
+        "ahv-tests",
+        "--bin",
+        "audit",
+        "--",
+    ]);
+    audit
+        .args(["--points", &points.to_string(), "--python"])
+        .arg(python);
+    shell::run(&mut audit)
+}

@@ -1,0 +1,32 @@
+//! The Python environments of the project, kept where `ahv generate` keeps its own.
+
+use std::fs;
+use std::path::PathBuf;
+
+use ahv_generate::Surroundings;
+
+use crate::shell;
+
+/// Makes both environments, and says where they are.
+pub(crate) fn set_up() -> Result<(), String> {
+    println!(
+        "generation:  {}",
+        environment("generation", "requirements.txt")?.display()
+    );
+    println!("development: {}", development()?.display());
+    Ok(())
+}
+
+/// The interpreter that has what tests and the audit need.
+pub(crate) fn development() -> Result<PathBuf, String> {
+    environment("development", "requirements-dev.txt")
+}
+
+fn environment(purpose: &str, requirements: &str) -> Result<PathBuf, String> {
+    let path = shell::root().join("generator").join(requirements);
+    let text = fs::read_to_string(&path)
+        .map_err(|error| format!("error: cannot read {}: {error}", path.display()))?;
+    Surroundings::of_process()
+        .and_then(|surroundings| ahv_generate::environment(purpose, &text, &surroundings))
+        .map_err(|failure| failure.to_string())
+}

@@ -1,0 +1,124 @@
+//! `cargo xtask test`: everything that must hold before a change goes in.
+
+use std::process::Command;
+use std::time::Instant;
+
+use crate::{python, shell};
+
+const XTASK: [&str; 2] = ["--manifest-path", "xtask/Cargo.toml"];
+const CONSUMER: [&str; 4] = [
+    "--manifest-path",
+    "tests/consumer/Cargo.toml",
+    "--target-dir",
+    "target/consumer",
+];
+/// A microcontroller: no standard library, no heap.
+const BARE_METAL: &str = "thumbv7em-none-eabihf";
+
+enum Outcome {
+    Passed,
+    /// It could not be run here, and why.
+    Skipped(String),
+}
+
+type Step = (&'static str, fn() -> Result<Outcome, String>);
+
+const STEPS: [Step; 13] = [
+    ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
+    ("format of xtask", || {
+        cargo(&["fmt", "--check"], &XTASK, &[])
+    }),
+    ("clippy", || {
+        cargo(
+            &["clippy", "--workspace", "--all-targets", "--all-features"],
+            &[],
+            &DENY,
+        )
+    }),
+    ("clippy of xtask", || {
+        cargo(&["clippy", "--all-targets"], &XTASK, &DENY)
+    }),
+    ("ruff", || module(&["ruff", "check", "."])),
+    ("ruff format", || {
+        module(&["ruff", "format", "--check", "."])
+    }),
+    ("mypy", || {
+        module(&["mypy", "ahv_generator", "ahv_oracle", "tests"])
+    }),
+    ("pytest", || module(&["pytest", "--quiet"])),
+    ("generate --check", generate_check),
+    ("cargo test", || {
+        cargo(&["test", "--workspace", "--all-features"], &[], &[])
+    }),
+    ("cargo test of xtask", || cargo(&["test"], &XTASK, &[])),
+    ("consumer", || cargo(&["test"], &CONSUMER, &[])),
+    ("consumer, no_std", bare_metal),
+];
+const DENY: [&str; 3] = ["--", "-D", "warnings"];
+
+/// Runs the steps in turn, up to the first that fails.
+pub(crate) fn run() -> Result<(), String> {
+    let (mut passed, mut skipped) = (0, Vec::new());
+    for (name, step) in STEPS {
+        println!("== {name}");
+        let start = Instant::now();
+        let outcome = step();
+        let seconds = start.elapsed().as_secs_f64();
+        match outcome {
+            Ok(Outcome::Passed) => {
+                passed += 1;
+                println!("== {name}: passed in {seconds:.1} s");
+            }
+            Ok(Outcome::Skipped(reason)) => {
+                println!("== {name}: SKIPPED: {reason}");
+                skipped.push(format!("SKIPPED {name}: {reason}"));
+            }
+            Err(problem) => {
+                return Err(format!(
+                    "{problem}\n== {name}: FAILED after {seconds:.1} s\n{passed} passed, 1 failed"
+                ));
+            }
+        }
+    }
+    for line in &skipped {
+        println!("{line}");
+    }
+    println!("{passed} passed, 0 failed");
+    Ok(())
+}
+
+fn cargo(command: &[&str], place: &[&str], rest: &[&str]) -> Result<Outcome, String> {
+    passed(shell::cargo().args(command).args(place).args(rest))
+}
+
+fn passed(command: &mut Command) -> Result<Outcome, String> {
+    shell::run(command).map(|()| Outcome::Passed)
+}
+
+/// A module of the development environment, in the Python project's folder.
+fn module(arguments: &[&str]) -> Result<Outcome, String> {
+    let mut command = shell::program(python::development()?);
+    passed(
+        command
+            .current_dir(shell::root().join("generator"))
+            .arg("-m")
+            .args(arguments),
+    )
+}
+
+/// As a user's CI runs it: with the Python environment of generation alone.
+fn generate_check() -> Result<Outcome, String> {
+    let own = std::env::current_exe().map_err(|error| format!("error: {error}"))?;
+    passed(shell::program(own).args(["generate", "--check"]))
+}
+
+fn bare_metal() -> Result<Outcome, String> {
+    let mut add = shell::program("rustup");
+    if let Err(problem) = shell::output(add.args(["target", "add", BARE_METAL])) {
+        let reason = problem.lines().last().unwrap_or_default();
+        return Ok(Outcome::Skipped(format!(
+            "no target {BARE_METAL}: {reason}"
+        )));
+    }
+    cargo(&["build", "--lib", "--target", BARE_METAL], &CONSUMER, &[])
+}

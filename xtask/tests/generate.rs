@@ -1,0 +1,236 @@
+//! `cargo xtask generate` as a person meets it: the real derivation, exit codes, and messages.
+#![cfg(unix)]
+
+mod common;
+
+use common::{Scratch, copy, repository};
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::process::Command;
+
+const DCOM: &str = "generator/tables/dcom.toml";
+
+#[test]
+fn the_whole_way_there_and_back() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot();
+    assert_eq!(scratch.generate(&["--check"]).code, 0);
+    assert_eq!(scratch.generate(&["--check", "--from-ir"]).code, 0);
+
+    scratch.edit(DCOM, "value = 4.6773,", "value = 4.7773,");
+    let checked = scratch.generate(&["--check"]);
+    assert_eq!(checked.code, 1);
+    assert!(
+        checked
+            .stderr
+            .contains("-    c_l_alpha: 4.6773,\n+    c_l_alpha: 4.7773,\n")
+    );
+    assert!(before == scratch.snapshot(), "a check writes nothing");
+
+    let done = scratch.generate(&[]);
+    assert_eq!(done.code, 0);
+    assert!(
+        done.stdout
+            .contains("generated/src/dcom/nominal.rs  +1 −1\n"),
+        "{}",
+        done.stdout
+    );
+
+    scratch.edit(DCOM, "value = 4.7773,", "value = 4.6773,");
+    assert_eq!(scratch.generate(&[]).code, 0);
+    assert!(before == scratch.snapshot());
+}
+
+/// What the derivation finds is shown in the text of the table.
+#[test]
+fn bad_tables_have_exit_code_2_and_a_place() {
+    let slope = "\"alpha\" = { value = 4.6773, unit = \"1/rad\" }";
+    let cases = [
+        (
+            "not TOML",
+            slope,
+            "\"alpha\" = { value = 4.6773 unit",
+            "unit",
+        ),
+        ("twice", slope, &format!("{slope}\n{slope}"), slope),
+        (
+            "misspelt monomial",
+            slope,
+            &slope.replace("alpha", "alpah"),
+            "alpah",
+        ),
+        ("misspelt quantity", "[C_L]", "[C_l]", "C_l"),
+        (
+            "unknown key",
+            slope,
+            &slope.replace("unit", "units"),
+            "units",
+        ),
+        (
+            "not a number",
+            slope,
+            &slope.replace("4.6773", "nan"),
+            "nan",
+        ),
+        ("infinity", slope, &slope.replace("4.6773", "inf"), "inf"),
+        ("another unit", slope, &slope.replace("1/rad", "ft"), "ft"),
+        (
+            "missing",
+            "m = { value = 300.0, unit = \"slug/ft\" }\n",
+            "",
+            "[vehicle]",
+        ),
+    ];
+    for (name, from, to, offending) in cases {
+        let scratch = Scratch::new();
+        let before = scratch.snapshot();
+        scratch.edit(DCOM, from, to);
+        let answer = scratch.generate(&[]);
+        assert_eq!(answer.code, 2, "{name}: {}", answer.stderr);
+        assert!(
+            answer.stderr.contains("generator/tables/dcom.toml:"),
+            "{name}: {}",
+            answer.stderr
+        );
+        assert!(
+            answer.stderr.contains(offending),
+            "{name}: {}",
+            answer.stderr
+        );
+        assert!(answer.stdout.is_empty(), "{name}: {}", answer.stdout);
+        assert!(before == scratch.snapshot(), "{name}: the tree changed");
+    }
+}
+
+#[test]
+fn no_python() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot();
+    let mut command = scratch.command(&[]);
+    command
+        .env("PATH", "")
+        .env("AHV_CACHE_DIR", scratch.path("empty-cache"));
+    let answer = common::answer(&mut command);
+    assert_eq!(answer.code, 2);
+    let expected = "error: found no Python 3.11 or newer, which deriving needs\n  help: ";
+    assert!(answer.stderr.starts_with(expected), "{}", answer.stderr);
+    assert!(before == scratch.snapshot());
+    // The check from the IR needs none.
+    let mut command = scratch.command(&["--check", "--from-ir"]);
+    assert_eq!(common::answer(command.env("PATH", "")).code, 0);
+}
+
+#[test]
+fn no_casadi() {
+    let scratch = Scratch::new();
+    let bare = scratch.path("bare-python");
+    // -S: without the packages that are installed.
+    executable(&bare, "#!/bin/sh\nexec python3 -S \"$@\"\n");
+    let answer = common::answer(scratch.command(&[]).env("AHV_PYTHON", &bare));
+    assert_eq!(answer.code, 2);
+    assert!(
+        answer.stderr.contains("which has no casadi and no pint\n"),
+        "{}",
+        answer.stderr
+    );
+}
+
+/// A limit on the size of files stands in for a full disk: writing fails in the middle.
+#[test]
+fn a_full_disk_leaves_the_tree_as_it_was() {
+    let scratch = Scratch::new();
+    // Any work done by Python is exempt: it is the writing of the tree that must fail.
+    let python = scratch.path("python");
+    let unlimited = format!(
+        "#!/bin/sh\nulimit -S -f unlimited\nexec {} \"$@\"\n",
+        common::generation_python().display()
+    );
+    executable(&python, &unlimited);
+    // What is kept in the cache has its place before the room runs out.
+    assert_eq!(scratch.generate(&["--check"]).code, 0);
+    let before = scratch.snapshot();
+    scratch.edit(DCOM, "value = 4.6773,", "value = 4.7773,");
+    for file in ["generated/src/dcom/drift.rs", "generated/ir/dcom.json"] {
+        fs::remove_file(scratch.path(file)).expect("removed");
+    }
+    let damaged = scratch.snapshot();
+
+    let mut command = Command::new("sh");
+    command.args(["-c", "trap '' XFSZ; ulimit -S -f 8; exec \"$0\" generate"]);
+    command
+        .arg(env!("CARGO_BIN_EXE_xtask"))
+        .current_dir(scratch.path(""));
+    let answer = common::answer(command.env("AHV_PYTHON", &python));
+    assert_eq!(answer.code, 2, "{}", answer.stderr);
+    assert!(
+        answer.stderr.starts_with("error: cannot write ") && answer.stderr.contains("generated/"),
+        "{}",
+        answer.stderr
+    );
+    assert!(damaged == scratch.snapshot(), "the tree changed");
+
+    scratch.edit(DCOM, "value = 4.7773,", "value = 4.6773,");
+    assert_eq!(scratch.generate(&[]).code, 0);
+    assert!(before == scratch.snapshot());
+}
+
+/// The command that messages name works when `generated/` is no package at all.
+#[test]
+fn xtask_builds_and_mends_when_generated_does_not() {
+    // In one place, so that what cargo built for it is there the next time.
+    let mend = repository().join("target/mend");
+    let project = mend.join("project");
+    let _ = fs::remove_dir_all(&project);
+    for part in [
+        "Cargo.toml",
+        "Cargo.lock",
+        "crates",
+        "generated",
+        "generator",
+        "templates",
+        "xtask",
+    ] {
+        copy(&repository().join(part), &project.join(part));
+    }
+    let scratch = Scratch::at(project);
+    let before = scratch.snapshot();
+    let mends = |damage: &str| {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args([
+            "run",
+            "--quiet",
+            "--locked",
+            "--manifest-path",
+            "xtask/Cargo.toml",
+        ]);
+        cargo
+            .arg("--target-dir")
+            .arg(&mend)
+            .args(["--", "generate"]);
+        let answer = common::answer(cargo.current_dir(scratch.path("")));
+        assert_eq!(answer.code, 0, "{damage}: {}", answer.stderr);
+        assert!(before == scratch.snapshot(), "{damage}");
+    };
+
+    scratch.edit("generated/src/lib.rs", "pub mod", "pub mood");
+    scratch.edit("generated/Cargo.toml", "[package]", "[package");
+    mends("a bad hand edit");
+    for file in [
+        "generated/Cargo.toml",
+        "generated/manifest.json",
+        "generated/src/lib.rs",
+    ] {
+        let text = fs::read_to_string(scratch.path(file)).expect("a text file");
+        let text = format!("<<<<<<< ours\n{text}=======\n{text}>>>>>>> theirs\n");
+        fs::write(scratch.path(file), text).expect("written");
+    }
+    mends("conflict markers");
+    fs::remove_dir_all(scratch.path("generated")).expect("removed");
+    fs::create_dir(scratch.path("generated")).expect("made");
+    mends("an empty folder");
+}
+
+fn executable(path: &std::path::Path, text: &str) {
+    fs::write(path, text).expect("written");
+    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("executable");
+}
