@@ -7,6 +7,7 @@ mod python;
 mod shell;
 mod steps;
 mod trajectory;
+mod vectors;
 
 use std::process::ExitCode;
 
@@ -27,6 +28,8 @@ enum Task {
         #[arg(long, default_value_t = 10_000)]
         points: u32,
     },
+    /// Draw and compute the reference vectors of the tests again
+    Vectors,
     /// Change a coefficient, regenerate, and fly both models with both values
     Demo,
 }
@@ -37,6 +40,7 @@ fn main() -> ExitCode {
         Task::Setup => python::set_up(),
         Task::Test => steps::run(),
         Task::Audit { points } => audit(points),
+        Task::Vectors => vectors::run(),
         Task::Demo => demo::run(),
     };
     match done {

@@ -1,9 +1,6 @@
 //! `cargo xtask generate` as a person meets it: the real derivation, exit codes, and messages.
-#![cfg(unix)]
 
-mod common;
-
-use common::{Scratch, copy, repository};
+use crate::common::{Scratch, copy, repository};
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
@@ -110,14 +107,14 @@ fn no_python() {
     command
         .env("PATH", "")
         .env("AHV_CACHE_DIR", scratch.path("empty-cache"));
-    let answer = common::answer(&mut command);
+    let answer = crate::common::answer(&mut command);
     assert_eq!(answer.code, 2);
     let expected = "error: found no Python 3.11 or newer, which deriving needs\n  help: ";
     assert!(answer.stderr.starts_with(expected), "{}", answer.stderr);
     assert!(before == scratch.snapshot());
     // The check from the IR needs none.
     let mut command = scratch.command(&["--check", "--from-ir"]);
-    assert_eq!(common::answer(command.env("PATH", "")).code, 0);
+    assert_eq!(crate::common::answer(command.env("PATH", "")).code, 0);
 }
 
 #[test]
@@ -126,7 +123,7 @@ fn no_casadi() {
     let bare = scratch.path("bare-python");
     // -S: without the packages that are installed.
     executable(&bare, "#!/bin/sh\nexec python3 -S \"$@\"\n");
-    let answer = common::answer(scratch.command(&[]).env("AHV_PYTHON", &bare));
+    let answer = crate::common::answer(scratch.command(&[]).env("AHV_PYTHON", &bare));
     assert_eq!(answer.code, 2);
     assert!(
         answer.stderr.contains("which has no casadi and no pint\n"),
@@ -143,7 +140,7 @@ fn a_full_disk_leaves_the_tree_as_it_was() {
     let python = scratch.path("python");
     let unlimited = format!(
         "#!/bin/sh\nulimit -S -f unlimited\nexec {} \"$@\"\n",
-        common::generation_python().display()
+        crate::common::generation_python().display()
     );
     executable(&python, &unlimited);
     // What is kept in the cache has its place before the room runs out.
@@ -160,7 +157,7 @@ fn a_full_disk_leaves_the_tree_as_it_was() {
     command
         .arg(env!("CARGO_BIN_EXE_xtask"))
         .current_dir(scratch.path(""));
-    let answer = common::answer(command.env("AHV_PYTHON", &python));
+    let answer = crate::common::answer(command.env("AHV_PYTHON", &python));
     assert_eq!(answer.code, 2, "{}", answer.stderr);
     assert!(
         answer.stderr.starts_with("error: cannot write ") && answer.stderr.contains("generated/"),
@@ -207,7 +204,7 @@ fn xtask_builds_and_mends_when_generated_does_not() {
             .arg("--target-dir")
             .arg(&mend)
             .args(["--", "generate"]);
-        let answer = common::answer(cargo.current_dir(scratch.path("")));
+        let answer = crate::common::answer(cargo.current_dir(scratch.path("")));
         assert_eq!(answer.code, 0, "{damage}: {}", answer.stderr);
         assert!(before == scratch.snapshot(), "{damage}");
     };

@@ -1,0 +1,37 @@
+//! `cargo xtask vectors`: the reference vectors of `tests/vectors`, drawn and computed again.
+
+use crate::{python, shell};
+
+/// Points for each model.
+const POINTS: &str = "200";
+const SEED: &str = "1";
+/// Models, each with its table.
+const MODELS: [(&str, &str); 3] = [("com", "com"), ("dcom", "dcom"), ("sdcom", "dcom")];
+
+/// Writes the oracle's points and values, then CasADi's values at the same points.
+pub(crate) fn run() -> Result<(), String> {
+    let python = python::development()?;
+    for (model, table) in MODELS {
+        let table = format!("tables/{table}.toml");
+        let points = format!("../tests/vectors/{model}.sympy.txt");
+        let values = format!("../tests/vectors/{model}.casadi.txt");
+        let mut oracle = shell::program(&python);
+        oracle.args([
+            "-m",
+            "ahv_oracle",
+            "vectors",
+            "--points",
+            POINTS,
+            "--seed",
+            SEED,
+        ]);
+        oracle.args(["--table", &table, "--model", model, "--out", &points]);
+        shell::run(oracle.current_dir(shell::root().join("generator")))?;
+        let mut casadi = shell::program(&python);
+        casadi.args(["-m", "ahv_generator", "evaluate", "--points", &points]);
+        casadi.args(["--table", &table, "--model", model, "--out", &values]);
+        shell::run(casadi.current_dir(shell::root().join("generator")))?;
+        println!("tests/vectors/{model}.sympy.txt\ntests/vectors/{model}.casadi.txt");
+    }
+    Ok(())
+}

@@ -1,0 +1,107 @@
+//! The chain as a user of the tables meets it: a changed value, a new monomial.
+
+use crate::common::{Scratch, repository};
+use std::fs;
+use std::process::Command;
+
+const DCOM: &str = "generator/tables/dcom.toml";
+
+/// One value: one line of Rust, one line of provenance, and git says so.
+#[test]
+fn a_changed_value_is_one_line_for_git() {
+    let scratch = Scratch::new();
+    let git = |line: &[&str]| {
+        let mut command = Command::new("git");
+        command.args(["-c", "user.name=test", "-c", "user.email=test@localhost"]);
+        let output = command.args(line).current_dir(scratch.path("")).output();
+        let output = output.expect("git runs");
+        assert!(output.status.success(), "git {line:?}");
+        String::from_utf8(output.stdout).expect("text")
+    };
+    git(&["init", "--quiet"]);
+    git(&["add", "--all"]);
+    git(&["commit", "--quiet", "--message", "before"]);
+    scratch.edit(DCOM, "value = 4.6773,", "value = 4.7773,");
+    assert_eq!(scratch.generate(&[]).code, 0);
+    git(&["add", "--all"]);
+    let numstat = |place: &[&str]| git(&[&["diff", "--cached", "--numstat", "--"], place].concat());
+    assert_eq!(
+        numstat(&["generated/src"]),
+        "1\t1\tgenerated/src/dcom/nominal.rs\n"
+    );
+    assert_eq!(
+        numstat(&["generated", ":!generated/src"]),
+        "1\t1\tgenerated/manifest.json\n"
+    );
+}
+
+/// What the new term must add, in closed form: q S c alpha^2 / (m V) to the rate of gamma.
+const PROBE: &str = r#"
+use ahv_models::{dcom, sdcom};
+
+fn main() {
+    let with = dcom::NOMINAL;
+    let mut without = with;
+    without.c_l_alpha_2 = 0.0;
+    let x = dcom::State { velocity: 7702.0, altitude: 85_000.0, gamma: 0.01, alpha: 0.03, pitch_rate: 0.0,
+        eta_1: 0.6, eta_dot_1: 0.0, eta_2: 0.0, eta_dot_2: 0.0, eta_3: 0.0, eta_dot_3: 0.0 };
+    let u = dcom::Input { phi: 0.28, delta_e: 0.2, delta_c: 0.01 };
+    let (p, q) = (dcom::prepare(&with), dcom::prepare(&without));
+    let (full, less) = (dcom::drift(&x, &u, &p), dcom::drift(&x, &u, &q));
+    let (by_state, _) = dcom::jacobians(&x, &u, &p);
+    let (by_state_less, _) = dcom::jacobians(&x, &u, &q);
+    // At the reference altitude the density is rho_0.
+    let scale = 0.5 * with.rho_0 * x.velocity * with.s / with.m * with.c_l_alpha_2;
+    close(full.gamma - less.gamma, scale * x.alpha * x.alpha);
+    close(full.velocity - less.velocity, 0.0);
+    close(by_state.gamma.alpha - by_state_less.gamma.alpha, 2.0 * scale * x.alpha);
+    close(by_state.gamma.velocity - by_state_less.gamma.velocity, scale * x.alpha * x.alpha / x.velocity);
+
+    let y = sdcom::State { velocity: 7702.0, altitude: 85_000.0, gamma: 0.01, alpha: 0.03, pitch_rate: 0.0,
+        chi_1: 0.1, chi_2: 0.0, chi_3: 0.0 };
+    let v = sdcom::Input { phi: 0.28, delta_e: 0.2, delta_c: 0.01 };
+    let (p, q) = (sdcom::prepare(&with), sdcom::prepare(&without));
+    // Not linear in alpha: the split leaves it to f_gamma, and H_gamma has its derivative.
+    close(sdcom::f_gamma(&y, &v, &p) - sdcom::f_gamma(&y, &v, &q), scale * y.alpha * y.alpha);
+    close(sdcom::g_gamma(&y, &v, &p) - sdcom::g_gamma(&y, &v, &q), 0.0);
+    close(sdcom::H_gamma(&y, &v, &p) - sdcom::H_gamma(&y, &v, &q), 2.0 * scale * y.alpha);
+    println!("the new term is right");
+}
+
+fn close(found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-13, "{found} instead of {expected}");
+}
+"#;
+
+/// A new monomial gives a new term, in value and Jacobian, without any code being touched.
+#[test]
+fn a_new_monomial_flies() {
+    let scratch = Scratch::new();
+    let entry = "[C_L]\n\"alpha^2\" = { value = 0.5, unit = \"1/rad^2\" }\n";
+    scratch.edit(DCOM, "[C_L]\n", entry);
+    let core = repository().join("crates/ahv-core");
+    let core = core.to_str().expect("a path in Unicode");
+    let done = scratch.generate(&["--core-path", core]);
+    assert_eq!(done.code, 0, "{}", done.stderr);
+
+    let drift = fs::read_to_string(scratch.path("generated/src/dcom/drift.rs")).expect("drift.rs");
+    assert!(drift.contains("p.c_l_alpha_2 * alpha_2"), "{drift}");
+
+    fs::create_dir_all(scratch.path("probe/src")).expect("a folder");
+    fs::write(scratch.path("probe/src/main.rs"), PROBE).expect("written");
+    let manifest = "[workspace]\n[package]\nname = \"probe\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\
+                    [dependencies]\nahv-models = { path = \"../generated\" }\n";
+    fs::write(scratch.path("probe/Cargo.toml"), manifest).expect("written");
+    // The versions that the workspace is locked to.
+    fs::copy(
+        repository().join("Cargo.lock"),
+        scratch.path("probe/Cargo.lock"),
+    )
+    .expect("copied");
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["run", "--quiet", "--target-dir"]);
+    cargo.arg(scratch.path("probe/target"));
+    let answer = crate::common::answer(cargo.current_dir(scratch.path("probe")));
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    assert_eq!(answer.stdout, "the new term is right\n");
+}
