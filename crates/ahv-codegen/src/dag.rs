@@ -471,3 +471,6 @@ impl Dag {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;
