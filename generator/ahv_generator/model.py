@@ -90,7 +90,7 @@ class Model:
         """Names of the entries of a basis, in order."""
         return tuple(v.name for v in self.bases[basis])
 
-    def vector(self, basis: str, values: dict[str, ca.SX], name: str = "") -> Output:
+    def vector(self, basis: str, values: dict[str, ca.SX], name: str) -> Output:
         """An output over one basis."""
         entries = tuple(Entry((row,), values[row]) for row in self.names(basis) if not values[row].is_zero())
         return Output(name, (basis,), entries)
@@ -113,11 +113,11 @@ class Model:
 
     def add_drift_and_jacobians(self, rates: dict[str, ca.SX], equation: str) -> None:
         """The functions that every model has."""
-        self.add("drift", "drift", "Time derivative of the state", equation, [self.vector("state", rates)])
-        self.add(
-            "jacobians",
-            "jacobians",
-            "Derivatives of the drift with respect to the state and to the input",
-            equation,
-            [self.matrix("state", "state", "state", rates), self.matrix("input", "state", "input", rates)],
-        )
+        drift = self.vector("state", rates, "drift")
+        by_state = self.matrix("state", "state", "state", rates)
+        by_input = self.matrix("input", "state", "input", rates)
+        slopes = "derivatives of the drift with respect to the state and to the input"
+        self.add("drift", "drift", "Time derivative of the state", equation, [drift])
+        self.add("jacobians", "jacobians", slopes.capitalize(), equation, [by_state, by_input])
+        both = f"Time derivative of the state, and the {slopes}, for less than one after the other"
+        self.add("drift_and_jacobians", "jacobians", both, equation, [drift, by_state, by_input])

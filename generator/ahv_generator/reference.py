@@ -68,9 +68,11 @@ def _substituted(expr: ca.SX, model: Model, values: dict[str, ca.SX]) -> ca.SX:
 
 def _outputs(model: Model) -> Iterator[tuple[str, ca.SX]]:
     for function in model.functions:
+        if function.name == "drift_and_jacobians":
+            continue  # the same expressions once more
         for output in function.outputs:
             for entry in output.entries:
-                parts = [function.name, *([output.name] if output.name else [])]
+                parts = [function.name, *([output.name] if len(function.outputs) > 1 else [])]
                 if output.basis == ("mode",):
                     parts.append(str(model.names("mode").index(entry.at[0])))
                 else:

@@ -50,6 +50,9 @@ macro_rules! deterministic {
         let (by_state, by_input) = model::jacobians(&x, &u, &p);
         put_rows(&mut values, "jacobians.state", &by_state);
         put_rows(&mut values, "jacobians.input", &by_input);
+        // Computed at one go, they are the same numbers: the oracle needs no second look at them.
+        let at_one_go = model::drift_and_jacobians(&x, &u, &p);
+        assert_eq!(at_one_go, (model::drift(&x, &u, &p), by_state, by_input));
         (values, x, u, p)
     }};
 }
@@ -69,7 +72,7 @@ macro_rules! arrays {
     };
 }
 
-fn sdcom<R: Real>(inputs: &BTreeMap<String, f64>) -> Values {
+fn sdcom<R: Real + PartialEq>(inputs: &BTreeMap<String, f64>) -> Values {
     let (mut values, x, u, p) = deterministic!(sdcom, R, inputs);
     let dw: ahv_models::sdcom::Noise<R> = vector("noise", inputs);
     put_rows(
@@ -93,7 +96,7 @@ fn sdcom<R: Real>(inputs: &BTreeMap<String, f64>) -> Values {
 ///
 /// # Panics
 /// When the model is unknown or the point lacks a number.
-pub fn evaluate<R: Real>(model: &str, inputs: &BTreeMap<String, f64>) -> Values {
+pub fn evaluate<R: Real + PartialEq>(model: &str, inputs: &BTreeMap<String, f64>) -> Values {
     match model {
         "com" => deterministic!(com, R, inputs).0,
         "dcom" => deterministic!(dcom, R, inputs).0,

@@ -4,3 +4,10 @@
 pub mod evaluate;
 pub mod measure;
 pub mod vectors;
+
+/// The Rust in the documentation must compile and run.
+#[cfg(doctest)]
+mod docs {
+    #[doc = include_str!("../../docs/link.md")]
+    mod link {}
+}

@@ -10,24 +10,36 @@ use core::ffi::c_int;
 use ahv_core::Vector;
 use ahv_models::{dcom, sdcom};
 
-const PARAMETERS: usize = <dcom::Parameters<f64> as Vector<f64>>::LEN;
-
-/// Element `index` of `pointers`, as a pointer to `T`.
+/// Element `index` of `pointers` as a vector whose components all are f64.
+///
+/// The order of a struct's fields is the compiler's business: that it is the order of the array is seen when
+/// the benchmark compares the candidates.
 ///
 /// # Safety
-/// `pointers` has more than `index` elements, and that one points to a `T`.
-unsafe fn at<'a, T>(pointers: *const *const f64, index: usize) -> &'a T {
+/// `pointers` has more than `index` elements, and that one points to the numbers of an `X`.
+unsafe fn at<'a, X: Vector<f64>>(pointers: *const *const f64, index: usize) -> &'a X {
+    const { assert!(size_of::<X>() == X::LEN * size_of::<f64>()) };
+    // SAFETY: the caller's promise; `X` is made of f64 alone.
+    unsafe { &*(*pointers.add(index)).cast() }
+}
+
+/// Element `index` of `pointers` as what `prepare` gave.
+///
+/// # Safety
+/// `pointers` has more than `index` elements, and that one points to a `P`.
+unsafe fn prepared<'a, P>(pointers: *const *const f64, index: usize) -> &'a P {
     // SAFETY: the caller's promise.
     unsafe { &*(*pointers.add(index)).cast() }
 }
 
-/// Writes an output.
+/// Element `index` of `pointers` as a vector, or a vector of vectors, whose components all are f64.
 ///
 /// # Safety
-/// `pointers` has more than `index` elements, and that one points to room for a `T`.
-unsafe fn put<T>(pointers: *const *mut f64, index: usize, value: T) {
-    // SAFETY: the caller's promise.
-    unsafe { (*pointers.add(index)).cast::<T>().write(value) }
+/// `pointers` has more than `index` elements, and that one points to the numbers of a `Y`, which nothing
+/// else points to.
+unsafe fn out<'a, Y>(pointers: *const *mut f64, index: usize) -> &'a mut Y {
+    // SAFETY: the caller's promise; `Y` is made of f64 alone.
+    unsafe { &mut *(*pointers.add(index)).cast() }
 }
 
 /// Parameters as the functions of DCOM take them. They live as long as the program.
@@ -37,8 +49,8 @@ unsafe fn put<T>(pointers: *const *mut f64, index: usize, value: T) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dcom_prepare(parameters: *const f64) -> *const f64 {
     // SAFETY: the caller's promise.
-    let parameters: [f64; PARAMETERS] = unsafe { *parameters.cast() };
-    let prepared = dcom::prepare(&dcom::Parameters::from(parameters));
+    let parameters: &dcom::Parameters<f64> = unsafe { at(&raw const parameters, 0) };
+    let prepared = dcom::prepare(parameters);
     (&raw const *Box::leak(Box::new(prepared))).cast()
 }
 
@@ -49,8 +61,8 @@ pub unsafe extern "C" fn dcom_prepare(parameters: *const f64) -> *const f64 {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdcom_prepare(parameters: *const f64) -> *const f64 {
     // SAFETY: the caller's promise.
-    let parameters: [f64; PARAMETERS] = unsafe { *parameters.cast() };
-    let prepared = sdcom::prepare(&sdcom::Parameters::from(parameters));
+    let parameters: &sdcom::Parameters<f64> = unsafe { at(&raw const parameters, 0) };
+    let prepared = sdcom::prepare(parameters);
     (&raw const *Box::leak(Box::new(prepared))).cast()
 }
 
@@ -66,12 +78,18 @@ pub unsafe extern "C" fn dcom_drift(
     _w: *mut f64,
     _mem: c_int,
 ) -> c_int {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let (x, u) = (at::<[f64; 11]>(arg, 0), at::<[f64; 3]>(arg, 1));
-        let f = dcom::drift(&dcom::State::from(*x), &dcom::Input::from(*u), at(arg, 2));
-        put(res, 0, f.to_array());
+    // References that nothing else refers to, so that the result is written in place.
+    #[inline]
+    extern "C" fn evaluate(
+        x: &dcom::State<f64>,
+        u: &dcom::Input<f64>,
+        p: &dcom::Prepared<f64>,
+        f: &mut dcom::State<f64>,
+    ) {
+        *f = dcom::drift(x, u, p);
     }
+    // SAFETY: the caller's promise.
+    unsafe { evaluate(at(arg, 0), at(arg, 1), prepared(arg, 2), out(res, 0)) };
     0
 }
 
@@ -87,15 +105,28 @@ pub unsafe extern "C" fn dcom_drift_jacobians(
     _w: *mut f64,
     _mem: c_int,
 ) -> c_int {
+    #[inline]
+    extern "C" fn evaluate(
+        x: &dcom::State<f64>,
+        u: &dcom::Input<f64>,
+        p: &dcom::Prepared<f64>,
+        f: &mut dcom::State<f64>,
+        f_x: &mut dcom::StateJacobian<f64>,
+        f_u: &mut dcom::InputJacobian<f64>,
+    ) {
+        *f = dcom::drift(x, u, p);
+        (*f_x, *f_u) = dcom::jacobians(x, u, p);
+    }
     // SAFETY: the caller's promise.
     unsafe {
-        let (x, u) = (at::<[f64; 11]>(arg, 0), at::<[f64; 3]>(arg, 1));
-        let (x, u, p) = (dcom::State::from(*x), dcom::Input::from(*u), at(arg, 2));
-        let f = dcom::drift(&x, &u, p);
-        let (f_x, f_u) = dcom::jacobians(&x, &u, p);
-        put(res, 0, f.to_array());
-        put(res, 1, f_x.to_matrix::<f64, 11>());
-        put(res, 2, f_u.to_matrix::<f64, 3>());
+        evaluate(
+            at(arg, 0),
+            at(arg, 1),
+            prepared(arg, 2),
+            out(res, 0),
+            out(res, 1),
+            out(res, 2),
+        );
     }
     0
 }
@@ -112,14 +143,26 @@ pub unsafe extern "C" fn sdcom_drift_diffusion(
     _w: *mut f64,
     _mem: c_int,
 ) -> c_int {
+    #[inline]
+    extern "C" fn evaluate(
+        x: &sdcom::State<f64>,
+        u: &sdcom::Input<f64>,
+        p: &sdcom::Prepared<f64>,
+        f: &mut sdcom::State<f64>,
+        g: &mut sdcom::Diffusion<f64>,
+    ) {
+        *f = sdcom::drift(x, u, p);
+        *g = sdcom::diffusion(x, u, p);
+    }
     // SAFETY: the caller's promise.
     unsafe {
-        let (x, u) = (at::<[f64; 8]>(arg, 0), at::<[f64; 3]>(arg, 1));
-        let (x, u, p) = (sdcom::State::from(*x), sdcom::Input::from(*u), at(arg, 2));
-        let f = sdcom::drift(&x, &u, p);
-        let g = sdcom::diffusion(&x, &u, p);
-        put(res, 0, f.to_array());
-        put(res, 1, g.to_matrix::<f64, 6>());
+        evaluate(
+            at(arg, 0),
+            at(arg, 1),
+            prepared(arg, 2),
+            out(res, 0),
+            out(res, 1),
+        );
     }
     0
 }

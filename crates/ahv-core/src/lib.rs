@@ -10,6 +10,7 @@
 #![forbid(unsafe_code)]
 
 mod bounds;
+mod elementary;
 mod model;
 mod nalgebra;
 mod provenance;

@@ -30,6 +30,13 @@ pub trait DifferentiableModel: Model {
         x: &Self::State,
         u: &Self::Input,
     ) -> (Self::StateJacobian, Self::InputJacobian);
+
+    /// f, ∂f/∂x and ∂f/∂u at (x, u), for less than one after the other.
+    fn drift_and_jacobians(
+        &self,
+        x: &Self::State,
+        u: &Self::Input,
+    ) -> (Self::State, Self::StateJacobian, Self::InputJacobian);
 }
 
 /// dx = f(x, u) dt + G(x, u) dW, read in the Itô sense.

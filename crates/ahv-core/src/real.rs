@@ -3,9 +3,11 @@
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::elementary;
+
 /// A real number, or several that are computed side by side.
 ///
-/// Elementary functions come from `libm`, never from the platform: a result has the same bits on
+/// Elementary functions are this crate's and `libm`'s, never the platform's: a result has the same bits on
 /// every machine. There is no order: generated code has no branches, so that a scalar may hold
 /// several lanes. All functions follow IEEE 754; outside a function's domain the result is NaN.
 pub trait Real:
@@ -76,22 +78,22 @@ impl Real for f64 {
 
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        libm::sincos(self)
+        elementary::sin_cos(self)
     }
 
     #[inline]
     fn sin(self) -> Self {
-        libm::sin(self)
+        elementary::sin_cos(self).0
     }
 
     #[inline]
     fn cos(self) -> Self {
-        libm::cos(self)
+        elementary::sin_cos(self).1
     }
 
     #[inline]
     fn exp(self) -> Self {
-        libm::exp(self)
+        elementary::exp(self)
     }
 
     #[inline]
@@ -106,7 +108,7 @@ impl Real for f64 {
 
     #[inline]
     fn abs(self) -> Self {
-        libm::fabs(self)
+        f64::abs(self)
     }
 
     #[inline]
@@ -163,7 +165,7 @@ impl Real for f32 {
 
     #[inline]
     fn abs(self) -> Self {
-        libm::fabsf(self)
+        f32::abs(self)
     }
 
     #[inline]

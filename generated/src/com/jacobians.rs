@@ -7,7 +7,7 @@ use ahv_core::{Real, Vector};
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
-/// 130 operations: 33 additions, 93 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 128 operations: 33 additions, 91 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline]
 pub fn jacobians<R: Real>(
     x: &State<R>,
@@ -25,6 +25,10 @@ pub fn jacobians<R: Real>(
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -63,12 +67,13 @@ pub fn jacobians<R: Real>(
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
+    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
+    let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
     let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
-    let inv_velocity = x.velocity.recip();
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = inv_velocity_2
-        * (p.g * cos_gamma - normal_force * p.inv_m)
-        + d_lift_d_velocity * p.inv_m * inv_velocity; // rad/ft
+    let d_gamma_rate_d_velocity = cos_gamma * p.g * inv_velocity_2
+        + normal_force * d_inverse_momentum_d_velocity
+        + inverse_momentum * d_lift_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = c_m * p.c_bar * d_reference_force_d_velocity; // lb*s/ft
     let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
 
@@ -80,7 +85,7 @@ pub fn jacobians<R: Real>(
     let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
     let d_velocity_rate_d_altitude = -d_drag_d_altitude * p.inv_m; // 1/s^2
     let d_lift_d_altitude = c_l * d_reference_force_d_altitude; // lb/ft^2
-    let d_gamma_rate_d_altitude = d_lift_d_altitude * p.inv_m * inv_velocity; // rad/s/ft
+    let d_gamma_rate_d_altitude = inverse_momentum * d_lift_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = c_m * p.c_bar * d_reference_force_d_altitude; // lb/ft
     let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
 
@@ -109,7 +114,7 @@ pub fn jacobians<R: Real>(
     let d_normal_force_d_alpha = thrust * cos_alpha
         + sin_alpha * d_thrust_d_alpha
         + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = d_normal_force_d_alpha * p.inv_m * inv_velocity; // 1/s
+    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.z_t * d_thrust_d_alpha
         + reference_force * p.c_bar * d_c_m_d_alpha; // lb/rad
@@ -119,7 +124,7 @@ pub fn jacobians<R: Real>(
     let d_path_force_d_phi = cos_alpha * thrust_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
     let d_normal_force_d_phi = sin_alpha * thrust_phi; // lb/ft
-    let d_gamma_rate_d_phi = d_normal_force_d_phi * p.inv_m * inv_velocity; // rad/s
+    let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
     let d_pitching_moment_d_phi = p.z_t * thrust_phi; // lb
     let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
@@ -128,7 +133,7 @@ pub fn jacobians<R: Real>(
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
     let d_lift_d_delta_e = reference_force * p.c_l_delta_e; // lb/ft/rad
-    let d_gamma_rate_d_delta_e = d_lift_d_delta_e * p.inv_m * inv_velocity; // 1/s
+    let d_gamma_rate_d_delta_e = inverse_momentum * d_lift_d_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = reference_force * p.c_bar_c_m_delta_e; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
@@ -189,4 +194,212 @@ pub fn jacobians<R: Real>(
         },
     };
     (state, input)
+}
+
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
+/// less than one after the other, eq. (1).
+///
+/// 144 operations: 38 additions, 102 multiplications, 1 division, 2 sin_cos, 1 exp.
+#[inline]
+pub fn drift_and_jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+
+) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    // Air, (2)
+    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
+    let density = p.rho_0 * density_ratio; // slug/ft^3
+    let velocity_2 = x.velocity * x.velocity;
+    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
+    let reference_force = dynamic_pressure * p.s; // lb/ft
+
+    // Angles, (1)
+    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
+    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
+    // Curve fits, (3)
+    let alpha_2 = x.alpha * x.alpha;
+    let alpha_3 = x.alpha * alpha_2;
+    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+        + p.t_phi_alpha_2 * alpha_2
+        + p.t_phi_alpha * x.alpha
+        + p.t_phi; // lb/ft
+    let thrust = thrust_phi * u.phi
+        + p.t_alpha_3 * alpha_3
+        + p.t_alpha_2 * alpha_2
+        + p.t_alpha * x.alpha
+        + p.t_0; // lb/ft
+    let c_l = p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e
+        + p.c_l_0;
+    let delta_e_2 = u.delta_e * u.delta_e;
+    let c_d = p.c_d_alpha_2 * alpha_2
+        + p.c_d_alpha * x.alpha
+        + p.c_d_delta_e_2 * delta_e_2
+        + p.c_d_delta_e * u.delta_e
+        + p.c_d_0;
+    let c_m = p.c_m_alpha_2 * alpha_2
+        + p.c_m_alpha * x.alpha
+        + p.c_m_delta_e * u.delta_e
+        + p.c_m_0;
+
+    // Forces and moment, (2)
+    let lift = reference_force * c_l; // lb/ft
+    let drag = reference_force * c_d; // lb/ft
+    let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
+
+    // Motion, (1)
+    let thrust_cos_alpha = thrust * cos_alpha;
+    let path_force = thrust_cos_alpha - drag; // lb/ft
+    let normal_force = lift + thrust * sin_alpha; // lb/ft
+    let velocity_rate = path_force * p.inv_m - p.g * sin_gamma; // ft/s^2
+    let altitude_rate = x.velocity * sin_gamma; // ft/s
+    let gamma_rate = normal_force * inverse_momentum - p.g * inv_velocity * cos_gamma; // rad/s
+    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
+    let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
+
+    // Derivatives with respect to velocity
+    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
+    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
+    let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
+    let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
+    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
+    let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
+    let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
+    let inv_velocity_2 = inv_velocity * inv_velocity;
+    let d_gamma_rate_d_velocity = cos_gamma * p.g * inv_velocity_2
+        + normal_force * d_inverse_momentum_d_velocity
+        + inverse_momentum * d_lift_d_velocity; // rad/ft
+    let d_pitching_moment_d_velocity = c_m * p.c_bar * d_reference_force_d_velocity; // lb*s/ft
+    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+
+    // Derivatives with respect to altitude
+    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
+    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
+    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
+    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
+    let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
+    let d_velocity_rate_d_altitude = -d_drag_d_altitude * p.inv_m; // 1/s^2
+    let d_lift_d_altitude = c_l * d_reference_force_d_altitude; // lb/ft^2
+    let d_gamma_rate_d_altitude = inverse_momentum * d_lift_d_altitude; // rad/s/ft
+    let d_pitching_moment_d_altitude = c_m * p.c_bar * d_reference_force_d_altitude; // lb/ft
+    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+
+    // Derivatives with respect to gamma
+    let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
+    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
+    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
+    let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+
+    // Derivatives with respect to alpha
+    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
+    let d_thrust_phi_d_alpha = p.three_t_phi_alpha_3 * alpha_2
+        + p.two_t_phi_alpha_2 * x.alpha
+        + p.t_phi_alpha; // lb/ft/rad
+    let d_thrust_d_alpha = p.three_t_alpha_3 * alpha_2
+        + p.two_t_alpha_2 * x.alpha
+        + p.t_alpha
+        + u.phi * d_thrust_phi_d_alpha; // lb/ft/rad
+    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
+    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
+    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
+        + cos_alpha * d_thrust_d_alpha
+        - d_drag_d_alpha; // lb/ft/rad
+    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
+    let d_lift_d_alpha = reference_force * p.c_l_alpha; // lb/ft/rad
+    let d_normal_force_d_alpha = thrust_cos_alpha
+        + sin_alpha * d_thrust_d_alpha
+        + d_lift_d_alpha; // lb/ft/rad
+    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
+    let d_pitching_moment_d_alpha = p.z_t * d_thrust_d_alpha
+        + reference_force * p.c_bar * d_c_m_d_alpha; // lb/rad
+    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
+
+    // Derivatives with respect to phi
+    let d_path_force_d_phi = cos_alpha * thrust_phi; // lb/ft
+    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
+    let d_normal_force_d_phi = sin_alpha * thrust_phi; // lb/ft
+    let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
+    let d_pitching_moment_d_phi = p.z_t * thrust_phi; // lb
+    let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
+
+    // Derivatives with respect to delta_e
+    let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
+    let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
+    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
+    let d_lift_d_delta_e = reference_force * p.c_l_delta_e; // lb/ft/rad
+    let d_gamma_rate_d_delta_e = inverse_momentum * d_lift_d_delta_e; // 1/s
+    let d_pitching_moment_d_delta_e = reference_force * p.c_bar_c_m_delta_e; // lb/rad
+    let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
+
+    // Result
+    let no_state = State::splat(R::ZERO);
+    let no_input = Input::splat(R::ZERO);
+    let drift = State {
+        velocity: velocity_rate,
+        altitude: altitude_rate,
+        gamma: gamma_rate,
+        alpha: alpha_rate,
+        pitch_rate: pitch_acceleration,
+    };
+    let state = State {
+        velocity: State {
+            velocity: d_velocity_rate_d_velocity,
+            altitude: d_velocity_rate_d_altitude,
+            gamma: d_velocity_rate_d_gamma,
+            alpha: d_velocity_rate_d_alpha,
+            ..no_state
+        },
+        altitude: State {
+            velocity: sin_gamma,
+            gamma: d_altitude_rate_d_gamma,
+            ..no_state
+        },
+        gamma: State {
+            velocity: d_gamma_rate_d_velocity,
+            altitude: d_gamma_rate_d_altitude,
+            gamma: d_gamma_rate_d_gamma,
+            alpha: d_gamma_rate_d_alpha,
+            ..no_state
+        },
+        alpha: State {
+            velocity: -d_gamma_rate_d_velocity,
+            altitude: -d_gamma_rate_d_altitude,
+            gamma: -d_gamma_rate_d_gamma,
+            alpha: -d_gamma_rate_d_alpha,
+            pitch_rate: R::ONE,
+        },
+        pitch_rate: State {
+            velocity: d_pitch_acceleration_d_velocity,
+            altitude: d_pitch_acceleration_d_altitude,
+            alpha: d_pitch_acceleration_d_alpha,
+            ..no_state
+        },
+    };
+    let input = State {
+        velocity: Input {
+            phi: d_velocity_rate_d_phi,
+            delta_e: d_velocity_rate_d_delta_e,
+        },
+        altitude: no_input,
+        gamma: Input {
+            phi: d_gamma_rate_d_phi,
+            delta_e: d_gamma_rate_d_delta_e,
+        },
+        alpha: Input {
+            phi: -d_gamma_rate_d_phi,
+            delta_e: -d_gamma_rate_d_delta_e,
+        },
+        pitch_rate: Input {
+            phi: d_pitch_acceleration_d_phi,
+            delta_e: d_pitch_acceleration_d_delta_e,
+        },
+    };
+    (drift, state, input)
 }

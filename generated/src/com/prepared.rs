@@ -76,6 +76,8 @@ pub struct Prepared<R> {
     pub two_t_phi_alpha_2: R,
     /// `2 * c_d_alpha_2`.
     pub two_c_d_alpha_2: R,
+    /// Vehicle mass, slug/ft.
+    pub m: R,
     /// `2 * c_m_alpha_2`.
     pub two_c_m_alpha_2: R,
     /// `2 * c_d_delta_e_2`.
@@ -127,6 +129,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         three_t_phi_alpha_3: R::from_f64(3.0) * p.t_phi_alpha_3,
         two_t_phi_alpha_2: R::TWO * p.t_phi_alpha_2,
         two_c_d_alpha_2: R::TWO * p.c_d_alpha_2,
+        m: p.m,
         two_c_m_alpha_2: R::TWO * p.c_m_alpha_2,
         two_c_d_delta_e_2: R::TWO * p.c_d_delta_e_2,
         c_bar_c_m_delta_e: p.c_bar * p.c_m_delta_e,

@@ -7,7 +7,7 @@ use ahv_core::Real;
 
 /// Time derivative of the state, eq. (1).
 ///
-/// 141 operations: 58 additions, 79 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 142 operations: 58 additions, 80 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
@@ -20,6 +20,10 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
 
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
@@ -100,8 +104,7 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let normal_force = lift + thrust * sin_alpha; // lb/ft
     let velocity_rate = path_force * p.inv_m - p.g * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let inv_velocity = x.velocity.recip();
-    let gamma_rate = inv_velocity * (normal_force * p.inv_m - p.g * cos_gamma); // rad/s
+    let gamma_rate = normal_force * inverse_momentum - p.g * inv_velocity * cos_gamma; // rad/s
     let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 

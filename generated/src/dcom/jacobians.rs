@@ -7,7 +7,7 @@ use ahv_core::{Real, Vector};
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
-/// 280 operations: 82 additions, 194 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 274 operations: 82 additions, 188 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline]
 pub fn jacobians<R: Real>(
     x: &State<R>,
@@ -25,6 +25,10 @@ pub fn jacobians<R: Real>(
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
 
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
@@ -103,13 +107,14 @@ pub fn jacobians<R: Real>(
     let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
     let d_path_force_d_velocity = cos_alpha * d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
+    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
+    let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
     let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
     let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
-    let inv_velocity = x.velocity.recip();
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = inv_velocity_2
-        * (p.g * cos_gamma - normal_force * p.inv_m)
-        + d_normal_force_d_velocity * p.inv_m * inv_velocity; // rad/ft
+    let d_gamma_rate_d_velocity = cos_gamma * p.g * inv_velocity_2
+        + normal_force * d_inverse_momentum_d_velocity
+        + inverse_momentum * d_normal_force_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar * c_m * d_reference_force_d_velocity
         + p.z_t * d_thrust_d_velocity; // lb*s/ft
     let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
@@ -128,7 +133,7 @@ pub fn jacobians<R: Real>(
     let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m; // 1/s^2
     let d_lift_d_altitude = c_l * d_reference_force_d_altitude; // lb/ft^2
     let d_normal_force_d_altitude = sin_alpha * d_thrust_d_altitude + d_lift_d_altitude; // lb/ft^2
-    let d_gamma_rate_d_altitude = d_normal_force_d_altitude * p.inv_m * inv_velocity; // rad/s/ft
+    let d_gamma_rate_d_altitude = inverse_momentum * d_normal_force_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = p.c_bar * c_m * d_reference_force_d_altitude
         + p.z_t * d_thrust_d_altitude; // lb/ft
     let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
@@ -162,7 +167,7 @@ pub fn jacobians<R: Real>(
     let d_normal_force_d_alpha = thrust * cos_alpha
         + sin_alpha * d_thrust_d_alpha
         + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = d_normal_force_d_alpha * p.inv_m * inv_velocity; // 1/s
+    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad
@@ -181,7 +186,7 @@ pub fn jacobians<R: Real>(
     let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_lift_d_eta_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_eta_1 = sin_alpha * d_thrust_d_eta_1 + d_lift_d_eta_1; // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_eta_1 = d_normal_force_d_eta_1 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_eta_1 = inverse_momentum * d_normal_force_d_eta_1; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_1 = p.c_bar_c_m_eta_1 * reference_force
         + p.z_t * d_thrust_d_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -193,7 +198,7 @@ pub fn jacobians<R: Real>(
     let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_lift_d_eta_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_eta_2 = sin_alpha * d_thrust_d_eta_2 + d_lift_d_eta_2; // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_eta_2 = d_normal_force_d_eta_2 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_eta_2 = inverse_momentum * d_normal_force_d_eta_2; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_2 = p.c_bar_c_m_eta_2 * reference_force
         + p.z_t * d_thrust_d_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -205,7 +210,7 @@ pub fn jacobians<R: Real>(
     let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_lift_d_eta_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_eta_3 = sin_alpha * d_thrust_d_eta_3 + d_lift_d_eta_3; // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_eta_3 = d_normal_force_d_eta_3 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_eta_3 = inverse_momentum * d_normal_force_d_eta_3; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_3 = p.c_bar_c_m_eta_3 * reference_force
         + p.z_t * d_thrust_d_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -215,7 +220,7 @@ pub fn jacobians<R: Real>(
     let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
     let d_normal_force_d_phi = sin_alpha * d_thrust_d_phi; // lb/ft
-    let d_gamma_rate_d_phi = d_normal_force_d_phi * p.inv_m * inv_velocity; // rad/s
+    let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
@@ -227,7 +232,7 @@ pub fn jacobians<R: Real>(
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
     let d_lift_d_delta_e = reference_force * p.d_c_l_d_delta_e; // lb/ft/rad
-    let d_gamma_rate_d_delta_e = d_lift_d_delta_e * p.inv_m * inv_velocity; // 1/s
+    let d_gamma_rate_d_delta_e = inverse_momentum * d_lift_d_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = p.c_bar_d_c_m_d_delta_e * reference_force; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
@@ -238,7 +243,7 @@ pub fn jacobians<R: Real>(
     let d_drag_d_delta_c = reference_force * d_c_d_d_delta_c; // lb/ft/rad
     let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
     let d_lift_d_delta_c = reference_force * p.c_l_delta_c; // lb/ft/rad
-    let d_gamma_rate_d_delta_c = d_lift_d_delta_c * p.inv_m * inv_velocity; // 1/s
+    let d_gamma_rate_d_delta_c = inverse_momentum * d_lift_d_delta_c; // 1/s
     let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c * reference_force; // lb/rad
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
     let d_generalized_force_1_d_delta_c = reference_force * p.c_n_1_delta_c; // ft^0.5*slug^0.5/s^2/rad
@@ -373,4 +378,418 @@ pub fn jacobians<R: Real>(
         },
     };
     (state, input)
+}
+
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
+/// less than one after the other, eq. (1).
+///
+/// 305 operations: 93 additions, 208 multiplications, 1 division, 2 sin_cos, 1 exp.
+#[inline]
+pub fn drift_and_jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+
+) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    // Air, (2)
+    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
+    let density = p.rho_0 * density_ratio; // slug/ft^3
+    let velocity_2 = x.velocity * x.velocity;
+    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
+    let reference_force = dynamic_pressure * p.s; // lb/ft
+
+    // Angles, (1)
+    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
+    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
+    // Canard, (4)
+    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+
+    // Curve fits, (3)
+    let alpha_2 = x.alpha * x.alpha;
+    let alpha_3 = x.alpha * alpha_2;
+    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+        + p.c_t_phi_alpha_2 * alpha_2
+        + p.c_t_phi_alpha * x.alpha
+        + p.c_t_phi;
+    let c_t = c_t_phi * u.phi
+        + p.c_t_alpha_3 * alpha_3
+        + p.c_t_alpha_2 * alpha_2
+        + p.c_t_alpha * x.alpha
+        + p.c_t_0
+        + p.c_t_eta_1 * x.eta_1
+        + p.c_t_eta_2 * x.eta_2
+        + p.c_t_eta_3 * x.eta_3;
+    let c_l = p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e
+        + p.c_l_delta_c * canard_deflection
+        + p.c_l_0
+        + p.c_l_eta_1 * x.eta_1
+        + p.c_l_eta_2 * x.eta_2
+        + p.c_l_eta_3 * x.eta_3;
+    let delta_e_2 = u.delta_e * u.delta_e;
+    let canard_deflection_2 = canard_deflection * canard_deflection;
+    let c_d = p.c_d_alpha_2 * alpha_2
+        + p.c_d_alpha * x.alpha
+        + p.c_d_delta_e_2 * delta_e_2
+        + p.c_d_delta_e * u.delta_e
+        + p.c_d_delta_c_2 * canard_deflection_2
+        + p.c_d_delta_c * canard_deflection
+        + p.c_d_0
+        + p.c_d_eta_1 * x.eta_1
+        + p.c_d_eta_2 * x.eta_2
+        + p.c_d_eta_3 * x.eta_3;
+    let c_m = p.c_m_alpha_2 * alpha_2
+        + p.c_m_alpha * x.alpha
+        + p.c_m_delta_e * u.delta_e
+        + p.c_m_delta_c * canard_deflection
+        + p.c_m_0
+        + p.c_m_eta_1 * x.eta_1
+        + p.c_m_eta_2 * x.eta_2
+        + p.c_m_eta_3 * x.eta_3;
+
+    // Forces and moment, (2)
+    let thrust = reference_force * c_t; // lb/ft
+    let lift = reference_force * c_l; // lb/ft
+    let drag = reference_force * c_d; // lb/ft
+    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+
+    // Curve fits, (3)
+    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+        + p.c_n_1_alpha * x.alpha
+        + p.c_n_1_delta_e * u.delta_e
+        + p.c_n_1_delta_c * canard_deflection
+        + p.c_n_1_0; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_2_alpha * x.alpha
+        + p.c_n_2_delta_e * u.delta_e
+        + p.c_n_2_delta_c * canard_deflection
+        + p.c_n_2_0; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_3_alpha * x.alpha
+        + p.c_n_3_delta_e * u.delta_e
+        + p.c_n_3_delta_c * canard_deflection
+        + p.c_n_3_0; // (ft/slug)^0.5
+
+    // Generalized forces, (2)
+    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
+    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
+    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
+
+    // Motion, (1)
+    let thrust_cos_alpha = thrust * cos_alpha;
+    let path_force = thrust_cos_alpha - drag; // lb/ft
+    let normal_force = lift + thrust * sin_alpha; // lb/ft
+    let velocity_rate = path_force * p.inv_m - p.g * sin_gamma; // ft/s^2
+    let altitude_rate = x.velocity * sin_gamma; // ft/s
+    let gamma_rate = normal_force * inverse_momentum - p.g * inv_velocity * cos_gamma; // rad/s
+    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
+    let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
+
+    // Flexible modes, (1)
+    let eta_acceleration_1 = generalized_force_1
+        - p.damping_1 * x.eta_dot_1
+        - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
+    let eta_acceleration_2 = generalized_force_2
+        - p.damping_2 * x.eta_dot_2
+        - p.stiffness_2 * x.eta_2; // (ft*slug)^0.5/s^2
+    let eta_acceleration_3 = generalized_force_3
+        - p.damping_3 * x.eta_dot_3
+        - p.stiffness_3 * x.eta_3; // (ft*slug)^0.5/s^2
+
+    // Derivatives with respect to velocity
+    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
+    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
+    let d_thrust_d_velocity = c_t * d_reference_force_d_velocity; // lb*s/ft^2
+    let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
+    let d_path_force_d_velocity = cos_alpha * d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
+    let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
+    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
+    let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
+    let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
+    let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
+    let inv_velocity_2 = inv_velocity * inv_velocity;
+    let d_gamma_rate_d_velocity = cos_gamma * p.g * inv_velocity_2
+        + normal_force * d_inverse_momentum_d_velocity
+        + inverse_momentum * d_normal_force_d_velocity; // rad/ft
+    let d_pitching_moment_d_velocity = p.c_bar * c_m * d_reference_force_d_velocity
+        + p.z_t * d_thrust_d_velocity; // lb*s/ft
+    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+    let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+
+    // Derivatives with respect to altitude
+    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
+    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
+    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
+    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
+    let d_thrust_d_altitude = c_t * d_reference_force_d_altitude; // lb/ft^2
+    let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
+    let d_path_force_d_altitude = cos_alpha * d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
+    let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m; // 1/s^2
+    let d_lift_d_altitude = c_l * d_reference_force_d_altitude; // lb/ft^2
+    let d_normal_force_d_altitude = sin_alpha * d_thrust_d_altitude + d_lift_d_altitude; // lb/ft^2
+    let d_gamma_rate_d_altitude = inverse_momentum * d_normal_force_d_altitude; // rad/s/ft
+    let d_pitching_moment_d_altitude = p.c_bar * c_m * d_reference_force_d_altitude
+        + p.z_t * d_thrust_d_altitude; // lb/ft
+    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+    let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+
+    // Derivatives with respect to gamma
+    let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
+    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
+    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
+    let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+
+    // Derivatives with respect to alpha
+    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
+    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
+        + p.two_c_t_phi_alpha_2 * x.alpha
+        + p.c_t_phi_alpha; // 1/rad
+    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
+        + p.two_c_t_alpha_2 * x.alpha
+        + p.c_t_alpha
+        + u.phi * d_c_t_phi_d_alpha; // 1/rad
+    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
+    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
+    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
+    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
+        + cos_alpha * d_thrust_d_alpha
+        - d_drag_d_alpha; // lb/ft/rad
+    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
+    let d_lift_d_alpha = reference_force * p.c_l_alpha; // lb/ft/rad
+    let d_normal_force_d_alpha = thrust_cos_alpha
+        + sin_alpha * d_thrust_d_alpha
+        + d_lift_d_alpha; // lb/ft/rad
+    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
+    let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
+        + p.z_t * d_thrust_d_alpha; // lb/rad
+    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
+    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
+    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
+    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+
+    // Derivatives with respect to eta_1
+    let d_thrust_d_eta_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
+    let d_drag_d_eta_1 = reference_force * p.c_d_eta_1; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_1 = cos_alpha * d_thrust_d_eta_1 - d_drag_d_eta_1; // lb/ft^1.5/slug^0.5
+    let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
+    let d_lift_d_eta_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_1 = sin_alpha * d_thrust_d_eta_1 + d_lift_d_eta_1; // lb/ft^1.5/slug^0.5
+    let d_gamma_rate_d_eta_1 = inverse_momentum * d_normal_force_d_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_1 = p.c_bar_c_m_eta_1 * reference_force
+        + p.z_t * d_thrust_d_eta_1; // lb/ft^0.5/slug^0.5
+    let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to eta_2
+    let d_thrust_d_eta_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
+    let d_drag_d_eta_2 = reference_force * p.c_d_eta_2; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_2 = cos_alpha * d_thrust_d_eta_2 - d_drag_d_eta_2; // lb/ft^1.5/slug^0.5
+    let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
+    let d_lift_d_eta_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_2 = sin_alpha * d_thrust_d_eta_2 + d_lift_d_eta_2; // lb/ft^1.5/slug^0.5
+    let d_gamma_rate_d_eta_2 = inverse_momentum * d_normal_force_d_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_2 = p.c_bar_c_m_eta_2 * reference_force
+        + p.z_t * d_thrust_d_eta_2; // lb/ft^0.5/slug^0.5
+    let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to eta_3
+    let d_thrust_d_eta_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
+    let d_drag_d_eta_3 = reference_force * p.c_d_eta_3; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_3 = cos_alpha * d_thrust_d_eta_3 - d_drag_d_eta_3; // lb/ft^1.5/slug^0.5
+    let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
+    let d_lift_d_eta_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_3 = sin_alpha * d_thrust_d_eta_3 + d_lift_d_eta_3; // lb/ft^1.5/slug^0.5
+    let d_gamma_rate_d_eta_3 = inverse_momentum * d_normal_force_d_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_3 = p.c_bar_c_m_eta_3 * reference_force
+        + p.z_t * d_thrust_d_eta_3; // lb/ft^0.5/slug^0.5
+    let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to phi
+    let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
+    let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
+    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
+    let d_normal_force_d_phi = sin_alpha * d_thrust_d_phi; // lb/ft
+    let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
+    let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
+    let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
+
+    // Derivatives with respect to delta_e
+    let d_c_d_d_delta_c = p.two_c_d_delta_c_2 * canard_deflection + p.c_d_delta_c; // 1/rad
+    let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
+        + p.c_d_delta_e
+        + d_c_d_d_delta_c * p.canard_gain; // 1/rad
+    let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
+    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
+    let d_lift_d_delta_e = reference_force * p.d_c_l_d_delta_e; // lb/ft/rad
+    let d_gamma_rate_d_delta_e = inverse_momentum * d_lift_d_delta_e; // 1/s
+    let d_pitching_moment_d_delta_e = p.c_bar_d_c_m_d_delta_e * reference_force; // lb/rad
+    let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
+    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+
+    // Derivatives with respect to delta_c
+    let d_drag_d_delta_c = reference_force * d_c_d_d_delta_c; // lb/ft/rad
+    let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
+    let d_lift_d_delta_c = reference_force * p.c_l_delta_c; // lb/ft/rad
+    let d_gamma_rate_d_delta_c = inverse_momentum * d_lift_d_delta_c; // 1/s
+    let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c * reference_force; // lb/rad
+    let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
+    let d_generalized_force_1_d_delta_c = reference_force * p.c_n_1_delta_c; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_c = reference_force * p.c_n_2_delta_c; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_c = reference_force * p.c_n_3_delta_c; // ft^0.5*slug^0.5/s^2/rad
+
+    // Result
+    let no_state = State::splat(R::ZERO);
+    let no_input = Input::splat(R::ZERO);
+    let drift = State {
+        velocity: velocity_rate,
+        altitude: altitude_rate,
+        gamma: gamma_rate,
+        alpha: alpha_rate,
+        pitch_rate: pitch_acceleration,
+        eta_1: x.eta_dot_1,
+        eta_dot_1: eta_acceleration_1,
+        eta_2: x.eta_dot_2,
+        eta_dot_2: eta_acceleration_2,
+        eta_3: x.eta_dot_3,
+        eta_dot_3: eta_acceleration_3,
+    };
+    let state = State {
+        velocity: State {
+            velocity: d_velocity_rate_d_velocity,
+            altitude: d_velocity_rate_d_altitude,
+            gamma: d_velocity_rate_d_gamma,
+            alpha: d_velocity_rate_d_alpha,
+            eta_1: d_velocity_rate_d_eta_1,
+            eta_2: d_velocity_rate_d_eta_2,
+            eta_3: d_velocity_rate_d_eta_3,
+            ..no_state
+        },
+        altitude: State {
+            velocity: sin_gamma,
+            gamma: d_altitude_rate_d_gamma,
+            ..no_state
+        },
+        gamma: State {
+            velocity: d_gamma_rate_d_velocity,
+            altitude: d_gamma_rate_d_altitude,
+            gamma: d_gamma_rate_d_gamma,
+            alpha: d_gamma_rate_d_alpha,
+            eta_1: d_gamma_rate_d_eta_1,
+            eta_2: d_gamma_rate_d_eta_2,
+            eta_3: d_gamma_rate_d_eta_3,
+            ..no_state
+        },
+        alpha: State {
+            velocity: -d_gamma_rate_d_velocity,
+            altitude: -d_gamma_rate_d_altitude,
+            gamma: -d_gamma_rate_d_gamma,
+            alpha: -d_gamma_rate_d_alpha,
+            pitch_rate: R::ONE,
+            eta_1: -d_gamma_rate_d_eta_1,
+            eta_2: -d_gamma_rate_d_eta_2,
+            eta_3: -d_gamma_rate_d_eta_3,
+            ..no_state
+        },
+        pitch_rate: State {
+            velocity: d_pitch_acceleration_d_velocity,
+            altitude: d_pitch_acceleration_d_altitude,
+            alpha: d_pitch_acceleration_d_alpha,
+            eta_1: d_pitch_acceleration_d_eta_1,
+            eta_2: d_pitch_acceleration_d_eta_2,
+            eta_3: d_pitch_acceleration_d_eta_3,
+            ..no_state
+        },
+        eta_1: State {
+            eta_dot_1: R::ONE,
+            ..no_state
+        },
+        eta_dot_1: State {
+            velocity: d_generalized_force_1_d_velocity,
+            altitude: d_generalized_force_1_d_altitude,
+            alpha: d_generalized_force_1_d_alpha,
+            eta_1: p.minus_stiffness_1,
+            eta_dot_1: p.minus_damping_1,
+            ..no_state
+        },
+        eta_2: State {
+            eta_dot_2: R::ONE,
+            ..no_state
+        },
+        eta_dot_2: State {
+            velocity: d_generalized_force_2_d_velocity,
+            altitude: d_generalized_force_2_d_altitude,
+            alpha: d_generalized_force_2_d_alpha,
+            eta_2: p.minus_stiffness_2,
+            eta_dot_2: p.minus_damping_2,
+            ..no_state
+        },
+        eta_3: State {
+            eta_dot_3: R::ONE,
+            ..no_state
+        },
+        eta_dot_3: State {
+            velocity: d_generalized_force_3_d_velocity,
+            altitude: d_generalized_force_3_d_altitude,
+            alpha: d_generalized_force_3_d_alpha,
+            eta_3: p.minus_stiffness_3,
+            eta_dot_3: p.minus_damping_3,
+            ..no_state
+        },
+    };
+    let input = State {
+        velocity: Input {
+            phi: d_velocity_rate_d_phi,
+            delta_e: d_velocity_rate_d_delta_e,
+            delta_c: d_velocity_rate_d_delta_c,
+        },
+        altitude: no_input,
+        gamma: Input {
+            phi: d_gamma_rate_d_phi,
+            delta_e: d_gamma_rate_d_delta_e,
+            delta_c: d_gamma_rate_d_delta_c,
+        },
+        alpha: Input {
+            phi: -d_gamma_rate_d_phi,
+            delta_e: -d_gamma_rate_d_delta_e,
+            delta_c: -d_gamma_rate_d_delta_c,
+        },
+        pitch_rate: Input {
+            phi: d_pitch_acceleration_d_phi,
+            delta_e: d_pitch_acceleration_d_delta_e,
+            delta_c: d_pitch_acceleration_d_delta_c,
+        },
+        eta_1: no_input,
+        eta_dot_1: Input {
+            delta_e: d_generalized_force_1_d_delta_e,
+            delta_c: d_generalized_force_1_d_delta_c,
+            ..no_input
+        },
+        eta_2: no_input,
+        eta_dot_2: Input {
+            delta_e: d_generalized_force_2_d_delta_e,
+            delta_c: d_generalized_force_2_d_delta_c,
+            ..no_input
+        },
+        eta_3: no_input,
+        eta_dot_3: Input {
+            delta_e: d_generalized_force_3_d_delta_e,
+            delta_c: d_generalized_force_3_d_delta_c,
+            ..no_input
+        },
+    };
+    (drift, state, input)
 }

@@ -22,6 +22,10 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
 
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
 
@@ -78,7 +82,6 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
     let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let inv_velocity = x.velocity.recip();
     let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
@@ -121,7 +124,7 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
     let d_normal_force_d_alpha = thrust * cos_alpha
         + sin_alpha * d_thrust_d_alpha
         + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = d_normal_force_d_alpha * p.inv_m * inv_velocity; // 1/s
+    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -195,6 +198,10 @@ pub fn noise_increment<R: Real>(
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
 
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
 
@@ -251,7 +258,6 @@ pub fn noise_increment<R: Real>(
     let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let inv_velocity = x.velocity.recip();
     let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
@@ -294,7 +300,7 @@ pub fn noise_increment<R: Real>(
     let d_normal_force_d_alpha = thrust * cos_alpha
         + sin_alpha * d_thrust_d_alpha
         + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = d_normal_force_d_alpha * p.inv_m * inv_velocity; // 1/s
+    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha

@@ -277,6 +277,15 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     ) -> (StateJacobian<R>, InputJacobian<R>) {
         jacobians(x, u, &self.prepared)
     }
+
+    #[inline]
+    fn drift_and_jacobians(
+        &self,
+        x: &State<R>,
+        u: &Input<R>,
+    ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+        drift_and_jacobians(x, u, &self.prepared)
+    }
 }
 
 impl<R: Real> ahv_core::StochasticModel for Model<R> {

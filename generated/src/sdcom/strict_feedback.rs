@@ -324,6 +324,10 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let sin_alpha = x.alpha.sin();
     let cos_gamma = x.gamma.cos();
 
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
 
@@ -362,8 +366,7 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let inv_velocity = x.velocity.recip();
-    let f_gamma_eta = reference_force * p.inv_m * inv_velocity
+    let f_gamma_eta = inverse_momentum * reference_force
         * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
     let alpha_3 = x.alpha * alpha_2;
     let c_t_of_f_gamma = p.c_t_phi_alpha_3 * u.phi * alpha_3
@@ -376,9 +379,8 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_delta_c * canard_deflection
         + p.c_l_0;
 
-    inv_velocity
-        * (reference_force * p.inv_m * (sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
-            - p.g * cos_gamma) + f_gamma_eta
+    inverse_momentum * reference_force * (sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
+        - p.g * inv_velocity * cos_gamma + f_gamma_eta
 }
 
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
@@ -396,16 +398,19 @@ pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
 
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
     // Strict-feedback form, (30)
     let c_t_of_g_gamma = p.c_t_phi_alpha * u.phi + p.c_t_alpha; // 1/rad
-    let inv_velocity = x.velocity.recip();
 
-    reference_force * p.inv_m * inv_velocity * (sin_alpha * c_t_of_g_gamma + p.c_l_alpha)
+    inverse_momentum * reference_force * (sin_alpha * c_t_of_g_gamma + p.c_l_alpha)
 }
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
 ///
-/// 28 operations: 4 additions, 21 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 26 operations: 4 additions, 19 multiplications, 1 division, 1 sin_cos, 1 exp.
 #[inline]
 pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
@@ -418,24 +423,27 @@ pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
 
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
     // Derivatives with respect to chi_1
     let d_thrust_d_chi_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
     let d_lift_d_chi_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_chi_1 = sin_alpha * d_thrust_d_chi_1 + d_lift_d_chi_1; // lb/ft^1.5/slug^0.5
-    let inv_velocity = x.velocity.recip();
-    let d_gamma_rate_d_chi_1 = d_normal_force_d_chi_1 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_thrust_d_chi_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
     let d_lift_d_chi_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_chi_2 = sin_alpha * d_thrust_d_chi_2 + d_lift_d_chi_2; // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_2 = d_normal_force_d_chi_2 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d_thrust_d_chi_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
     let d_lift_d_chi_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_chi_3 = sin_alpha * d_thrust_d_chi_3 + d_lift_d_chi_3; // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_3 = d_normal_force_d_chi_3 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
 
     [d_gamma_rate_d_chi_1, d_gamma_rate_d_chi_2, d_gamma_rate_d_chi_3]
 }
@@ -455,6 +463,10 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
 
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
 
@@ -536,9 +548,8 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let d_normal_force_d_alpha = thrust * cos_alpha
         + sin_alpha * d_thrust_d_alpha
         + d_lift_d_alpha; // lb/ft/rad
-    let inv_velocity = x.velocity.recip();
 
-    d_normal_force_d_alpha * p.inv_m * inv_velocity
+    inverse_momentum * d_normal_force_d_alpha
 }
 
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
@@ -555,6 +566,10 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
+
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
 
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
@@ -594,9 +609,8 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let inv_velocity = x.velocity.recip();
 
-    reference_force * p.inv_m * inv_velocity
+    inverse_momentum * reference_force
         * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma)
 }
 
@@ -616,6 +630,10 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let sin_alpha = x.alpha.sin();
     let cos_gamma = x.gamma.cos();
 
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
 
@@ -654,8 +672,7 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let inv_velocity = x.velocity.recip();
-    let f_gamma_eta = reference_force * p.inv_m * inv_velocity
+    let f_gamma_eta = inverse_momentum * reference_force
         * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let alpha_3 = x.alpha * alpha_2;
@@ -672,10 +689,9 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_delta_c * canard_deflection
         + p.c_l_0;
 
-    inv_velocity
-        * (p.g * cos_gamma
-            - reference_force * p.inv_m * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha))
-        + f_alpha_eta
+    p.g * inv_velocity * cos_gamma
+        - inverse_momentum * reference_force
+            * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha) + f_alpha_eta
 }
 
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
@@ -688,7 +704,7 @@ pub fn g_alpha<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 
 /// Derivatives of the alpha rate with respect to the coloured noises chi, eq. (33).
 ///
-/// 28 operations: 4 additions, 21 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 26 operations: 4 additions, 19 multiplications, 1 division, 1 sin_cos, 1 exp.
 #[inline]
 pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
@@ -701,24 +717,27 @@ pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
 
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+
     // Derivatives with respect to chi_1
     let d_thrust_d_chi_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
     let d_lift_d_chi_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_chi_1 = sin_alpha * d_thrust_d_chi_1 + d_lift_d_chi_1; // lb/ft^1.5/slug^0.5
-    let inv_velocity = x.velocity.recip();
-    let d_gamma_rate_d_chi_1 = d_normal_force_d_chi_1 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_thrust_d_chi_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
     let d_lift_d_chi_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_chi_2 = sin_alpha * d_thrust_d_chi_2 + d_lift_d_chi_2; // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_2 = d_normal_force_d_chi_2 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d_thrust_d_chi_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
     let d_lift_d_chi_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
     let d_normal_force_d_chi_3 = sin_alpha * d_thrust_d_chi_3 + d_lift_d_chi_3; // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_3 = d_normal_force_d_chi_3 * p.inv_m * inv_velocity; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
 
     [-d_gamma_rate_d_chi_1, -d_gamma_rate_d_chi_2, -d_gamma_rate_d_chi_3]
 }
@@ -737,6 +756,10 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
+
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
 
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
@@ -819,8 +842,7 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let d_normal_force_d_alpha = thrust * cos_alpha
         + sin_alpha * d_thrust_d_alpha
         + d_lift_d_alpha; // lb/ft/rad
-    let inv_velocity = x.velocity.recip();
-    let d_gamma_rate_d_alpha = d_normal_force_d_alpha * p.inv_m * inv_velocity; // 1/s
+    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
 
     -d_gamma_rate_d_alpha
 }
@@ -839,6 +861,10 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
+
+    // Motion, (1)
+    let inv_velocity = x.velocity.recip();
+    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
 
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
@@ -878,8 +904,7 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let inv_velocity = x.velocity.recip();
-    let f_gamma_eta = reference_force * p.inv_m * inv_velocity
+    let f_gamma_eta = inverse_momentum * reference_force
         * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
 
     -f_gamma_eta

@@ -5,7 +5,14 @@ from __future__ import annotations
 from ..model import Model
 from ..schema import DELTA_E, PHI, RIGID_STATE
 from ..table import Table
-from .vehicle import define_air, define_angles, define_force, define_polynomial, define_rigid_rates
+from .vehicle import (
+    define_air,
+    define_angles,
+    define_force,
+    define_inverse_momentum,
+    define_polynomial,
+    define_rigid_rates,
+)
 
 
 def build_com(table: Table) -> Model:
@@ -19,6 +26,7 @@ def build_com(table: Table) -> Model:
     )
     define_air(m)
     define_angles(m)
+    define_inverse_momentum(m)
     variables = {name: m[name] for name in ("phi", "alpha", "delta_e")}
     fit = {
         spec.key: define_polynomial(m, spec, "thrust" if spec.key == "T" else spec.key.lower(), spec.doc, variables)

@@ -13,6 +13,7 @@ from .vehicle import (
     define_air,
     define_angles,
     define_force,
+    define_inverse_momentum,
     define_polynomial,
     define_rigid_rates,
 )
@@ -115,6 +116,7 @@ def build_dcom(table: Table) -> Model:
     )
     define_air(m)
     define_angles(m)
+    define_inverse_momentum(m)
     define_canard(m)
     variables = control_variables(m)
     define_forces(m, variables | {f"eta_{i}": m[f"eta_{i}"] for i in modes})

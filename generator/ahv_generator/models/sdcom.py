@@ -17,7 +17,7 @@ from .dcom import (
     define_generalized_forces,
 )
 from .feedback import StrictFeedback
-from .vehicle import define_air, define_angles, define_rigid_rates
+from .vehicle import define_air, define_angles, define_inverse_momentum, define_rigid_rates
 
 RIGID_INCREMENTS = (
     VariableSpec("w_gamma", r"w_\gamma", "s^0.5", "Wiener increment that perturbs the flight-path angle"),
@@ -45,6 +45,7 @@ def build_sdcom(table: Table) -> Model:
     )
     define_air(m)
     define_angles(m)
+    define_inverse_momentum(m)
     define_canard(m)
     variables = control_variables(m)
     static = _define_reduced_coordinates(m, variables)
@@ -133,7 +134,7 @@ def _add_diffusion(m: Model, rates: dict[str, ca.SX]) -> None:
         "diffusion",
         "Itô increment G(x, u) dW of the state for the Wiener increments dW",
         "(27)",
-        [m.vector("state", increments)],
+        [m.vector("state", increments, "increment")],
     )
 
 

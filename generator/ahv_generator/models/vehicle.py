@@ -52,6 +52,19 @@ def define_air(m: Model) -> None:
     )
 
 
+def define_inverse_momentum(m: Model) -> None:
+    """1/(m V) of (1)."""
+    m.graph.define(
+        "inverse_momentum",
+        1 / (m.parameter("m") * m["velocity"]),
+        symbol="1/(mV)",
+        unit="s/slug",
+        doc="reciprocal of mass times velocity",
+        equation="(1)",
+        section="Motion",
+    )
+
+
 def define_angles(m: Model) -> None:
     """Sines and cosines of angle of attack and flight-path angle."""
     for angle, doc in (("alpha", "angle of attack"), ("gamma", "flight-path angle")):
@@ -121,7 +134,7 @@ def rigid_rates(m: Model, acting: Resultants) -> dict[str, ca.SX]:
     return {
         "velocity": acting.path_force / mass - g * m["sin_gamma"],
         "altitude": velocity * m["sin_gamma"],
-        "gamma": acting.normal_force / (mass * velocity) - g / velocity * m["cos_gamma"],
+        "gamma": acting.normal_force * m["inverse_momentum"] - g / velocity * m["cos_gamma"],
         "pitch_rate": acting.moment / m.parameter("i_yy"),
     }
 

@@ -9,7 +9,7 @@
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
-use ahv_core::{Bounds, DifferentiableModel, Model, Real, StochasticModel, Vector, first_outside};
+use ahv_core::{Bounds, DifferentiableModel, Real, StochasticModel, Vector, first_outside};
 use ahv_integrate::{EulerMaruyama, Rk4};
 use ahv_models::{com, dcom, sdcom};
 
@@ -45,6 +45,7 @@ fn com_functions<R: Real>() {
     let (x, u, p) = (unknown(), unknown(), com::prepare(&black_box(nominal)));
     black_box(com::drift::<R>(&x, &u, &p));
     black_box(com::jacobians::<R>(&x, &u, &p));
+    black_box(com::drift_and_jacobians::<R>(&x, &u, &p));
     let model = black_box(com::Model::new(&nominal));
     differentiable(&model, &com::STATE_BOUNDS, &com::INPUT_BOUNDS);
     vector::<R, com::Parameters<R>>();
@@ -55,6 +56,7 @@ fn dcom_functions<R: Real>() {
     let (x, u, p) = (unknown(), unknown(), dcom::prepare(&black_box(nominal)));
     black_box(dcom::drift::<R>(&x, &u, &p));
     black_box(dcom::jacobians::<R>(&x, &u, &p));
+    black_box(dcom::drift_and_jacobians::<R>(&x, &u, &p));
     let model = black_box(dcom::Model::new(&nominal));
     differentiable(&model, &dcom::STATE_BOUNDS, &dcom::INPUT_BOUNDS);
     vector::<R, dcom::Parameters<R>>();
@@ -65,6 +67,7 @@ fn sdcom_functions<R: Real>() {
     let (x, u, p) = (unknown(), unknown(), sdcom::prepare(&black_box(nominal)));
     black_box(sdcom::drift::<R>(&x, &u, &p));
     black_box(sdcom::jacobians::<R>(&x, &u, &p));
+    black_box(sdcom::drift_and_jacobians::<R>(&x, &u, &p));
     black_box(sdcom::diffusion::<R>(&x, &u, &p));
     black_box(sdcom::noise_increment::<R>(&x, &u, &p, &unknown()));
     let model = black_box(sdcom::Model::new(&nominal));
@@ -112,6 +115,7 @@ where
 {
     let (mut x, u) = (unknown(), unknown());
     black_box(model.jacobians(&x, &u));
+    black_box(model.drift_and_jacobians(&x, &u));
     black_box(Rk4::new(black_box(0.01)).step(model, &mut x, &u).is_ok());
     black_box(first_outside(&x, states).is_some());
     black_box(first_outside(&u, inputs).is_some());

@@ -1,0 +1,135 @@
+"""Computes the polynomials of src/elementary.rs with mpmath: near-minimax by Remez exchange, then rounded.
+
+Run with the project's development environment; prints Rust constants and the error of each approximation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import mpmath as mp
+
+mp.mp.dps = 60
+Real = Callable[[mp.mpf], mp.mpf]
+
+
+def remez(f: Real, weight: Real, low: float, high: float, first: int, degree: int) -> list[mp.mpf]:
+    """Coefficients of x^first … x^degree that make the largest |weight * (f - p)| on the interval nearly smallest."""
+    low_, high_ = mp.mpf(low), mp.mpf(high)
+    size = degree - first + 1
+    count = size + 1
+    middle, half = (low_ + high_) / 2, (high_ - low_) / 2
+    nodes = [middle - half * mp.cos(mp.pi * k / (count - 1)) for k in range(count)]
+    coefficients: list[mp.mpf] = []
+    for _ in range(8):
+        matrix = mp.matrix(count, count)
+        right = mp.matrix(count, 1)
+        for row, x in enumerate(nodes):
+            for column in range(size):
+                matrix[row, column] = x ** (first + column)
+            matrix[row, size] = (-1) ** row / weight(x)
+            right[row] = f(x)
+        solution = mp.lu_solve(matrix, right)
+        coefficients = [solution[k] for k in range(size)]
+
+        def error(x: mp.mpf, c: list[mp.mpf] = coefficients) -> mp.mpf:
+            return weight(x) * (f(x) - x**first * mp.polyval(c[::-1], x))
+
+        grid = [middle - half * mp.cos(mp.pi * k / 1201) for k in range(1202)]
+        values = [error(x) for x in grid]
+        peaks = [
+            k
+            for k in range(len(grid))
+            if (k == 0 or abs(values[k]) >= abs(values[k - 1]))
+            and (k == len(grid) - 1 or abs(values[k]) >= abs(values[k + 1]))
+        ]
+        alternating: list[int] = []
+        for k in peaks:
+            if alternating and mp.sign(values[k]) == mp.sign(values[alternating[-1]]):
+                if abs(values[k]) > abs(values[alternating[-1]]):
+                    alternating[-1] = k
+            else:
+                alternating.append(k)
+        while len(alternating) > count:
+            ends = (abs(values[alternating[0]]), abs(values[alternating[-1]]))
+            alternating.pop(0 if ends[0] < ends[1] else -1)
+        if len(alternating) < count:
+            break
+        nodes = [grid[k] for k in alternating]
+    return coefficients
+
+
+def fit(
+    f: Real, weight: Real, low: float, high: float, degree: int, refit: int
+) -> tuple[list[float], mp.mpf]:
+    """Coefficients as doubles; the first `refit` are rounded one by one and the later ones make good for it."""
+    found: list[float] = []
+    for fixed in range(refit + 1):
+
+        def rest(x: mp.mpf, done: tuple[float, ...] = tuple(found)) -> mp.mpf:
+            return f(x) - mp.polyval([mp.mpf(c) for c in done][::-1], x) if done else f(x)
+
+        solved = remez(rest, weight, low, high, fixed, degree)
+        found += [float(c) for c in (solved if fixed == refit else solved[:1])]
+    middle, half = (mp.mpf(low) + high) / 2, (mp.mpf(high) - low) / 2
+    grid = [middle - half * mp.cos(mp.pi * (k + mp.mpf(1) / 3) / 2000) for k in range(2000)]
+    worst = max(abs(weight(x) * (f(x) - mp.polyval([mp.mpf(c) for c in found][::-1], x))) for x in grid)
+    return found, worst
+
+
+def show(name: str, coefficients: list[float], worst: mp.mpf) -> None:
+    print(f"// error {mp.nstr(worst, 3)} = 2^{mp.nstr(mp.log(worst, 2), 4)}")
+    print(f"const {name}: [f64; {len(coefficients)}] = [")
+    for c in coefficients:
+        print(f"    {c!r},")
+    print("];")
+
+
+def split(value: mp.mpf, bits: list[int]) -> list[float]:
+    """The value as a sum of doubles, each but the last with the given number of bits."""
+    parts = []
+    for count in bits:
+        scale = mp.mpf(2) ** (count - 1 - int(mp.floor(mp.log(abs(value), 2))))
+        part = mp.floor(value * scale) / scale
+        parts.append(float(part))
+        value -= part
+    return [*parts, float(value)]
+
+
+
+def main() -> None:
+    edge = float((mp.pi / 4) ** 2) * 1.0001
+    sin = fit(
+        lambda z: sum((-1) ** (k + 1) * z**k / mp.factorial(2 * k + 3) for k in range(25)),
+        lambda z: z / (mp.sin(mp.sqrt(z)) / mp.sqrt(z)) if z else mp.mpf(1e-10),
+        1e-9,
+        edge,
+        5,
+        2,
+    )
+    show("SIN", *sin)
+    cos = fit(
+        lambda z: sum((-1) ** k * z**k / mp.factorial(2 * k + 4) for k in range(25)),
+        lambda z: z * z / mp.cos(mp.sqrt(z)),
+        1e-9,
+        edge,
+        5,
+        2,
+    )
+    show("COS", *cos)
+    half = float(mp.log(2) / 2) * 1.0001
+    exp = fit(
+        lambda r: sum(r**k / mp.factorial(k + 2) for k in range(40)),
+        lambda r: max(r * r, mp.mpf(1e-6)) / mp.exp(r),
+        -half,
+        half,
+        9,
+        0,
+    )
+    show("EXP", *exp)
+    print("const PI_2:", split(mp.pi / 2, [33, 33]))
+    print("const LN_2:", split(mp.log(2), [33]))
+
+
+if __name__ == "__main__":
+    main()
