@@ -31,7 +31,7 @@ impl Default for Options {
 }
 
 #[derive(Template)]
-#[template(path = "Cargo.toml", escape = "none")]
+#[template(path = "manifest.toml", escape = "none")]
 struct CargoTemplate<'a> {
     options: &'a Options,
     version: &'a str,
@@ -225,7 +225,7 @@ fn check_names(model: &Model) -> Result<(), EmitError> {
 
 fn manifest(tables: &[Table], irs: &BTreeMap<String, String>) -> Manifest {
     let templates: Vec<&str> = vec![
-        include_str!("../templates/Cargo.toml"),
+        include_str!("../templates/manifest.toml"),
         include_str!("../templates/functions.rs"),
         include_str!("../templates/lib.rs"),
         include_str!("../templates/model.rs"),
