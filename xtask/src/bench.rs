@@ -15,7 +15,14 @@ const REQUIREMENTS: &str = "crates/ahv-bench/peers/requirements.txt";
 pub(crate) fn run() -> Result<(), String> {
     let own = env::current_exe().map_err(|error| format!("error: {error}"))?;
     let mut bench = shell::cargo();
-    bench.args(["run", "--quiet", "--release", "--package", "ahv-bench", "--"]);
+    bench.args([
+        "run",
+        "--quiet",
+        "--release",
+        "--package",
+        "ahv-bench",
+        "--",
+    ]);
     bench.arg("--python").arg(python()?);
     bench.arg("--generate").arg(own);
     bench.arg("--out").arg(shell::target().join("bench"));

@@ -1,6 +1,7 @@
 //! What cargo alone cannot do for this project. Run as `cargo xtask <command>`.
 #![forbid(unsafe_code)]
 
+mod bench;
 mod demo;
 mod plot;
 mod python;
@@ -30,6 +31,8 @@ enum Task {
     },
     /// Draw and compute the reference vectors of the tests again
     Vectors,
+    /// Measure the generated functions beside their peers, and write docs/benchmarks.md
+    Bench,
     /// Change a coefficient, regenerate, and fly both models with both values
     Demo,
 }
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
         Task::Test => steps::run(),
         Task::Audit { points } => audit(points),
         Task::Vectors => vectors::run(),
+        Task::Bench => bench::run(),
         Task::Demo => demo::run(),
     };
     match done {

@@ -70,6 +70,13 @@ fn try_draw(pairs: &[Pair], path: &Path) -> Result<(), Box<dyn Error>> {
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
+/// A number without the sign that rounding leaves on zero.
+fn axis_label(value: &f64) -> String {
+    let text = format!("{:.6}", if value.abs() < 1e-9 { 0.0 } else { *value });
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    text.to_owned()
+}
+
 fn draw_chart(area: &Area<'_>, row: &Row, pair: &Pair) -> Result<(), Box<dyn Error>> {
     let state = row
         .states
@@ -97,6 +104,7 @@ fn draw_chart(area: &Area<'_>, row: &Row, pair: &Pair) -> Result<(), Box<dyn Err
         .y_desc(format!("{state} [{unit}]"))
         .x_labels(7)
         .y_labels(5)
+        .y_label_formatter(&axis_label)
         .label_style(FONT)
         .light_line_style(TRANSPARENT)
         .draw()?;
