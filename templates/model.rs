@@ -18,6 +18,7 @@ use ahv_core::{Bounds, Real};
 {%- for v in vectors %}
 /// {{ v.doc }} of {{ label }}.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct {{ v.name }}<T> {
 {%- for field in v.fields %}
     /// {{ field.described() }}

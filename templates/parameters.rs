@@ -4,6 +4,7 @@ use ahv_core::Bounds;
 
 /// One value for each parameter and coefficient of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Parameters<T> {
 {%- for p in parameters %}
     /// {{ p.described() }}

@@ -1,6 +1,5 @@
 //! `cargo xtask bench`: the figures of docs/benchmarks.md, measured here.
 
-use std::env;
 use std::fs;
 use std::path::PathBuf;
 
@@ -13,7 +12,8 @@ const REQUIREMENTS: &str = "crates/ahv-bench/peers/requirements.txt";
 
 /// Builds the product and its peers, and measures them beside each other.
 pub(crate) fn run() -> Result<(), String> {
-    let own = env::current_exe().map_err(|error| format!("error: {error}"))?;
+    let build = ["build", "--quiet", "--release", "--package", "ahv-cli"];
+    shell::run(shell::cargo().args(build))?;
     let mut bench = shell::cargo();
     bench.args([
         "run",
@@ -24,7 +24,9 @@ pub(crate) fn run() -> Result<(), String> {
         "--",
     ]);
     bench.arg("--python").arg(python()?);
-    bench.arg("--generate").arg(own);
+    bench
+        .arg("--generate")
+        .arg(shell::target().join("release/ahv"));
     bench.arg("--out").arg(shell::target().join("bench"));
     shell::run(&mut bench)
 }

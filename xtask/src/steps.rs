@@ -12,6 +12,8 @@ const CONSUMER: [&str; 4] = [
     "--target-dir",
     "target/consumer",
 ];
+/// Python of the benchmark, from the generator's folder.
+const PEERS: &str = "../crates/ahv-bench/peers";
 /// A microcontroller: no standard library, no heap.
 const BARE_METAL: &str = "thumbv7em-none-eabihf";
 
@@ -38,12 +40,12 @@ const STEPS: [Step; 13] = [
     ("clippy of xtask", || {
         cargo(&["clippy", "--all-targets"], &XTASK, &DENY)
     }),
-    ("ruff", || module(&["ruff", "check", "."])),
+    ("ruff", || module(&["ruff", "check", ".", PEERS])),
     ("ruff format", || {
-        module(&["ruff", "format", "--check", "."])
+        module(&["ruff", "format", "--check", ".", PEERS])
     }),
     ("mypy", || {
-        module(&["mypy", "ahv_generator", "ahv_oracle", "tests"])
+        module(&["mypy", "ahv_generator", "ahv_oracle", "tests", PEERS])
     }),
     ("pytest", || module(&["pytest", "--quiet"])),
     ("generate --check", generate_check),

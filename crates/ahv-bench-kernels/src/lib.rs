@@ -114,8 +114,7 @@ pub unsafe extern "C" fn dcom_drift_jacobians(
         f_x: &mut dcom::StateJacobian<f64>,
         f_u: &mut dcom::InputJacobian<f64>,
     ) {
-        *f = dcom::drift(x, u, p);
-        (*f_x, *f_u) = dcom::jacobians(x, u, p);
+        (*f, *f_x, *f_u) = dcom::drift_and_jacobians(x, u, p);
     }
     // SAFETY: the caller's promise.
     unsafe {
@@ -151,8 +150,7 @@ pub unsafe extern "C" fn sdcom_drift_diffusion(
         f: &mut sdcom::State<f64>,
         g: &mut sdcom::Diffusion<f64>,
     ) {
-        *f = sdcom::drift(x, u, p);
-        *g = sdcom::diffusion(x, u, p);
+        (*f, *g) = sdcom::drift_and_diffusion(x, u, p);
     }
     // SAFETY: the caller's promise.
     unsafe {

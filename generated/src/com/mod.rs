@@ -20,6 +20,7 @@ use ahv_core::{Bounds, Real};
 
 /// State of COM.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct State<T> {
     /// Velocity, ft/s.
     pub velocity: T,
@@ -85,6 +86,7 @@ pub const STATE_BOUNDS: State<Bounds> = State {
 
 /// Input of COM.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Input<T> {
     /// Fuel equivalence ratio, dimensionless.
     pub phi: T,

@@ -20,6 +20,7 @@ use ahv_core::{Bounds, Real};
 
 /// State of DCOM.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct State<T> {
     /// Velocity, ft/s.
     pub velocity: T,
@@ -140,6 +141,7 @@ pub const STATE_BOUNDS: State<Bounds> = State {
 
 /// Input of DCOM.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Input<T> {
     /// Fuel equivalence ratio, dimensionless.
     pub phi: T,

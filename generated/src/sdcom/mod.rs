@@ -19,6 +19,7 @@ use ahv_core::{Bounds, Real};
 
 /// State of SDCOM.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct State<T> {
     /// Velocity, ft/s.
     pub velocity: T,
@@ -117,6 +118,7 @@ pub const STATE_BOUNDS: State<Bounds> = State {
 
 /// Input of SDCOM.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Input<T> {
     /// Fuel equivalence ratio, dimensionless.
     pub phi: T,
@@ -164,6 +166,7 @@ pub const INPUT_BOUNDS: Input<Bounds> = Input {
 
 /// One value for each independent Wiener process of SDCOM.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Noise<T> {
     /// Wiener increment that perturbs the flight-path angle, s^0.5.
     pub w_gamma: T,

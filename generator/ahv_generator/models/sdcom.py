@@ -117,13 +117,21 @@ def _add_diffusion(m: Model, rates: dict[str, ca.SX]) -> None:
                 entries.append(Entry((row, column), slope * m.parameter(column)))
         if row in gains:
             entries.append(Entry((row, row.replace("chi", "xi")), gains[row]))
+    diffusion = Output("diffusion", ("state", "noise"), tuple(entries))
     m.add(
         "diffusion",
         "diffusion",
         "Diffusion G(x, u) in the Itô sense; the columns of w_gamma, w_alpha and w_q are derivatives of the drift"
         " at frozen inputs",
         "(27)",
-        [Output("", ("state", "noise"), tuple(entries))],
+        [diffusion],
+    )
+    m.add(
+        "drift_and_diffusion",
+        "diffusion",
+        "Time derivative of the state, and the diffusion, for less than one after the other",
+        "(27)",
+        [m.vector("state", rates, "drift"), diffusion],
     )
     increments = {row: ca.SX(0) for row in m.names("state")}
     for entry in entries:

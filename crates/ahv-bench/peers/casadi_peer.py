@@ -1,0 +1,81 @@
+"""Writes CasADi's C for the timed functions, and CasADi's operation counts of every function.
+
+`python casadi_peer.py --out DIR TABLE...` writes `peer.c` and `peer.json`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from importlib.metadata import version
+from pathlib import Path
+
+import casadi as ca
+
+from ahv_generator.models import BUILDERS
+from ahv_generator.table import load
+from counts import count
+from expansion import Expansion
+
+OPTIONS = {"cse": True}
+
+
+def function(name: str, expansion: Expansion, outputs: list[ca.SX], extra: list[ca.SX] | None = None) -> ca.Function:
+    """A CasADi function of state, input, parameters, and whatever is `extra`."""
+    inputs = [expansion.leaves("state"), expansion.leaves("input"), expansion.parameters(), *(extra or [])]
+    return ca.Function(name, inputs, outputs, OPTIONS)
+
+
+def timed(expansion: Expansion) -> list[tuple[str, list[ca.SX]]]:
+    """The functions that are timed, by name."""
+    drift = expansion.drift()
+    if expansion.model.name == "dcom":
+        jacobians = [expansion.jacobian("state"), expansion.jacobian("input")]
+        return [("dcom_drift", [drift]), ("dcom_drift_jacobians", [drift, *jacobians])]
+    if expansion.model.name == "sdcom":
+        return [("sdcom_drift_diffusion", [drift, expansion.diffusion()])]
+    return []
+
+
+def positions(matrices: list[ca.SX]) -> list[list[int]]:
+    """For each output, where its stored values stand in the dense matrix, row by row."""
+    return [
+        [row * matrix.size2() + column for row, column in zip(*matrix.sparsity().get_triplet(), strict=True)]
+        for matrix in matrices
+    ]
+
+
+def main() -> None:
+    """Run the command line."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("tables", type=Path, nargs="+")
+    arguments = parser.parse_args()
+
+    generator = ca.CodeGenerator("peer.c")
+    kernels: dict[str, object] = {}
+    counts: dict[str, dict[str, object]] = {}
+    for path in arguments.tables:
+        table = load(path)
+        for model in (BUILDERS[name](table) for name in table.models):
+            expansion = Expansion(model)
+            for name, matrices in timed(expansion):
+                peer = function(name, expansion, matrices)
+                generator.add(peer)
+                kernels[name] = {
+                    "parameters": [parameter.name for parameter in table.parameters],
+                    "outputs": positions(matrices),
+                    "operations": count(peer),
+                    "work": [peer.sz_arg(), peer.sz_res(), peer.sz_iw(), peer.sz_w()],
+                }
+            counts[model.name] = {
+                f.name: count(function(f.name, expansion, expansion.matrices(f), [expansion.leaves("noise")]))
+                for f in model.functions
+            }
+    generator.generate(f"{arguments.out}/")
+    answer = {"version": version("casadi"), "kernels": kernels, "counts": counts}
+    (arguments.out / "peer.json").write_text(json.dumps(answer, indent=1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,264 @@
+//! The figures for people, for programs, and for the documentation.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use crate::agreement::Agreement;
+use crate::candidates::PRODUCT;
+use crate::generation::Generation;
+use crate::machine::Machine;
+use crate::operations::Operations;
+use crate::subject::SUBJECTS;
+use crate::timing::{Spread, Timing};
+
+/// Seconds that `generate` may take, and those of them that emission may.
+const GENERATION_GOALS: (f64, f64) = (3.0, 0.05);
+
+/// Everything that was found.
+#[derive(Serialize)]
+pub(crate) struct Report {
+    pub(crate) machine: Machine,
+    pub(crate) generation: Generation,
+    pub(crate) operations: Vec<Operations>,
+    pub(crate) agreement: Vec<Agreement>,
+    pub(crate) points: usize,
+    pub(crate) rounds: u32,
+    pub(crate) timings: Vec<Timing>,
+}
+
+/// A heading, the names of the columns, and the rows.
+struct Table {
+    title: &'static str,
+    columns: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Report {
+    /// For programs.
+    pub(crate) fn json(&self) -> Result<String, String> {
+        let text = serde_json::to_string_pretty(self);
+        text.map(|text| text + "\n")
+            .map_err(|error| format!("error: {error}"))
+    }
+
+    /// For a terminal.
+    pub(crate) fn text(&self) -> String {
+        let mut text = String::new();
+        for (name, value) in self.machine.lines() {
+            let _ = writeln!(text, "{name:8}  {value}");
+        }
+        for table in self.tables() {
+            let _ = writeln!(text, "\n== {}", table.title);
+            text.push_str(&table.text());
+        }
+        let _ = writeln!(text, "\n{}", self.agreed());
+        text
+    }
+
+    /// For the documentation: the same on every run but for the figures.
+    pub(crate) fn markdown(&self) -> String {
+        let mut text = String::from(
+            "# Benchmarks\n\nWritten by `cargo xtask bench`, which measures everything below again. \
+             Do not edit.\n\nTimes and their ratios vary by machine, compilers and libc, and a little from \
+             run to run; counts of operations do not.\n\n## Machine\n\n",
+        );
+        for (name, value) in self.machine.lines() {
+            let _ = writeln!(text, "* {name}: {value}");
+        }
+        for (table, note) in self.tables().iter().zip(self.notes()) {
+            let _ = writeln!(
+                text,
+                "\n## {}\n\n{note}\n\n{}",
+                table.title,
+                table.markdown().trim_end()
+            );
+        }
+        let _ = writeln!(text, "\n{}", self.agreed());
+        text
+    }
+
+    fn tables(&self) -> [Table; 3] {
+        [self.times(), self.counts(), self.generation()]
+    }
+
+    fn notes(&self) -> [String; 3] {
+        [
+            format!(
+                "Scalar f64 at {} random points of the box of validity, one call a point; state and input are \
+                 arguments of every call, coefficients are run-time parameters for everyone. `ahv` is the \
+                 default mode: baseline target, no FMA, elementary functions of `ahv-core`; gcc contracts to FMA \
+                 where the machine has it, and CasADi and wrenfold use the elementary functions of libc. \
+                 Every candidate lies in a shared library behind CasADi's C interface; {} rounds in which \
+                 each has its turn, ratios to CasADi within each round. CasADi's C (SX, `cse`) stores the \
+                 non-zeros of Jacobians; ahv and wrenfold store dense ones.",
+                self.points, self.rounds
+            ),
+            "As the headers of the generated functions say; CasADi's are the instructions of its SX function \
+             with `cse`, without inputs, outputs and constants. Counted alike: a negation is free, and sine \
+             and cosine of one angle are one. ahv does what depends on parameters alone once, in `prepare`."
+                .to_owned(),
+            format!(
+                "`ahv generate` (release) on all tables into an empty folder, after set-up; {} runs.",
+                self.generation.runs
+            ),
+        ]
+    }
+
+    fn agreed(&self) -> String {
+        let worst = self.agreement.iter().map(|it| it.worst).fold(0.0, f64::max);
+        format!(
+            "All candidates agree at every point: the greatest difference is {worst:.1e} of the value or of its \
+             component's root mean square."
+        )
+    }
+
+    fn times(&self) -> Table {
+        let mut rows = Vec::new();
+        for subject in &SUBJECTS {
+            for timing in self
+                .timings
+                .iter()
+                .filter(|it| it.function == subject.symbol)
+            {
+                let goal = subject.goal.filter(|_| timing.candidate == PRODUCT);
+                let Spread {
+                    min,
+                    lower_quartile,
+                    median,
+                    upper_quartile,
+                } = timing.nanoseconds;
+                rows.push(vec![
+                    subject.title.to_owned(),
+                    timing.candidate.to_owned(),
+                    timing.built.clone(),
+                    format!("{median:.1}"),
+                    format!("{min:.1}"),
+                    format!("{lower_quartile:.1}–{upper_quartile:.1}"),
+                    format!("{:.2}", timing.ratio.median),
+                    format!(
+                        "{:.2}–{:.2}",
+                        timing.ratio.lower_quartile, timing.ratio.upper_quartile
+                    ),
+                    goal.map_or_else(String::new, |goal| against(timing.ratio.median, goal, "")),
+                ]);
+            }
+        }
+        Table {
+            title: "Time of an evaluation",
+            columns: vec![
+                "call",
+                "candidate",
+                "built with",
+                "ns",
+                "min",
+                "quartiles",
+                "ratio",
+                "quartiles",
+                "goal",
+            ],
+            rows,
+        }
+    }
+
+    fn counts(&self) -> Table {
+        let row = |it: &Operations| {
+            vec![
+                format!("{}: {}", it.model, it.function),
+                it.ahv.to_string(),
+                it.ahv_divisions.to_string(),
+                it.casadi.to_string(),
+                it.casadi_counted_alike.to_string(),
+                it.casadi_divisions.to_string(),
+                it.wrenfold
+                    .map_or_else(String::new, |count| count.to_string()),
+            ]
+        };
+        Table {
+            title: "Operations",
+            columns: vec![
+                "function",
+                "ahv",
+                "divisions",
+                "CasADi",
+                "counted alike",
+                "divisions",
+                "wrenfold",
+            ],
+            rows: self.operations.iter().map(row).collect(),
+        }
+    }
+
+    fn generation(&self) -> Table {
+        let Generation {
+            total,
+            derive,
+            emit,
+            ..
+        } = &self.generation;
+        let row = |name: &str, spread: &Spread, goal: Option<f64>| {
+            vec![
+                name.to_owned(),
+                format!("{:.3}", spread.median),
+                format!("{:.3}", spread.min),
+                format!("{:.3}–{:.3}", spread.lower_quartile, spread.upper_quartile),
+                goal.map_or_else(String::new, |goal| against(spread.median, goal, " s")),
+            ]
+        };
+        Table {
+            title: "Generation",
+            columns: vec!["part", "s", "min", "quartiles", "goal"],
+            rows: vec![
+                row("in all", total, Some(GENERATION_GOALS.0)),
+                row("derive", derive, None),
+                row("emit", emit, Some(GENERATION_GOALS.1)),
+            ],
+        }
+    }
+}
+
+fn against(value: f64, goal: f64, unit: &str) -> String {
+    let verdict = if value <= goal { "met" } else { "MISSED" };
+    format!("at most {goal}{unit}: {verdict}")
+}
+
+impl Table {
+    fn text(&self) -> String {
+        let mut text = String::new();
+        let head: Vec<String> = self.columns.iter().map(|&it| it.to_owned()).collect();
+        let lines = || std::iter::once(&head).chain(&self.rows);
+        let width = |column: usize| {
+            let widths = lines().map(|row| row[column].chars().count());
+            widths.max().unwrap_or_default()
+        };
+        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
+        for row in lines() {
+            let cells = row.iter().zip(&widths).map(|(cell, &width)| {
+                if is_figure(cell) {
+                    format!("{cell:>width$}")
+                } else {
+                    format!("{cell:<width$}")
+                }
+            });
+            let cells: Vec<String> = cells.collect();
+            let _ = writeln!(text, "{}", cells.join("  ").trim_end());
+        }
+        text
+    }
+
+    fn markdown(&self) -> String {
+        let mut text = format!(
+            "| {} |\n|{}\n",
+            self.columns.join(" | "),
+            "---|".repeat(self.columns.len())
+        );
+        for row in &self.rows {
+            let _ = writeln!(text, "| {} |", row.join(" | "));
+        }
+        text
+    }
+}
+
+fn is_figure(cell: &str) -> bool {
+    cell.starts_with(|first: char| first.is_ascii_digit())
+}
