@@ -32,11 +32,11 @@ pub(crate) struct Arguments {
     model: ModelName,
 
     /// End of the simulation in s; the last step is shortened to end there
-    #[arg(long, value_name = "S", value_parser = grid::positive)]
+    #[arg(long, value_name = "S", value_parser = grid::positive, allow_negative_numbers = true)]
     t_end: f64,
 
     /// Step size in s
-    #[arg(long, value_name = "S", value_parser = grid::positive)]
+    #[arg(long, value_name = "S", value_parser = grid::positive, allow_negative_numbers = true)]
     dt: f64,
 
     /// Seed of the noise of sdcom: the same seed gives the same numbers on every machine
