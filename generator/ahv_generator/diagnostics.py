@@ -61,7 +61,7 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     """A help line: the nearest of the known words, or all of them."""
     words = list(known)
     folded = {w.lower(): w for w in words}
-    near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.75)
     if near:
         return f"did you mean `{folded[near[0]]}`?"
     return "known here: " + ", ".join(f"`{w}`" for w in words)

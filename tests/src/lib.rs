@@ -10,4 +10,7 @@ pub mod vectors;
 mod docs {
     #[doc = include_str!("../../docs/link.md")]
     mod link {}
+
+    #[doc = include_str!("../../README.md")]
+    mod readme {}
 }

@@ -3,6 +3,7 @@
 
 mod bench;
 mod demo;
+mod no_panic;
 mod plot;
 mod python;
 mod shell;

@@ -3,7 +3,7 @@
 use std::process::Command;
 use std::time::Instant;
 
-use crate::{python, shell};
+use crate::{no_panic, python, shell};
 
 const XTASK: [&str; 2] = ["--manifest-path", "xtask/Cargo.toml"];
 const CONSUMER: [&str; 4] = [
@@ -25,7 +25,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 13] = [
+const STEPS: [Step; 14] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK, &[])
@@ -54,7 +54,12 @@ const STEPS: [Step; 13] = [
     }),
     ("cargo test of xtask", || cargo(&["test"], &XTASK, &[])),
     ("consumer", || cargo(&["test"], &CONSUMER, &[])),
-    ("consumer, no_std", bare_metal),
+    ("consumer, no_std", || {
+        bare_metal(|| cargo(&["build", "--lib", "--target", BARE_METAL], &CONSUMER, &[]))
+    }),
+    ("no panic path", || {
+        bare_metal(|| no_panic::run(BARE_METAL).map(|()| Outcome::Passed))
+    }),
 ];
 const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
@@ -114,13 +119,15 @@ fn generate_check() -> Result<Outcome, String> {
     passed(shell::program(own).args(["generate", "--check"]))
 }
 
-fn bare_metal() -> Result<Outcome, String> {
+/// A step that needs the target of a microcontroller.
+fn bare_metal(step: fn() -> Result<Outcome, String>) -> Result<Outcome, String> {
     let mut add = shell::program("rustup");
     if let Err(problem) = shell::output(add.args(["target", "add", BARE_METAL])) {
-        let reason = problem.lines().last().unwrap_or_default();
+        let told = problem.lines().find(|line| line.starts_with("error:"));
+        let reason = told.or(problem.lines().last()).unwrap_or_default();
         return Ok(Outcome::Skipped(format!(
             "no target {BARE_METAL}: {reason}"
         )));
     }
-    cargo(&["build", "--lib", "--target", BARE_METAL], &CONSUMER, &[])
+    step()
 }

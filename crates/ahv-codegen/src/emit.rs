@@ -17,15 +17,37 @@ const COMMAND: &str = "ahv generate";
 pub struct Options {
     /// Name of the package.
     pub package: String,
-    /// Path of the crate `ahv-core`, relative to the package.
-    pub core_path: String,
+    /// Where `ahv-core` comes from.
+    pub core: Core,
+}
+
+/// Where the generated package finds `ahv-core`.
+#[derive(Clone, Debug)]
+pub enum Core {
+    /// At a path relative to the package.
+    Path(String),
+    /// Where the workspace around the package says.
+    Workspace,
 }
 
 impl Default for Options {
     fn default() -> Self {
         Self {
             package: "ahv-models".to_owned(),
-            core_path: "../crates/ahv-core".to_owned(),
+            core: Core::Path("../crates/ahv-core".to_owned()),
+        }
+    }
+}
+
+impl Options {
+    /// The line of the package's manifest that names `ahv-core`.
+    fn core_dependency(&self) -> String {
+        match &self.core {
+            Core::Path(path) => {
+                let version = env!("CARGO_PKG_VERSION");
+                format!("ahv-core = {{ version = \"{version}\", path = \"{path}\" }}")
+            }
+            Core::Workspace => "ahv-core.workspace = true".to_owned(),
         }
     }
 }
@@ -126,7 +148,7 @@ fn emit_table(tree: &mut Tree, table: &Table, document: &Document) -> Result<(),
             table.name
         )));
     };
-    let source = format!("generator/tables/{}", table.file_name);
+    let source = table.file_name.clone();
     let parameters = ParametersTemplate {
         parameters: &document.parameters,
         validity: &document.validity,

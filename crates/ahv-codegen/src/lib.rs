@@ -17,7 +17,7 @@ mod table;
 
 use std::collections::BTreeMap;
 
-pub use emit::{Options, emit};
+pub use emit::{Core, Options, emit};
 pub use manifest::{Manifest, sha256};
 pub use table::{Part, Table, TableError};
 

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use ahv_codegen::Core;
+
 use crate::project::Project;
 
 const PACKAGE: &str = "ahv-models";
@@ -36,16 +38,29 @@ pub struct Args {
     #[arg(long, value_name = "PATH", default_value = CORE_PATH)]
     pub core_path: String,
 
+    /// Take ahv-core from the workspace around the generated package, whose Cargo.toml says where it comes from
+    #[arg(long, conflicts_with = "core_path")]
+    pub core_workspace: bool,
+
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
 }
 
 impl Args {
+    /// Where the generated package finds ahv-core.
+    pub(crate) fn core(&self) -> Core {
+        if self.core_workspace {
+            Core::Workspace
+        } else {
+            Core::Path(self.core_path.clone())
+        }
+    }
+
     /// The command that brings the tree up to date, with the flags that this one was given.
     pub(crate) fn mending_command(&self, project: &Project) -> String {
         // The generator of a repository that holds its own does not need the models to compile.
-        let xtask = project.root.join("xtask").is_dir();
+        let xtask = project.root.join("generator/ahv_generator").is_dir();
         let mut command = String::from(if xtask {
             "cargo xtask generate"
         } else {
@@ -63,7 +78,9 @@ impl Args {
         if self.package != PACKAGE {
             flag("--package", &self.package);
         }
-        if self.core_path != CORE_PATH {
+        if self.core_workspace {
+            command.push_str(" --core-workspace");
+        } else if self.core_path != CORE_PATH {
             flag("--core-path", &self.core_path);
         }
         command

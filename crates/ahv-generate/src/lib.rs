@@ -139,7 +139,7 @@ fn derive_and_emit(
 fn emit(args: &Args, tables: &Tables, irs: &BTreeMap<String, String>) -> Result<Tree, Failure> {
     let options = Options {
         package: args.package.clone(),
-        core_path: args.core_path.clone(),
+        core: args.core(),
     };
     ahv_codegen::emit(&tables.parsed, irs, &options)
         .map_err(|error| Failure::new(error.to_string()))

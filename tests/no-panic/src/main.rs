@@ -69,6 +69,7 @@ fn sdcom_functions<R: Real>() {
     black_box(sdcom::jacobians::<R>(&x, &u, &p));
     black_box(sdcom::drift_and_jacobians::<R>(&x, &u, &p));
     black_box(sdcom::diffusion::<R>(&x, &u, &p));
+    black_box(sdcom::drift_and_diffusion::<R>(&x, &u, &p));
     black_box(sdcom::noise_increment::<R>(&x, &u, &p, &unknown()));
     let model = black_box(sdcom::Model::new(&nominal));
     differentiable(&model, &sdcom::STATE_BOUNDS, &sdcom::INPUT_BOUNDS);
