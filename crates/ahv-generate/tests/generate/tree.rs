@@ -257,7 +257,11 @@ fn the_command_names_the_flags_that_were_given() {
         text.ends_with("ahv generate --package my-models --core-path '../my core'\n"),
         "{text}"
     );
-    fs::create_dir(scratch.path("xtask")).expect("made");
+    let text = scratch.disagreement(&["--core-workspace"]);
+    assert!(text.contains("+ahv-core.workspace = true\n"), "{text}");
+    assert!(text.ends_with("ahv generate --core-workspace\n"), "{text}");
+    // Where the generator itself is at home, the command is one that needs no models to compile.
+    fs::create_dir(scratch.path("generator/ahv_generator")).expect("made");
     let text = scratch.disagreement(&line);
     assert!(
         text.contains("run:  cargo xtask generate --package my-models"),
