@@ -17,7 +17,7 @@ pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
 {%- endfor %}
 {%- if f.outputs.len() > 1 || !f.zeros.is_empty() %}
     __section!("Result");
-{%- else if !f.statements.is_empty() %}
+{%- else if f.sets_result_off() %}
     __section!("");
 {%- endif %}
 {%- for (name, of) in f.zeros %}

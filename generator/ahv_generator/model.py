@@ -121,3 +121,11 @@ class Model:
         self.add("jacobians", "jacobians", slopes.capitalize(), equation, [by_state, by_input])
         both = f"Time derivative of the state, and the {slopes}, for less than one after the other"
         self.add("drift_and_jacobians", "jacobians", both, equation, [drift, by_state, by_input])
+
+    def add_evaluations(self, *names: str) -> None:
+        """Functions that give one named quantity each, for whoever needs no more."""
+        for name in names:
+            quantity = self.graph.quantities[name]
+            doc = quantity.doc[0].upper() + quantity.doc[1:]
+            value = Output("value", (), (Entry((), self.graph.symbols[name]),), quantity.unit)
+            self.add(name, "evaluations", doc, quantity.equation, [value])

@@ -4,7 +4,7 @@ import sympy
 from sympy import Expr
 
 from .feedback import strict_feedback
-from .model import Model, symbol
+from .model import Model, quantities, symbol
 
 Entries = list[tuple[str, Expr]]
 """Labelled expressions, in column order."""
@@ -19,7 +19,7 @@ def all_functions(model: Model) -> dict[str, Entries]:
     if model.name == "sdcom":
         functions |= {"diffusion": diffusion(model), "noise_increment": noise_increment(model)}
         functions |= strict_feedback(model)
-    return functions
+    return functions | {name: [(name, expr)] for name, expr in quantities(model).items()}
 
 
 def drift(model: Model) -> Entries:

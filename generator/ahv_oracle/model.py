@@ -62,19 +62,46 @@ def build_model(table: Table, name: str) -> Model:
     return Model(name, table, states, inputs, noises, _drift(table, name, states, inputs))
 
 
-def _drift(table: Table, name: str, states: tuple[str, ...], inputs: tuple[str, ...]) -> dict[str, Expr]:
+def _bindings(
+    table: Table, name: str, states: tuple[str, ...], inputs: tuple[str, ...]
+) -> tuple[Binding, dict[int, Expr]]:
+    """What the monomials are written in, and the generalised forces by mode."""
     rigid = variables(states, inputs)
-    if name == "sdcom":
-        forces = generalised_forces(table, rigid)
-        etas = {f"eta_{i}": force / _omega(i) ** 2 + symbol("state", f"chi_{i}") for i, force in forces.items()}
-        bind = variables(states, inputs, etas)
-    else:
-        forces = generalised_forces(table, rigid) if name == "dcom" else {}
-        bind = rigid
+    forces = generalised_forces(table, rigid) if name != "com" else {}
+    if name != "sdcom":
+        return rigid, forces
+    etas = {f"eta_{i}": static_deflection(i, force) + symbol("state", f"chi_{i}") for i, force in forces.items()}
+    return variables(states, inputs, etas), forces
+
+
+def _drift(table: Table, name: str, states: tuple[str, ...], inputs: tuple[str, ...]) -> dict[str, Expr]:
+    bind, forces = _bindings(table, name, states, inputs)
     rows = rigid_rows(aerodynamics(table, bind), own_rows())
     for i, force in forces.items():
         rows |= _mode(i) if name == "sdcom" else _oscillator(i, force)
     return {state: rows[state] for state in states}
+
+
+def quantities(model: Model) -> dict[str, Expr]:
+    """Air, curve fits, forces, moment and modal quantities of (2), (3) and (25), by the name of their function."""
+    bind, forces = _bindings(model.table, model.name, model.states, model.inputs)
+    fits = aerodynamics(model.table, bind)
+    force = pressure_force()
+    thrust = fits["T"] if "T" in fits else force * fits["C_T"]
+    moment = symbol("parameter", "z_t") * thrust + force * symbol("parameter", "c_bar") * fits["C_M"]
+    found = {"density": density(), "dynamic_pressure": force / symbol("parameter", "s")}
+    found |= {name.lower(): fit for name, fit in fits.items() if name != "T"}
+    found |= {"thrust": thrust, "lift": force * fits["C_L"], "drag": force * fits["C_D"], "pitching_moment": moment}
+    for i, generalised in forces.items():
+        found |= {f"c_n_{i}": polynomial(model.table, f"C_N_{i}", bind), f"generalized_force_{i}": generalised}
+        if model.name == "sdcom":
+            found |= {f"eta_static_{i}": static_deflection(i, generalised), f"eta_{i}": bind(f"eta_{i}")}
+    return found
+
+
+def static_deflection(mode: int, force: Expr) -> Expr:
+    """N_i / omega_i^2 of (25)."""
+    return force / _omega(mode) ** 2
 
 
 def variables(states: tuple[str, ...], inputs: tuple[str, ...], replaced: Mapping[str, Expr] | None = None) -> Binding:
@@ -119,12 +146,15 @@ def generalised_forces(table: Table, bind: Binding) -> dict[int, Expr]:
     return {i: pressure_force() * polynomial(table, f"C_N_{i}", bind) for i in table.modes}
 
 
+def density() -> Expr:
+    """Air density of the exponential atmosphere."""
+    decay = (symbol("state", "altitude") - symbol("parameter", "h_0")) / symbol("parameter", "h_s")
+    return symbol("parameter", "rho_0") * sympy.exp(-decay)
+
+
 def pressure_force() -> Expr:
     """Dynamic pressure times reference area."""
-    altitude, velocity = symbol("state", "altitude"), symbol("state", "velocity")
-    decay = (altitude - symbol("parameter", "h_0")) / symbol("parameter", "h_s")
-    density = symbol("parameter", "rho_0") * sympy.exp(-decay)
-    return sympy.Rational(1, 2) * density * velocity**2 * symbol("parameter", "s")
+    return sympy.Rational(1, 2) * density() * symbol("state", "velocity") ** 2 * symbol("parameter", "s")
 
 
 def rigid_rows(coefficients: Mapping[str, Expr], rest: Mapping[str, Expr]) -> dict[str, Expr]:

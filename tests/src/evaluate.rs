@@ -58,10 +58,10 @@ macro_rules! deterministic {
 }
 
 macro_rules! scalars {
-    ($values:ident, $arguments:tt, $($name:ident)*) => {
-        $($values.insert(stringify!($name).to_owned(), scalars!(@call $name $arguments).to_f64());)*
+    ($values:ident, $model:ident, $arguments:tt, $($name:ident)*) => {
+        $($values.insert(stringify!($name).to_owned(), scalars!(@call $model $name $arguments).to_f64());)*
     };
-    (@call $name:ident ($x:expr, $u:expr, $p:expr)) => { ahv_models::sdcom::$name($x, $u, $p) };
+    (@call $model:ident $name:ident ($x:expr, $u:expr, $p:expr)) => { ahv_models::$model::$name($x, $u, $p) };
 }
 
 macro_rules! arrays {
@@ -70,6 +70,21 @@ macro_rules! arrays {
             $values.insert(format!("{}.{index}", stringify!($name)), value.to_f64());
         })*
     };
+}
+
+fn com<R: Real + PartialEq>(inputs: &BTreeMap<String, f64>) -> Values {
+    let (mut values, x, u, p) = deterministic!(com, R, inputs);
+    scalars!(values, com, (&x, &u, &p),
+        density dynamic_pressure c_l c_d c_m thrust lift drag pitching_moment);
+    values
+}
+
+fn dcom<R: Real + PartialEq>(inputs: &BTreeMap<String, f64>) -> Values {
+    let (mut values, x, u, p) = deterministic!(dcom, R, inputs);
+    scalars!(values, dcom, (&x, &u, &p),
+        density dynamic_pressure c_l c_d c_m c_t thrust lift drag pitching_moment
+        c_n_1 c_n_2 c_n_3 generalized_force_1 generalized_force_2 generalized_force_3);
+    values
 }
 
 fn sdcom<R: Real + PartialEq>(inputs: &BTreeMap<String, f64>) -> Values {
@@ -85,7 +100,10 @@ fn sdcom<R: Real + PartialEq>(inputs: &BTreeMap<String, f64>) -> Values {
         "noise_increment",
         &ahv_models::sdcom::noise_increment(&x, &u, &p, &dw),
     );
-    scalars!(values, (&x, &u, &p),
+    scalars!(values, sdcom, (&x, &u, &p),
+        density dynamic_pressure c_l c_d c_m c_t thrust lift drag pitching_moment
+        c_n_1 c_n_2 c_n_3 generalized_force_1 generalized_force_2 generalized_force_3
+        eta_static_1 eta_static_2 eta_static_3 eta_1 eta_2 eta_3
         f_V g_V H_V f_V_eta f_gamma g_gamma H_gamma f_gamma_eta
         f_alpha g_alpha H_alpha f_alpha_eta f_Q g_Q H_Q f_Q_eta g_Q_total);
     arrays!(values, (&x, &u, &p), h_V h_gamma h_alpha h_Q);
@@ -98,8 +116,8 @@ fn sdcom<R: Real + PartialEq>(inputs: &BTreeMap<String, f64>) -> Values {
 /// When the model is unknown or the point lacks a number.
 pub fn evaluate<R: Real + PartialEq>(model: &str, inputs: &BTreeMap<String, f64>) -> Values {
     match model {
-        "com" => deterministic!(com, R, inputs).0,
-        "dcom" => deterministic!(dcom, R, inputs).0,
+        "com" => com::<R>(inputs),
+        "dcom" => dcom::<R>(inputs),
         "sdcom" => sdcom::<R>(inputs),
         other => panic!("unknown model {other}"),
     }

@@ -27,10 +27,7 @@ impl Statement {
         match self {
             Self::Section(heading) => format!("{SECTION}({heading:?});"),
             Self::Let { name, value, unit } => {
-                let value = match value {
-                    Value::Plain(text) => text.clone(),
-                    Value::Addends(addends) => format!("{ADDENDS}({:?})", addends.join("|")),
-                };
+                let value = value.source();
                 // A pure number has no unit to tell.
                 let trailing = match unit.as_str() {
                     "" | "1" => String::new(),
@@ -52,6 +49,14 @@ pub(crate) enum Value {
 }
 
 impl Value {
+    /// The value as source text, with the formatter's marker where it is listed.
+    pub(crate) fn source(&self) -> String {
+        match self {
+            Self::Plain(text) => text.clone(),
+            Self::Addends(addends) => format!("{ADDENDS}({:?})", addends.join("|")),
+        }
+    }
+
     /// The value as one expression.
     pub(crate) fn text(&self) -> String {
         match self {

@@ -49,14 +49,15 @@ pub(crate) fn format_rust(path: &str, header: &str, text: &str) -> Result<String
             }
         } else if let Some((start, call)) = code.split_once(ADDENDS) {
             let mut call = call.to_owned();
-            while !call.ends_with(';') {
+            while !call.ends_with([';', ')']) {
                 call += lines.next().map_or(";", str::trim);
             }
-            let listed = call.trim_start_matches("(\"").trim_end_matches("\");");
-            out += &format!(
-                "{indent}{start}{};\n",
-                listed.replace('|', &format!("\n{indent}    "))
-            );
+            let end = if call.ends_with(';') { ";" } else { "" };
+            let listed = call.trim_start_matches("(\"").trim_end_matches(';');
+            let listed = listed
+                .trim_end_matches("\")")
+                .replace('|', &format!("\n{indent}    "));
+            out += &format!("{indent}{start}{listed}{end}\n");
         } else {
             if starts_item(indent, code, previous) {
                 out.push('\n');

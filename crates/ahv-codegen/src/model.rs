@@ -67,6 +67,13 @@ struct FunctionText {
     outputs: Vec<(String, String)>,
 }
 
+impl FunctionText {
+    /// Whether a blank line sets the result off from what it is made of.
+    fn sets_result_off(&self) -> bool {
+        matches!(self.statements.last(), Some(Statement::Let { .. }))
+    }
+}
+
 /// Emits one model.
 pub(crate) struct ModelEmitter<'a> {
     model: &'a ir::Model,
@@ -333,7 +340,7 @@ fn return_last(statements: &mut Vec<Statement>, result: &mut String) {
     if let Some(Statement::Let { name, value, .. }) = statements.last()
         && name == result
     {
-        *result = value.text();
+        *result = value.source();
         statements.pop();
     }
 }

@@ -3,6 +3,7 @@
 //! COM: control-oriented model, rigid body, eq. (1)-(3).
 
 mod drift;
+mod evaluations;
 mod jacobians;
 mod nominal;
 mod parameters;
@@ -10,6 +11,7 @@ mod prepared;
 mod provenance;
 
 pub use drift::*;
+pub use evaluations::*;
 pub use jacobians::*;
 pub use nominal::{NOMINAL, VALIDITY};
 pub use parameters::{Parameters, Validity};

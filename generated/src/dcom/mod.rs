@@ -3,6 +3,7 @@
 //! DCOM: decoupled control-oriented model, eq. (1)-(4).
 
 mod drift;
+mod evaluations;
 mod jacobians;
 mod nominal;
 mod parameters;
@@ -10,6 +11,7 @@ mod prepared;
 mod provenance;
 
 pub use drift::*;
+pub use evaluations::*;
 pub use jacobians::*;
 pub use nominal::{NOMINAL, VALIDITY};
 pub use parameters::{Parameters, Validity};

@@ -4,12 +4,14 @@
 
 mod diffusion;
 mod drift;
+mod evaluations;
 mod jacobians;
 mod prepared;
 mod strict_feedback;
 
 pub use diffusion::*;
 pub use drift::*;
+pub use evaluations::*;
 pub use jacobians::*;
 pub use strict_feedback::*;
 pub use crate::dcom::{NOMINAL, PROVENANCE, Parameters, VALIDITY, Validity};

@@ -78,7 +78,8 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_d_0;
 
     reference_force * p.inv_m * (cos_alpha * c_t_of_f_velocity - c_d_of_f_velocity)
-        - p.g * sin_gamma + f_velocity_eta
+        - p.g * sin_gamma
+        + f_velocity_eta
 }
 
 /// Coefficient of phi (1) in the velocity rate, eq. (28). Unit: ft/s^2.
@@ -108,7 +109,6 @@ pub fn g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
 
     // Strict-feedback form, (28)
-
     cos_alpha * d_thrust_d_phi * p.inv_m
 }
 
@@ -380,7 +380,8 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_0;
 
     inverse_momentum * reference_force * (sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
-        - p.g * inv_velocity * cos_gamma + f_gamma_eta
+        - p.g * inv_velocity * cos_gamma
+        + f_gamma_eta
 }
 
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
@@ -690,8 +691,8 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_0;
 
     p.g * inv_velocity * cos_gamma
-        - inverse_momentum * reference_force
-            * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha) + f_alpha_eta
+        - inverse_momentum * reference_force * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha)
+        + f_alpha_eta
 }
 
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
@@ -993,7 +994,6 @@ pub fn g_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Strict-feedback form, (34)
-
     p.c_bar_c_m_of_g_pitch_rate_over_i_yy * reference_force
 }
 

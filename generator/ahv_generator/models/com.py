@@ -6,6 +6,7 @@ from ..model import Model
 from ..schema import DELTA_E, PHI, RIGID_STATE
 from ..table import Table
 from .vehicle import (
+    add_rigid_evaluations,
     define_air,
     define_angles,
     define_force,
@@ -44,4 +45,5 @@ def build_com(table: Table) -> Model:
         m.parameter("z_t") * fit["T"] + force * m.parameter("c_bar") * fit["C_M"],
     )
     m.add_drift_and_jacobians(define_rigid_rates(m), "(1)")
+    add_rigid_evaluations(m)
     return m

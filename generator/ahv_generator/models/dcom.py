@@ -10,6 +10,8 @@ from ..model import Model
 from ..schema import DELTA_C, DELTA_E, FLEXIBLE, PHI, RIGID_STATE, VariableSpec
 from ..table import Table
 from .vehicle import (
+    add_flexible_evaluations,
+    add_rigid_evaluations,
     define_air,
     define_angles,
     define_force,
@@ -126,6 +128,8 @@ def build_dcom(table: Table) -> Model:
         rates[f"eta_{i}"] = m[f"eta_dot_{i}"]
         rates[f"eta_dot_{i}"] = _define_modal_acceleration(m, i, force)
     m.add_drift_and_jacobians(rates, "(1)")
+    add_rigid_evaluations(m)
+    add_flexible_evaluations(m, "c_n", "generalized_force")
     return m
 
 

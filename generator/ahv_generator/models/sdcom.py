@@ -17,7 +17,14 @@ from .dcom import (
     define_generalized_forces,
 )
 from .feedback import StrictFeedback
-from .vehicle import define_air, define_angles, define_inverse_momentum, define_rigid_rates
+from .vehicle import (
+    add_flexible_evaluations,
+    add_rigid_evaluations,
+    define_air,
+    define_angles,
+    define_inverse_momentum,
+    define_rigid_rates,
+)
 
 RIGID_INCREMENTS = (
     VariableSpec("w_gamma", r"w_\gamma", "s^0.5", "Wiener increment that perturbs the flight-path angle"),
@@ -54,6 +61,8 @@ def build_sdcom(table: Table) -> Model:
     for i in modes:
         rates[f"chi_{i}"] = _define_chi_rate(m, i)
     m.add_drift_and_jacobians(rates, "(27)")
+    add_rigid_evaluations(m)
+    add_flexible_evaluations(m, "c_n", "generalized_force", "eta_static", "eta")
     _add_diffusion(m, rates)
     StrictFeedback(m, variables, static, rates).add()
     return m

@@ -172,3 +172,16 @@ def define_rigid_rates(m: Model) -> dict[str, ca.SX]:
         section="Motion",
     )
     return rates
+
+
+def add_rigid_evaluations(m: Model) -> None:
+    """What every model offers by name: air, curve fits, forces and moment."""
+    thrust_fit = ("c_t",) if "c_t" in m.graph.quantities else ()
+    fits = ("c_l", "c_d", "c_m", *thrust_fit)
+    m.add_evaluations("density", "dynamic_pressure", *fits, "thrust", "lift", "drag", "pitching_moment")
+
+
+def add_flexible_evaluations(m: Model, *quantities: str) -> None:
+    """Quantities of each flexible mode by name, such as `generalized_force_1`."""
+    for i in range(1, m.table.schema.modes + 1):
+        m.add_evaluations(*(f"{quantity}_{i}" for quantity in quantities))

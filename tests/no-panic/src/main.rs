@@ -37,7 +37,9 @@ fn every_model<R: Real>() {
     com_functions::<R>();
     dcom_functions::<R>();
     sdcom_functions::<R>();
-    strict_feedback::<R>();
+    com_evaluations::<R>();
+    dcom_evaluations::<R>();
+    sdcom_evaluations::<R>();
 }
 
 fn com_functions<R: Real>() {
@@ -76,36 +78,100 @@ fn sdcom_functions<R: Real>() {
     stochastic(&model);
 }
 
-fn strict_feedback<R: Real>() {
-    type Part<R, Y> = fn(&sdcom::State<R>, &sdcom::Input<R>, &sdcom::Prepared<R>) -> Y;
+/// Calls functions of state, input and prepared parameters.
+macro_rules! call {
+    ($x:expr, $u:expr, $p:expr; $($function:path),+ $(,)?) => {
+        $(black_box($function($x, $u, $p));)+
+    };
+}
+
+fn com_evaluations<R: Real>() {
+    let (x, u) = (unknown(), unknown());
+    let p = com::prepare(&com::NOMINAL.map_into(R::from_f64));
+    call!(&x, &u, &p;
+        com::density,
+        com::dynamic_pressure,
+        com::c_l,
+        com::c_d,
+        com::c_m,
+        com::thrust,
+        com::lift,
+        com::drag,
+        com::pitching_moment,
+    );
+}
+
+fn dcom_evaluations<R: Real>() {
+    let (x, u) = (unknown(), unknown());
+    let p = dcom::prepare(&dcom::NOMINAL.map_into(R::from_f64));
+    call!(&x, &u, &p;
+        dcom::density,
+        dcom::dynamic_pressure,
+        dcom::c_l,
+        dcom::c_d,
+        dcom::c_m,
+        dcom::c_t,
+        dcom::thrust,
+        dcom::lift,
+        dcom::drag,
+        dcom::pitching_moment,
+        dcom::c_n_1,
+        dcom::c_n_2,
+        dcom::c_n_3,
+        dcom::generalized_force_1,
+        dcom::generalized_force_2,
+        dcom::generalized_force_3,
+    );
+}
+
+fn sdcom_evaluations<R: Real>() {
     let (x, u) = (unknown(), unknown());
     let p = sdcom::prepare(&sdcom::NOMINAL.map_into(R::from_f64));
-    let scalars: [Part<R, R>; 17] = [
+    call!(&x, &u, &p;
+        sdcom::density,
+        sdcom::dynamic_pressure,
+        sdcom::c_l,
+        sdcom::c_d,
+        sdcom::c_m,
+        sdcom::c_t,
+        sdcom::thrust,
+        sdcom::lift,
+        sdcom::drag,
+        sdcom::pitching_moment,
+        sdcom::c_n_1,
+        sdcom::c_n_2,
+        sdcom::c_n_3,
+        sdcom::generalized_force_1,
+        sdcom::generalized_force_2,
+        sdcom::generalized_force_3,
+        sdcom::eta_static_1,
+        sdcom::eta_static_2,
+        sdcom::eta_static_3,
+        sdcom::eta_1,
+        sdcom::eta_2,
+        sdcom::eta_3,
         sdcom::f_V,
         sdcom::g_V,
+        sdcom::h_V,
         sdcom::H_V,
         sdcom::f_V_eta,
         sdcom::f_gamma,
         sdcom::g_gamma,
+        sdcom::h_gamma,
         sdcom::H_gamma,
         sdcom::f_gamma_eta,
         sdcom::f_alpha,
         sdcom::g_alpha,
+        sdcom::h_alpha,
         sdcom::H_alpha,
         sdcom::f_alpha_eta,
         sdcom::f_Q,
         sdcom::g_Q,
+        sdcom::h_Q,
         sdcom::H_Q,
         sdcom::f_Q_eta,
         sdcom::g_Q_total,
-    ];
-    for part in black_box(scalars) {
-        black_box(part(&x, &u, &p));
-    }
-    let rows: [Part<R, [R; 3]>; 4] = [sdcom::h_V, sdcom::h_gamma, sdcom::h_alpha, sdcom::h_Q];
-    for part in black_box(rows) {
-        black_box(part(&x, &u, &p));
-    }
+    );
 }
 
 fn differentiable<M, X, U>(model: &M, states: &X, inputs: &U)
