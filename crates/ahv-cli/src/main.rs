@@ -3,6 +3,7 @@
 
 mod assignment;
 mod failure;
+#[cfg(feature = "generate")]
 mod generate;
 mod simulate;
 
@@ -20,12 +21,14 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    #[cfg(feature = "generate")]
     Generate(generate::Arguments),
     Simulate(simulate::Arguments),
 }
 
 fn main() -> ExitCode {
     match Cli::parse().command {
+        #[cfg(feature = "generate")]
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Simulate(arguments) => match simulate::run(&arguments) {
             Ok(()) => ExitCode::SUCCESS,
