@@ -55,7 +55,9 @@ ENVIRONMENT = (
     ParameterSpec("rho_0", r"\rho_0", "slug/ft^3", "air density at the reference altitude", positive=True),
     ParameterSpec("h_0", "h_0", "ft", "reference altitude of the air density"),
     ParameterSpec("h_s", "h_s", "ft", "scale height of the air density", positive=True),
-    ParameterSpec("g", "g", "ft/s^2", "acceleration of gravity", positive=True),
+    ParameterSpec("g", "g", "ft/s^2", "acceleration of gravity at sea level", positive=True),
+    ParameterSpec("R_E", "R_E", "ft", "radius of the Earth", positive=True),
+    ParameterSpec("spherical_earth", "s_E", "1", "share of the Earth's curvature in the motion: 1 spherical, 0 flat"),
 )
 RIGID_NOISE = (
     ParameterSpec("w_gamma", r"\sigma_{w_\gamma}", "rad*s^0.5", "intensity of the white noise w_gamma", lowest=0.0),

@@ -175,10 +175,12 @@ def rigid_rows(coefficients: Mapping[str, Expr], rest: Mapping[str, Expr]) -> di
 
 
 def own_rows() -> dict[str, Expr]:
-    """Return the part of (1) without aerodynamics: gravity and kinematics."""
+    """Return the part of (1) without aerodynamics: gravity and kinematics, on the Earth that is chosen."""
     velocity, gamma = symbol("state", "velocity"), symbol("state", "gamma")
-    gravity = symbol("parameter", "g")
-    turn = gravity * sympy.cos(gamma) / velocity
+    curvature = symbol("parameter", "spherical_earth") / symbol("parameter", "r_e")
+    stretch = 1 + curvature * symbol("state", "altitude")
+    gravity = symbol("parameter", "g") / stretch**2
+    turn = gravity * sympy.cos(gamma) / velocity - curvature * velocity * sympy.cos(gamma) / stretch
     return {
         "velocity": -gravity * sympy.sin(gamma),
         "altitude": velocity * sympy.sin(gamma),

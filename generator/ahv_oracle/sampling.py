@@ -23,6 +23,7 @@ RANGES = {
     "h_0": (7e4, 1e5),
     "h_s": (1.5e4, 3e4),
     "g": (30.0, 34.0),
+    "r_e": (2.0e7, 2.2e7),
     "omega": (5.0, 150.0),
     "zeta": (0.01, 1.5),
     "sigma": (1.0, 100.0),
@@ -31,6 +32,9 @@ RANGES = {
     "w_q": (1e-4, 1e-2),
 }
 """Ranges of the parameters that are not coefficients; ``omega`` is for ``omega_1`` and so on."""
+
+SWITCHES = ("canard_slaving", "spherical_earth")
+"""Parameters that are 0, 1 or in between, a third of the points each."""
 
 COEFFICIENT_MAGNITUDE = (1e-3, 1e1)
 """Coefficients have random sign and a log-uniform magnitude in this range."""
@@ -53,7 +57,7 @@ def sample(model: Model, seed: int, index: int) -> Point:
 def _number(model: Model, name: str, key: tuple[int, int]) -> float:
     kind, _, short = name.partition(".")
     if kind == "parameter" and short not in model.table.coefficients:
-        return _canard_slaving(name, key) if short == "canard_slaving" else _parameter(name, short, key)
+        return _switch(name, key) if short in SWITCHES else _parameter(name, short, key)
     zero = name not in _NEVER_ZERO and _uniform(name, key, "zero") < ZERO_PROBABILITY
     if kind == "parameter":
         return 0.0 if zero else _coefficient(name, key)
@@ -80,7 +84,7 @@ def _parameter(name: str, short: str, key: tuple[int, int]) -> float:
     return _between(limits, _uniform(name, key, "value"))
 
 
-def _canard_slaving(name: str, key: tuple[int, int]) -> float:
+def _switch(name: str, key: tuple[int, int]) -> float:
     choice = _uniform(name, key, "choice")
     if choice < 1.0 / 3.0:
         return 0.0

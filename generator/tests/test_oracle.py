@@ -81,6 +81,13 @@ def test_com_trims_where_science_says(oracles: dict[str, Oracle]) -> None:
     assert min(real) == pytest.approx(-1.764, abs=5.1e-4)
 
 
+def test_com_trims_where_science_says_on_the_spherical_earth(oracles: dict[str, Oracle]) -> None:
+    point = trim(oracles["com"], level_flight(oracles["com"], spherical_earth=1.0))
+    assert shown(point, "state.alpha") == pytest.approx(1.4056, abs=5.1e-5)
+    assert float(point["input.phi"]) == pytest.approx(0.2505, abs=5.1e-5)
+    assert shown(point, "input.delta_e") == pytest.approx(11.984, abs=5.1e-4)
+
+
 SLAVING = {0.0: (1.5018, 0.2821, 13.1006), 1.0: (3.6558, 0.2957, 7.1364)}
 
 
@@ -251,8 +258,8 @@ def test_k_bounds_the_value(oracles: dict[str, Oracle], model: str) -> None:
 
 def test_k_is_the_sum_of_absolute_summands(oracles: dict[str, Oracle]) -> None:
     oracle = oracles["com"]
-    p = {k.partition(".")[2]: abs(x) for k, x in sample(oracle.model, 8, 0).items()}
-    point = sample(oracle.model, 8, 0)
+    point = sample(oracle.model, 8, 0) | {"parameter.spherical_earth": 0.0}
+    p = {k.partition(".")[2]: abs(x) for k, x in point.items()}
     sine = abs(mpmath.sin(point["state.gamma"]))
     assert float(oracle.evaluate(point)["drift.altitude"][1]) == pytest.approx(float(p["velocity"] * sine))
     density = p["rho_0"] * mpmath.exp((point["parameter.h_0"] - point["state.altitude"]) / point["parameter.h_s"])

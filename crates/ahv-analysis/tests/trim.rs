@@ -43,6 +43,24 @@ fn with_a_slaved_canard_the_trim_is_the_recomputed_one() {
     assert_abs_diff_eq!(trim.input.delta_e.to_degrees(), 7.1364, epsilon = 6e-5);
 }
 
+#[test]
+fn the_rigid_body_trims_where_it_was_recomputed_on_both_earths() {
+    for (spherical_earth, alpha, phi, delta_e) in [
+        (0.0, 1.64457, 0.26809, 12.53998),
+        (1.0, 1.4056, 0.2505, 11.984),
+    ] {
+        let model = com::Model::new(&com::Parameters {
+            spherical_earth,
+            ..com::NOMINAL
+        });
+        let trim = trim(&model, &LevelFlight::new(VELOCITY, ALTITUDE)).expect("the COM trims");
+        // To the digits given.
+        assert_abs_diff_eq!(trim.state.alpha.to_degrees(), alpha, epsilon = 6e-5);
+        assert_abs_diff_eq!(trim.input.phi, phi, epsilon = 6e-5);
+        assert_abs_diff_eq!(trim.input.delta_e.to_degrees(), delta_e, epsilon = 6e-4);
+    }
+}
+
 /// At rest η is N/ω², which is what the reduction puts in its place: both models share their trims.
 #[test]
 fn the_stochastic_model_trims_where_the_deterministic_one_does() {

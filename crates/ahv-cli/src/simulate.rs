@@ -54,8 +54,13 @@ pub(crate) struct Arguments {
     initial: Vec<String>,
 
     /// Canard: slaved to the elevator (delta_c is then an offset), free (delta_c is an input) or none
-    #[arg(long, default_value = "none")]
-    canard: Canard,
+    /// [default: as the table has it]
+    #[arg(long)]
+    canard: Option<Canard>,
+
+    /// Earth: flat, or spherical with gravity that falls with altitude [default: as the table has it]
+    #[arg(long)]
+    earth: Option<Earth>,
 
     /// CSV file to write; it is replaced when the run has succeeded, and else left as it was
     #[arg(long, value_name = "FILE")]
@@ -79,6 +84,34 @@ enum Canard {
     None,
 }
 
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Earth {
+    Flat,
+    Spherical,
+}
+
+impl Arguments {
+    /// The table's parameters with what the command line chooses.
+    fn parameters(&self) -> dcom::Parameters<f64> {
+        let mut parameters = dcom::NOMINAL;
+        if let Some(canard) = self.canard {
+            parameters.canard_slaving = f64::from(u8::from(canard == Canard::Slaved));
+        }
+        if let Some(earth) = self.earth {
+            parameters.spherical_earth = f64::from(u8::from(earth == Earth::Spherical));
+        }
+        parameters
+    }
+
+    /// Whether there is a canard for delta_c to move.
+    fn has_canard(&self) -> bool {
+        match self.canard {
+            Some(canard) => canard != Canard::None,
+            None => dcom::NOMINAL.canard_slaving != 0.0,
+        }
+    }
+}
+
 /// Runs the command.
 ///
 /// # Errors
@@ -87,15 +120,7 @@ enum Canard {
 /// trim or the simulation fails. The output file is then as it was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let grid = Grid::new(arguments.t_end, arguments.dt)?;
-    let canard_slaving = if arguments.canard == Canard::Slaved {
-        1.0
-    } else {
-        0.0
-    };
-    let parameters = dcom::Parameters {
-        canard_slaving,
-        ..dcom::NOMINAL
-    };
+    let parameters = arguments.parameters();
     match arguments.model {
         ModelName::Dcom => {
             let model = dcom::Model::new(&parameters);

@@ -7,7 +7,7 @@ use ahv_core::Real;
 
 /// Time derivative of the state, eq. (1).
 ///
-/// 67 operations: 23 additions, 40 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 75 operations: 25 additions, 45 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
@@ -20,6 +20,12 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
+    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
 
     // Motion, (1)
     let inv_velocity = x.velocity.recip();
@@ -59,9 +65,10 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
     let normal_force = lift + thrust * sin_alpha; // lb/ft
-    let velocity_rate = path_force * p.inv_m - p.g * sin_gamma; // ft/s^2
+    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = normal_force * inverse_momentum - p.g * inv_velocity * cos_gamma; // rad/s
+    let gamma_rate = normal_force * inverse_momentum
+        - apparent_gravity * inv_velocity * cos_gamma; // rad/s
     let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 

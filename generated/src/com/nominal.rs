@@ -16,6 +16,8 @@ pub const NOMINAL: Parameters<f64> = Parameters {
     h_0: 85000.0,
     h_s: 21358.0,
     g: 32.17405,
+    r_e: 20902231.0,
+    spherical_earth: 0.0,
     t_phi_alpha_3: -376930.0,
     t_phi_alpha_2: 26814.0,
     t_phi_alpha: 35542.0,

@@ -24,8 +24,12 @@ pub struct Parameters<T> {
     pub h_0: T,
     /// Scale height of the air density, ft.
     pub h_s: T,
-    /// Acceleration of gravity, ft/s^2.
+    /// Acceleration of gravity at sea level, ft/s^2.
     pub g: T,
+    /// Radius of the Earth, ft.
+    pub r_e: T,
+    /// Share of the Earth's curvature in the motion: 1 spherical, 0 flat, dimensionless.
+    pub spherical_earth: T,
     /// Coefficient of phi*alpha^3 in T, lb/ft/rad^3.
     pub t_phi_alpha_3: T,
     /// Coefficient of phi*alpha^2 in T, lb/ft/rad^2.
@@ -70,7 +74,7 @@ pub struct Parameters<T> {
 
 impl<T> Parameters<T> {
     /// Names of the parameters.
-    pub const NAMES: [&'static str; 29] = [
+    pub const NAMES: [&'static str; 31] = [
         "m",
         "i_yy",
         "s",
@@ -80,6 +84,8 @@ impl<T> Parameters<T> {
         "h_0",
         "h_s",
         "g",
+        "r_e",
+        "spherical_earth",
         "t_phi_alpha_3",
         "t_phi_alpha_2",
         "t_phi_alpha",
@@ -103,7 +109,7 @@ impl<T> Parameters<T> {
     ];
 
     /// Units of the parameters.
-    pub const UNITS: [&'static str; 29] = [
+    pub const UNITS: [&'static str; 31] = [
         "slug/ft",
         "slug*ft",
         "ft",
@@ -113,6 +119,8 @@ impl<T> Parameters<T> {
         "ft",
         "ft",
         "ft/s^2",
+        "ft",
+        "1",
         "lb/ft/rad^3",
         "lb/ft/rad^2",
         "lb/ft/rad",
@@ -137,7 +145,7 @@ impl<T> Parameters<T> {
 
     /// The parameters in the order of the table.
     #[inline]
-    pub fn to_array(self) -> [T; 29] {
+    pub fn to_array(self) -> [T; 31] {
         [
             self.m,
             self.i_yy,
@@ -148,6 +156,8 @@ impl<T> Parameters<T> {
             self.h_0,
             self.h_s,
             self.g,
+            self.r_e,
+            self.spherical_earth,
             self.t_phi_alpha_3,
             self.t_phi_alpha_2,
             self.t_phi_alpha,
@@ -173,11 +183,11 @@ impl<T> Parameters<T> {
 
     /// The parameters from an array in the order of the table.
     #[inline]
-    pub fn from_array(values: [T; 29]) -> Self {
-        let [m, i_yy, s, c_bar, z_t, rho_0, h_0, h_s, g, t_phi_alpha_3, t_phi_alpha_2,
-        t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha, t_0, c_l_alpha, c_l_delta_e,
-        c_l_0, c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_0, c_m_alpha_2,
-        c_m_alpha, c_m_delta_e, c_m_0] = values;
+    pub fn from_array(values: [T; 31]) -> Self {
+        let [m, i_yy, s, c_bar, z_t, rho_0, h_0, h_s, g, r_e, spherical_earth,
+        t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha,
+        t_0, c_l_alpha, c_l_delta_e, c_l_0, c_d_alpha_2, c_d_alpha, c_d_delta_e_2,
+        c_d_delta_e, c_d_0, c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_0] = values;
         Self {
             m,
             i_yy,
@@ -188,6 +198,8 @@ impl<T> Parameters<T> {
             h_0,
             h_s,
             g,
+            r_e,
+            spherical_earth,
             t_phi_alpha_3,
             t_phi_alpha_2,
             t_phi_alpha,
@@ -212,7 +224,7 @@ impl<T> Parameters<T> {
     }
 }
 
-ahv_core::impl_vector!(Parameters, 29);
+ahv_core::impl_vector!(Parameters, 31);
 
 /// The box in which the curve fits are meant to be used.
 #[derive(Clone, Copy, Debug, PartialEq)]

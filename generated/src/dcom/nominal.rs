@@ -17,6 +17,8 @@ pub const NOMINAL: Parameters<f64> = Parameters {
     h_0: 85000.0,
     h_s: 21358.0,
     g: 32.17405,
+    r_e: 20902231.0,
+    spherical_earth: 0.0,
     omega_1: 19.7437,
     omega_2: 47.7851,
     omega_3: 94.8203,

@@ -26,8 +26,12 @@ pub struct Parameters<T> {
     pub h_0: T,
     /// Scale height of the air density, ft.
     pub h_s: T,
-    /// Acceleration of gravity, ft/s^2.
+    /// Acceleration of gravity at sea level, ft/s^2.
     pub g: T,
+    /// Radius of the Earth, ft.
+    pub r_e: T,
+    /// Share of the Earth's curvature in the motion: 1 spherical, 0 flat, dimensionless.
+    pub spherical_earth: T,
     /// Natural frequency of mode 1, rad/s.
     pub omega_1: T,
     /// Natural frequency of mode 2, rad/s.
@@ -158,7 +162,7 @@ pub struct Parameters<T> {
 
 impl<T> Parameters<T> {
     /// Names of the parameters.
-    pub const NAMES: [&'static str; 73] = [
+    pub const NAMES: [&'static str; 75] = [
         "m",
         "i_yy",
         "s",
@@ -169,6 +173,8 @@ impl<T> Parameters<T> {
         "h_0",
         "h_s",
         "g",
+        "r_e",
+        "spherical_earth",
         "omega_1",
         "omega_2",
         "omega_3",
@@ -235,7 +241,7 @@ impl<T> Parameters<T> {
     ];
 
     /// Units of the parameters.
-    pub const UNITS: [&'static str; 73] = [
+    pub const UNITS: [&'static str; 75] = [
         "slug/ft",
         "slug*ft",
         "ft",
@@ -246,6 +252,8 @@ impl<T> Parameters<T> {
         "ft",
         "ft",
         "ft/s^2",
+        "ft",
+        "1",
         "rad/s",
         "rad/s",
         "rad/s",
@@ -313,7 +321,7 @@ impl<T> Parameters<T> {
 
     /// The parameters in the order of the table.
     #[inline]
-    pub fn to_array(self) -> [T; 73] {
+    pub fn to_array(self) -> [T; 75] {
         [
             self.m,
             self.i_yy,
@@ -325,6 +333,8 @@ impl<T> Parameters<T> {
             self.h_0,
             self.h_s,
             self.g,
+            self.r_e,
+            self.spherical_earth,
             self.omega_1,
             self.omega_2,
             self.omega_3,
@@ -393,18 +403,18 @@ impl<T> Parameters<T> {
 
     /// The parameters from an array in the order of the table.
     #[inline]
-    pub fn from_array(values: [T; 73]) -> Self {
-        let [m, i_yy, s, c_bar, z_t, canard_slaving, rho_0, h_0, h_s, g, omega_1,
-        omega_2, omega_3, zeta_1, zeta_2, zeta_3, sigma_1, sigma_2, sigma_3, w_gamma,
-        w_alpha, w_q, c_t_phi_alpha_3, c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi,
-        c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2, c_t_eta_3,
-        c_l_alpha, c_l_delta_e, c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2, c_l_eta_3,
-        c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_delta_c_2, c_d_delta_c,
-        c_d_0, c_d_eta_1, c_d_eta_2, c_d_eta_3, c_m_alpha_2, c_m_alpha, c_m_delta_e,
-        c_m_delta_c, c_m_0, c_m_eta_1, c_m_eta_2, c_m_eta_3, c_n_1_alpha_2, c_n_1_alpha,
-        c_n_1_delta_e, c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e,
-        c_n_2_delta_c, c_n_2_0, c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c,
-        c_n_3_0] = values;
+    pub fn from_array(values: [T; 75]) -> Self {
+        let [m, i_yy, s, c_bar, z_t, canard_slaving, rho_0, h_0, h_s, g, r_e,
+        spherical_earth, omega_1, omega_2, omega_3, zeta_1, zeta_2, zeta_3, sigma_1,
+        sigma_2, sigma_3, w_gamma, w_alpha, w_q, c_t_phi_alpha_3, c_t_phi_alpha_2,
+        c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0, c_t_eta_1,
+        c_t_eta_2, c_t_eta_3, c_l_alpha, c_l_delta_e, c_l_delta_c, c_l_0, c_l_eta_1,
+        c_l_eta_2, c_l_eta_3, c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e,
+        c_d_delta_c_2, c_d_delta_c, c_d_0, c_d_eta_1, c_d_eta_2, c_d_eta_3, c_m_alpha_2,
+        c_m_alpha, c_m_delta_e, c_m_delta_c, c_m_0, c_m_eta_1, c_m_eta_2, c_m_eta_3,
+        c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2,
+        c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0, c_n_3_alpha_2, c_n_3_alpha,
+        c_n_3_delta_e, c_n_3_delta_c, c_n_3_0] = values;
         Self {
             m,
             i_yy,
@@ -416,6 +426,8 @@ impl<T> Parameters<T> {
             h_0,
             h_s,
             g,
+            r_e,
+            spherical_earth,
             omega_1,
             omega_2,
             omega_3,
@@ -483,7 +495,7 @@ impl<T> Parameters<T> {
     }
 }
 
-ahv_core::impl_vector!(Parameters, 73);
+ahv_core::impl_vector!(Parameters, 75);
 
 /// The box in which the curve fits are meant to be used.
 #[derive(Clone, Copy, Debug, PartialEq)]

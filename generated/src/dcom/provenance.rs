@@ -17,6 +17,8 @@ pub const PROVENANCE: Parameters<Provenance> = Parameters {
     h_0: Provenance::new("parker2007", Status::Published, 0.0),
     h_s: Provenance::new("parker2007", Status::Published, 0.0),
     g: Provenance::new("standard-gravity", Status::Published, 0.0),
+    r_e: Provenance::new("mean-earth-radius", Status::Derived, 0.0),
+    spherical_earth: Provenance::new("assumed", Status::Assumed, 0.0),
     omega_1: Provenance::new("paper-36", Status::Published, 0.4),
     omega_2: Provenance::new("paper-36", Status::Published, 0.4),
     omega_3: Provenance::new("paper-36", Status::Published, 0.4),

@@ -8,7 +8,7 @@ use ahv_core::{Real, Vector};
 /// Diffusion G(x, u) in the Itô sense; the columns of w_gamma, w_alpha and w_q are derivatives of the drift at
 /// frozen inputs, eq. (27).
 ///
-/// 150 operations: 54 additions, 92 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 158 operations: 56 additions, 97 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
     // Air, (2)
@@ -21,6 +21,12 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
+    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
 
     // Motion, (1)
     let inv_velocity = x.velocity.recip();
@@ -79,10 +85,10 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
     let thrust = reference_force * c_t; // lb/ft
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
+    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -178,7 +184,7 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (27).
 ///
-/// 218 operations: 82 additions, 132 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 226 operations: 84 additions, 137 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift_and_diffusion<R: Real>(
     x: &State<R>,
@@ -196,6 +202,12 @@ pub fn drift_and_diffusion<R: Real>(
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
+    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
 
     // Motion, (1)
     let inv_velocity = x.velocity.recip();
@@ -287,9 +299,10 @@ pub fn drift_and_diffusion<R: Real>(
     let thrust_cos_alpha = thrust * cos_alpha;
     let path_force = thrust_cos_alpha - drag; // lb/ft
     let normal_force = lift + thrust * sin_alpha; // lb/ft
-    let velocity_rate = path_force * p.inv_m - p.g * sin_gamma; // ft/s^2
+    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = normal_force * inverse_momentum - p.g * inv_velocity * cos_gamma; // rad/s
+    let gamma_rate = normal_force * inverse_momentum
+        - apparent_gravity * inv_velocity * cos_gamma; // rad/s
     let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 
@@ -299,10 +312,10 @@ pub fn drift_and_diffusion<R: Real>(
     let chi_rate_3 = -p.chi_decay_3 * x.chi_3; // (ft*slug)^0.5/s
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
+    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -409,7 +422,7 @@ pub fn drift_and_diffusion<R: Real>(
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
 ///
-/// 162 operations: 58 additions, 100 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 170 operations: 60 additions, 105 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn noise_increment<R: Real>(
     x: &State<R>,
@@ -428,6 +441,12 @@ pub fn noise_increment<R: Real>(
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
+    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
 
     // Motion, (1)
     let inv_velocity = x.velocity.recip();
@@ -486,10 +505,10 @@ pub fn noise_increment<R: Real>(
     let thrust = reference_force * c_t; // lb/ft
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
+    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad

@@ -7,7 +7,7 @@ use ahv_core::{Real, Vector};
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
 ///
-/// 441 operations: 150 additions, 287 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 464 operations: 156 additions, 303 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn jacobians<R: Real>(
     x: &State<R>,
@@ -25,6 +25,12 @@ pub fn jacobians<R: Real>(
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
+    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
 
     // Motion, (1)
     let inv_velocity = x.velocity.recip();
@@ -134,6 +140,8 @@ pub fn jacobians<R: Real>(
         + reference_force * d_c_d_d_velocity; // lb*s/ft^2
     let d_path_force_d_velocity = cos_alpha * d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
+    let d_apparent_gravity_d_velocity = p.minus_two_earth_curvature * radius_ratio
+        * x.velocity; // 1/s
     let inverse_momentum_2 = inverse_momentum * inverse_momentum;
     let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
     let d_c_l_d_velocity = p.c_l_eta_1 * d_eta_static_1_d_velocity
@@ -143,7 +151,7 @@ pub fn jacobians<R: Real>(
         + reference_force * d_c_l_d_velocity; // lb*s/ft^2
     let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma * p.g * inv_velocity_2
+    let d_gamma_rate_d_velocity = cos_gamma * (apparent_gravity * inv_velocity_2 - inv_velocity * d_apparent_gravity_d_velocity)
         + normal_force * d_inverse_momentum_d_velocity
         + inverse_momentum * d_normal_force_d_velocity; // rad/ft
     let d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
@@ -155,6 +163,8 @@ pub fn jacobians<R: Real>(
     let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
 
     // Derivatives with respect to altitude
+    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
+    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
     let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
     let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
@@ -176,14 +186,18 @@ pub fn jacobians<R: Real>(
     let d_drag_d_altitude = c_d * d_reference_force_d_altitude
         + reference_force * d_c_d_d_altitude; // lb/ft^2
     let d_path_force_d_altitude = cos_alpha * d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
-    let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m; // 1/s^2
+    let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m
+        - sin_gamma * d_gravity_d_altitude; // 1/s^2
+    let d_apparent_gravity_d_altitude = d_gravity_d_altitude
+        - velocity_2 * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s^2
     let d_c_l_d_altitude = p.c_l_eta_1 * d_eta_static_1_d_altitude
         + p.c_l_eta_2 * d_eta_static_2_d_altitude
         + p.c_l_eta_3 * d_eta_static_3_d_altitude; // 1/ft
     let d_lift_d_altitude = c_l * d_reference_force_d_altitude
         + reference_force * d_c_l_d_altitude; // lb/ft^2
     let d_normal_force_d_altitude = sin_alpha * d_thrust_d_altitude + d_lift_d_altitude; // lb/ft^2
-    let d_gamma_rate_d_altitude = inverse_momentum * d_normal_force_d_altitude; // rad/s/ft
+    let d_gamma_rate_d_altitude = inverse_momentum * d_normal_force_d_altitude
+        - cos_gamma * inv_velocity * d_apparent_gravity_d_altitude; // rad/s/ft
     let d_c_m_d_altitude = p.c_m_eta_1 * d_eta_static_1_d_altitude
         + p.c_m_eta_2 * d_eta_static_2_d_altitude
         + p.c_m_eta_3 * d_eta_static_3_d_altitude; // 1/ft
@@ -193,10 +207,10 @@ pub fn jacobians<R: Real>(
     let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
+    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -456,7 +470,7 @@ pub fn jacobians<R: Real>(
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (27).
 ///
-/// 460 operations: 155 additions, 301 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 483 operations: 161 additions, 317 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift_and_jacobians<R: Real>(
     x: &State<R>,
@@ -474,6 +488,12 @@ pub fn drift_and_jacobians<R: Real>(
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
     let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
+    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
 
     // Motion, (1)
     let inv_velocity = x.velocity.recip();
@@ -565,9 +585,10 @@ pub fn drift_and_jacobians<R: Real>(
     let thrust_cos_alpha = thrust * cos_alpha;
     let path_force = thrust_cos_alpha - drag; // lb/ft
     let normal_force = lift + thrust * sin_alpha; // lb/ft
-    let velocity_rate = path_force * p.inv_m - p.g * sin_gamma; // ft/s^2
+    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = normal_force * inverse_momentum - p.g * inv_velocity * cos_gamma; // rad/s
+    let gamma_rate = normal_force * inverse_momentum
+        - apparent_gravity * inv_velocity * cos_gamma; // rad/s
     let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 
@@ -597,6 +618,8 @@ pub fn drift_and_jacobians<R: Real>(
         + reference_force * d_c_d_d_velocity; // lb*s/ft^2
     let d_path_force_d_velocity = cos_alpha * d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
+    let d_apparent_gravity_d_velocity = p.minus_two_earth_curvature * radius_ratio
+        * x.velocity; // 1/s
     let inverse_momentum_2 = inverse_momentum * inverse_momentum;
     let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
     let d_c_l_d_velocity = p.c_l_eta_1 * d_eta_static_1_d_velocity
@@ -606,7 +629,7 @@ pub fn drift_and_jacobians<R: Real>(
         + reference_force * d_c_l_d_velocity; // lb*s/ft^2
     let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma * p.g * inv_velocity_2
+    let d_gamma_rate_d_velocity = cos_gamma * (apparent_gravity * inv_velocity_2 - inv_velocity * d_apparent_gravity_d_velocity)
         + normal_force * d_inverse_momentum_d_velocity
         + inverse_momentum * d_normal_force_d_velocity; // rad/ft
     let d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
@@ -618,6 +641,8 @@ pub fn drift_and_jacobians<R: Real>(
     let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
 
     // Derivatives with respect to altitude
+    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
+    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
     let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
     let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
@@ -639,14 +664,18 @@ pub fn drift_and_jacobians<R: Real>(
     let d_drag_d_altitude = c_d * d_reference_force_d_altitude
         + reference_force * d_c_d_d_altitude; // lb/ft^2
     let d_path_force_d_altitude = cos_alpha * d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
-    let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m; // 1/s^2
+    let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m
+        - sin_gamma * d_gravity_d_altitude; // 1/s^2
+    let d_apparent_gravity_d_altitude = d_gravity_d_altitude
+        - velocity_2 * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s^2
     let d_c_l_d_altitude = p.c_l_eta_1 * d_eta_static_1_d_altitude
         + p.c_l_eta_2 * d_eta_static_2_d_altitude
         + p.c_l_eta_3 * d_eta_static_3_d_altitude; // 1/ft
     let d_lift_d_altitude = c_l * d_reference_force_d_altitude
         + reference_force * d_c_l_d_altitude; // lb/ft^2
     let d_normal_force_d_altitude = sin_alpha * d_thrust_d_altitude + d_lift_d_altitude; // lb/ft^2
-    let d_gamma_rate_d_altitude = inverse_momentum * d_normal_force_d_altitude; // rad/s/ft
+    let d_gamma_rate_d_altitude = inverse_momentum * d_normal_force_d_altitude
+        - cos_gamma * inv_velocity * d_apparent_gravity_d_altitude; // rad/s/ft
     let d_c_m_d_altitude = p.c_m_eta_1 * d_eta_static_1_d_altitude
         + p.c_m_eta_2 * d_eta_static_2_d_altitude
         + p.c_m_eta_3 * d_eta_static_3_d_altitude; // 1/ft
@@ -656,10 +685,10 @@ pub fn drift_and_jacobians<R: Real>(
     let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -p.g * cos_gamma; // ft/s^2/rad
+    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -p.g * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad

@@ -8,7 +8,7 @@ use ahv_core::Real;
 
 /// Part of the velocity rate that is left to f, eq. (28). Unit: ft/s^2.
 ///
-/// 85 operations: 31 additions, 51 multiplications, 2 sin_cos, 1 exp.
+/// 90 operations: 32 additions, 54 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline]
 pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -21,6 +21,11 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Angles, (1)
     let cos_alpha = x.alpha.cos();
     let sin_gamma = x.gamma.sin();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
 
     // Canard, (4)
     let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
@@ -78,7 +83,7 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_d_0;
 
     reference_force * p.inv_m * (cos_alpha * c_t_of_f_velocity - c_d_of_f_velocity)
-        - p.g * sin_gamma
+        - gravity * sin_gamma
         + f_velocity_eta
 }
 
@@ -310,7 +315,7 @@ pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Part of the gamma rate that is left to f, eq. (30). Unit: rad/s.
 ///
-/// 84 operations: 29 additions, 51 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 92 operations: 31 additions, 56 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -323,6 +328,12 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
     let cos_gamma = x.gamma.cos();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
+    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
 
     // Motion, (1)
     let inv_velocity = x.velocity.recip();
@@ -380,7 +391,7 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_0;
 
     inverse_momentum * reference_force * (sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
-        - p.g * inv_velocity * cos_gamma
+        - apparent_gravity * inv_velocity * cos_gamma
         + f_gamma_eta
 }
 
@@ -617,7 +628,7 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
 ///
-/// 91 operations: 32 additions, 55 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 99 operations: 34 additions, 60 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -630,6 +641,12 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
     let cos_gamma = x.gamma.cos();
+
+    // Gravity, (1)
+    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    let radius_ratio_2 = radius_ratio * radius_ratio;
+    let gravity = p.g * radius_ratio_2; // ft/s^2
+    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
 
     // Motion, (1)
     let inv_velocity = x.velocity.recip();
@@ -690,7 +707,7 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_delta_c * canard_deflection
         + p.c_l_0;
 
-    p.g * inv_velocity * cos_gamma
+    apparent_gravity * inv_velocity * cos_gamma
         - inverse_momentum * reference_force * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha)
         + f_alpha_eta
 }

@@ -10,6 +10,7 @@ from .vehicle import (
     define_air,
     define_angles,
     define_force,
+    define_gravity,
     define_inverse_momentum,
     define_polynomial,
     define_rigid_rates,
@@ -27,6 +28,7 @@ def build_com(table: Table) -> Model:
     )
     define_air(m)
     define_angles(m)
+    define_gravity(m)
     define_inverse_momentum(m)
     variables = {name: m[name] for name in ("phi", "alpha", "delta_e")}
     fit = {

@@ -15,6 +15,7 @@ from .vehicle import (
     define_air,
     define_angles,
     define_force,
+    define_gravity,
     define_inverse_momentum,
     define_polynomial,
     define_rigid_rates,
@@ -118,6 +119,7 @@ def build_dcom(table: Table) -> Model:
     )
     define_air(m)
     define_angles(m)
+    define_gravity(m)
     define_inverse_momentum(m)
     define_canard(m)
     variables = control_variables(m)

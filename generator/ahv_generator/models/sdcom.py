@@ -22,6 +22,7 @@ from .vehicle import (
     add_rigid_evaluations,
     define_air,
     define_angles,
+    define_gravity,
     define_inverse_momentum,
     define_rigid_rates,
 )
@@ -52,6 +53,7 @@ def build_sdcom(table: Table) -> Model:
     )
     define_air(m)
     define_angles(m)
+    define_gravity(m)
     define_inverse_momentum(m)
     define_canard(m)
     variables = control_variables(m)

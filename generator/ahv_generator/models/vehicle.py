@@ -52,6 +52,50 @@ def define_air(m: Model) -> None:
     )
 
 
+def define_gravity(m: Model) -> None:
+    """Gravity at altitude, and what flight along the Earth's curvature leaves of it across the path.
+
+    With `spherical_earth` = 0 both are g, bit for bit.
+    """
+    define = m.graph.define
+    curvature = define(
+        "earth_curvature",
+        m.parameter("spherical_earth") / m.parameter("r_e"),
+        symbol=r"\kappa",
+        unit="1/ft",
+        doc="curvature of the Earth, 0 where it is flat",
+        equation="(1)",
+        section="Gravity",
+    )
+    ratio = define(
+        "radius_ratio",
+        1 / (1 + curvature * m["altitude"]),
+        symbol="R_E/r",
+        unit="1",
+        doc="radius of the Earth over the distance to its centre",
+        equation="(1)",
+        section="Gravity",
+    )
+    gravity = define(
+        "gravity",
+        m.parameter("g") * ratio**2,
+        symbol="g(h)",
+        unit="ft/s^2",
+        doc="acceleration of gravity at altitude",
+        equation="(1)",
+        section="Gravity",
+    )
+    define(
+        "apparent_gravity",
+        gravity - curvature * ratio * m["velocity"] ** 2,
+        symbol="g(h)-V^2/r",
+        unit="ft/s^2",
+        doc="gravity less the centripetal acceleration of flight along the curvature",
+        equation="(1)",
+        section="Gravity",
+    )
+
+
 def define_inverse_momentum(m: Model) -> None:
     """1/(m V) of (1)."""
     m.graph.define(
@@ -130,11 +174,11 @@ def resultants(m: Model, thrust: ca.SX, lift: ca.SX, drag: ca.SX, moment: ca.SX)
 
 def rigid_rates(m: Model, acting: Resultants) -> dict[str, ca.SX]:
     """Right-hand sides of the rigid rows of (1), but for the angle of attack, by state."""
-    mass, g, velocity = m.parameter("m"), m.parameter("g"), m["velocity"]
+    mass, velocity = m.parameter("m"), m["velocity"]
     return {
-        "velocity": acting.path_force / mass - g * m["sin_gamma"],
+        "velocity": acting.path_force / mass - m["gravity"] * m["sin_gamma"],
         "altitude": velocity * m["sin_gamma"],
-        "gamma": acting.normal_force * m["inverse_momentum"] - g / velocity * m["cos_gamma"],
+        "gamma": acting.normal_force * m["inverse_momentum"] - m["apparent_gravity"] / velocity * m["cos_gamma"],
         "pitch_rate": acting.moment / m.parameter("i_yy"),
     }
 

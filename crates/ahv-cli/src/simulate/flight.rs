@@ -4,11 +4,11 @@ use ahv_analysis::trim::{LevelFlight, SOUGHT_INPUTS, trim};
 use ahv_core::{Bounds, DifferentiableModel, Vector, first_outside};
 use ahv_integrate::StepError;
 
+use super::Arguments;
 use super::grid::Grid;
 use super::progress::Progress;
 use super::report::{Departure, Report, describe};
 use super::table::Table;
-use super::{Arguments, Canard};
 use crate::assignment::Assignments;
 use crate::failure::Failure;
 
@@ -87,7 +87,7 @@ where
         let inputs = Assignments::parse::<M::Input>("--input", &arguments.input)?;
         let initial = Assignments::parse::<M::State>("--initial", &arguments.initial)?;
         let delta_c = inputs.get::<M::Input>("delta_c").unwrap_or(0.0);
-        if arguments.canard == Canard::None && delta_c != 0.0 {
+        if !arguments.has_canard() && delta_c != 0.0 {
             return Err(Failure::Request(
                 "--input: delta_c moves a canard, and there is none; add --canard free or --canard slaved"
                     .to_owned(),

@@ -89,6 +89,23 @@ fn the_canard_decides_the_trim() {
 }
 
 #[test]
+fn the_earth_decides_the_trim() {
+    let bench = Bench::new();
+    let alpha = |arguments: &[&str]| {
+        bench.succeed(&with(&DCOM, arguments));
+        bench.rows()[0][4].to_degrees()
+    };
+    let flat = alpha(&[]);
+    assert_eq!(alpha(&["--earth", "flat"]), flat);
+    // The curvature carries 9.6 % of the weight.
+    let spherical = alpha(&["--earth", "spherical"]);
+    assert!(
+        (1.2..1.3).contains(&spherical),
+        "{spherical} deg, flat {flat} deg"
+    );
+}
+
+#[test]
 fn inputs_and_initial_states_replace_those_of_the_trim() {
     let bench = Bench::new();
     let more = [
