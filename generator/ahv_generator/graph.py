@@ -91,7 +91,16 @@ class Graph:
 
 
 def _is_plain(expr: ca.SX) -> bool:
-    """Whether an expression needs no name of its own: a number, a name, or a name negated."""
+    """Whether a derivative needs no name of its own.
+
+    That is a number, a name, a name negated, or a quantity times a parameter; a derivative times a parameter is
+    used often enough to be named.
+    """
     if expr.is_constant() or expr.is_symbolic():
         return True
-    return bool(expr.op() == ca.OP_NEG and expr.dep(0).is_symbolic())
+    parts = [expr.dep(i) for i in range(expr.n_dep())]
+    if not all(part.is_symbolic() for part in parts):
+        return False
+    names = [part.name() for part in parts]
+    scaled = any(name.startswith("p.") for name in names) and not any(name.startswith("d_") for name in names)
+    return bool(expr.op() == ca.OP_NEG or (expr.op() == ca.OP_MUL and scaled))

@@ -48,8 +48,8 @@ impl Cost {
 
 /// A sum of this many addends is written one a line, so that a new one is one line of a diff.
 const LISTED: usize = 3;
-/// Longer addends are left to the formatter.
-const WIDEST: usize = 100;
+/// Longer addends are left to the formatter: with a name before it, one must stay on its line.
+const WIDEST: usize = 76;
 
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Binding {

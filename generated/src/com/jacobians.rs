@@ -7,7 +7,7 @@ use ahv_core::{Real, Vector};
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
-/// 151 operations: 39 additions, 107 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 150 operations: 39 additions, 106 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn jacobians<R: Real>(
     x: &State<R>,
@@ -79,7 +79,9 @@ pub fn jacobians<R: Real>(
     let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
     let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma * (apparent_gravity * inv_velocity_2 - inv_velocity * d_apparent_gravity_d_velocity)
+    let d_gamma_rate_d_velocity = cos_gamma
+        * (apparent_gravity * inv_velocity_2
+            - inv_velocity * d_apparent_gravity_d_velocity)
         + normal_force * d_inverse_momentum_d_velocity
         + inverse_momentum * d_lift_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = c_m * p.c_bar * d_reference_force_d_velocity; // lb*s/ft
@@ -124,10 +126,9 @@ pub fn jacobians<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_lift_d_alpha = reference_force * p.c_l_alpha; // lb/ft/rad
     let d_normal_force_d_alpha = thrust * cos_alpha
         + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
+        + reference_force * p.c_l_alpha; // lb/ft/rad
     let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.z_t * d_thrust_d_alpha
@@ -139,15 +140,13 @@ pub fn jacobians<R: Real>(
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
     let d_normal_force_d_phi = sin_alpha * thrust_phi; // lb/ft
     let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
-    let d_pitching_moment_d_phi = p.z_t * thrust_phi; // lb
-    let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
+    let d_pitch_acceleration_d_phi = p.z_t_over_i_yy * thrust_phi; // rad/s^2
 
     // Derivatives with respect to delta_e
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_lift_d_delta_e = reference_force * p.c_l_delta_e; // lb/ft/rad
-    let d_gamma_rate_d_delta_e = inverse_momentum * d_lift_d_delta_e; // 1/s
+    let d_gamma_rate_d_delta_e = inverse_momentum * reference_force * p.c_l_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = reference_force * p.c_bar_c_m_delta_e; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
@@ -213,7 +212,7 @@ pub fn jacobians<R: Real>(
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (1).
 ///
-/// 167 operations: 44 additions, 118 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 166 operations: 44 additions, 117 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift_and_jacobians<R: Real>(
     x: &State<R>,
@@ -295,7 +294,9 @@ pub fn drift_and_jacobians<R: Real>(
     let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
     let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma * (apparent_gravity * inv_velocity_2 - inv_velocity * d_apparent_gravity_d_velocity)
+    let d_gamma_rate_d_velocity = cos_gamma
+        * (apparent_gravity * inv_velocity_2
+            - inv_velocity * d_apparent_gravity_d_velocity)
         + normal_force * d_inverse_momentum_d_velocity
         + inverse_momentum * d_lift_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = c_m * p.c_bar * d_reference_force_d_velocity; // lb*s/ft
@@ -340,10 +341,9 @@ pub fn drift_and_jacobians<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_lift_d_alpha = reference_force * p.c_l_alpha; // lb/ft/rad
     let d_normal_force_d_alpha = thrust_cos_alpha
         + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
+        + reference_force * p.c_l_alpha; // lb/ft/rad
     let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.z_t * d_thrust_d_alpha
@@ -355,15 +355,13 @@ pub fn drift_and_jacobians<R: Real>(
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
     let d_normal_force_d_phi = sin_alpha * thrust_phi; // lb/ft
     let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
-    let d_pitching_moment_d_phi = p.z_t * thrust_phi; // lb
-    let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
+    let d_pitch_acceleration_d_phi = p.z_t_over_i_yy * thrust_phi; // rad/s^2
 
     // Derivatives with respect to delta_e
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_lift_d_delta_e = reference_force * p.c_l_delta_e; // lb/ft/rad
-    let d_gamma_rate_d_delta_e = inverse_momentum * d_lift_d_delta_e; // 1/s
+    let d_gamma_rate_d_delta_e = inverse_momentum * reference_force * p.c_l_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = reference_force * p.c_bar_c_m_delta_e; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 

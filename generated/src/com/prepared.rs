@@ -88,13 +88,15 @@ pub struct Prepared<R> {
     pub two_c_m_alpha_2: R,
     /// `2 * c_d_delta_e_2`.
     pub two_c_d_delta_e_2: R,
+    /// `z_t * inv_i_yy`.
+    pub z_t_over_i_yy: R,
     /// `c_bar * c_m_delta_e`.
     pub c_bar_c_m_delta_e: R,
 }
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 15 operations: 11 multiplications, 4 divisions.
+/// 16 operations: 12 multiplications, 4 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
@@ -144,6 +146,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         m: p.m,
         two_c_m_alpha_2: R::TWO * p.c_m_alpha_2,
         two_c_d_delta_e_2: R::TWO * p.c_d_delta_e_2,
+        z_t_over_i_yy: p.z_t * inv_i_yy,
         c_bar_c_m_delta_e: p.c_bar * p.c_m_delta_e,
     }
 }

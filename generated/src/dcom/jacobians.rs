@@ -7,7 +7,7 @@ use ahv_core::{Real, Vector};
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
-/// 297 operations: 88 additions, 204 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 288 operations: 85 additions, 198 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn jacobians<R: Real>(
     x: &State<R>,
@@ -120,7 +120,9 @@ pub fn jacobians<R: Real>(
     let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
     let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma * (apparent_gravity * inv_velocity_2 - inv_velocity * d_apparent_gravity_d_velocity)
+    let d_gamma_rate_d_velocity = cos_gamma
+        * (apparent_gravity * inv_velocity_2
+            - inv_velocity * d_apparent_gravity_d_velocity)
         + normal_force * d_inverse_momentum_d_velocity
         + inverse_momentum * d_normal_force_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar * c_m * d_reference_force_d_velocity
@@ -177,10 +179,9 @@ pub fn jacobians<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_lift_d_alpha = reference_force * p.c_l_alpha; // lb/ft/rad
     let d_normal_force_d_alpha = thrust * cos_alpha
         + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
+        + reference_force * p.c_l_alpha; // lb/ft/rad
     let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
@@ -194,39 +195,33 @@ pub fn jacobians<R: Real>(
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to eta_1
-    let d_thrust_d_eta_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
-    let d_drag_d_eta_1 = reference_force * p.c_d_eta_1; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_eta_1 = cos_alpha * d_thrust_d_eta_1 - d_drag_d_eta_1; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_eta_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_eta_1 = sin_alpha * d_thrust_d_eta_1 + d_lift_d_eta_1; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_1 = reference_force
+        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_eta_1 = inverse_momentum * d_normal_force_d_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_1 = p.c_bar_c_m_eta_1 * reference_force
-        + p.z_t * d_thrust_d_eta_1; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_1 = reference_force
+        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d_thrust_d_eta_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
-    let d_drag_d_eta_2 = reference_force * p.c_d_eta_2; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_eta_2 = cos_alpha * d_thrust_d_eta_2 - d_drag_d_eta_2; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_eta_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_eta_2 = sin_alpha * d_thrust_d_eta_2 + d_lift_d_eta_2; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_2 = reference_force
+        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_eta_2 = inverse_momentum * d_normal_force_d_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_2 = p.c_bar_c_m_eta_2 * reference_force
-        + p.z_t * d_thrust_d_eta_2; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_2 = reference_force
+        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d_thrust_d_eta_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
-    let d_drag_d_eta_3 = reference_force * p.c_d_eta_3; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_eta_3 = cos_alpha * d_thrust_d_eta_3 - d_drag_d_eta_3; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_eta_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_eta_3 = sin_alpha * d_thrust_d_eta_3 + d_lift_d_eta_3; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_3 = reference_force
+        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_eta_3 = inverse_momentum * d_normal_force_d_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_3 = p.c_bar_c_m_eta_3 * reference_force
-        + p.z_t * d_thrust_d_eta_3; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_3 = reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
@@ -256,13 +251,9 @@ pub fn jacobians<R: Real>(
     // Derivatives with respect to delta_c
     let d_drag_d_delta_c = reference_force * d_c_d_d_delta_c; // lb/ft/rad
     let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
-    let d_lift_d_delta_c = reference_force * p.c_l_delta_c; // lb/ft/rad
-    let d_gamma_rate_d_delta_c = inverse_momentum * d_lift_d_delta_c; // 1/s
+    let d_gamma_rate_d_delta_c = inverse_momentum * reference_force * p.c_l_delta_c; // 1/s
     let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c * reference_force; // lb/rad
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-    let d_generalized_force_1_d_delta_c = reference_force * p.c_n_1_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force * p.c_n_2_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force * p.c_n_3_delta_c; // ft^0.5*slug^0.5/s^2/rad
 
     // Result
     let no_state = State::splat(R::ZERO);
@@ -375,19 +366,19 @@ pub fn jacobians<R: Real>(
         eta_1: no_input,
         eta_dot_1: Input {
             delta_e: d_generalized_force_1_d_delta_e,
-            delta_c: d_generalized_force_1_d_delta_c,
+            delta_c: reference_force * p.c_n_1_delta_c,
             ..no_input
         },
         eta_2: no_input,
         eta_dot_2: Input {
             delta_e: d_generalized_force_2_d_delta_e,
-            delta_c: d_generalized_force_2_d_delta_c,
+            delta_c: reference_force * p.c_n_2_delta_c,
             ..no_input
         },
         eta_3: no_input,
         eta_dot_3: Input {
             delta_e: d_generalized_force_3_d_delta_e,
-            delta_c: d_generalized_force_3_d_delta_c,
+            delta_c: reference_force * p.c_n_3_delta_c,
             ..no_input
         },
     };
@@ -397,7 +388,7 @@ pub fn jacobians<R: Real>(
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (1).
 ///
-/// 328 operations: 99 additions, 224 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 319 operations: 96 additions, 218 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift_and_jacobians<R: Real>(
     x: &State<R>,
@@ -536,7 +527,9 @@ pub fn drift_and_jacobians<R: Real>(
     let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
     let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma * (apparent_gravity * inv_velocity_2 - inv_velocity * d_apparent_gravity_d_velocity)
+    let d_gamma_rate_d_velocity = cos_gamma
+        * (apparent_gravity * inv_velocity_2
+            - inv_velocity * d_apparent_gravity_d_velocity)
         + normal_force * d_inverse_momentum_d_velocity
         + inverse_momentum * d_normal_force_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar * c_m * d_reference_force_d_velocity
@@ -593,10 +586,9 @@ pub fn drift_and_jacobians<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_lift_d_alpha = reference_force * p.c_l_alpha; // lb/ft/rad
     let d_normal_force_d_alpha = thrust_cos_alpha
         + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
+        + reference_force * p.c_l_alpha; // lb/ft/rad
     let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
@@ -610,39 +602,33 @@ pub fn drift_and_jacobians<R: Real>(
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to eta_1
-    let d_thrust_d_eta_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
-    let d_drag_d_eta_1 = reference_force * p.c_d_eta_1; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_eta_1 = cos_alpha * d_thrust_d_eta_1 - d_drag_d_eta_1; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_eta_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_eta_1 = sin_alpha * d_thrust_d_eta_1 + d_lift_d_eta_1; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_1 = reference_force
+        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_eta_1 = inverse_momentum * d_normal_force_d_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_1 = p.c_bar_c_m_eta_1 * reference_force
-        + p.z_t * d_thrust_d_eta_1; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_1 = reference_force
+        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d_thrust_d_eta_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
-    let d_drag_d_eta_2 = reference_force * p.c_d_eta_2; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_eta_2 = cos_alpha * d_thrust_d_eta_2 - d_drag_d_eta_2; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_eta_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_eta_2 = sin_alpha * d_thrust_d_eta_2 + d_lift_d_eta_2; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_2 = reference_force
+        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_eta_2 = inverse_momentum * d_normal_force_d_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_2 = p.c_bar_c_m_eta_2 * reference_force
-        + p.z_t * d_thrust_d_eta_2; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_2 = reference_force
+        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d_thrust_d_eta_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
-    let d_drag_d_eta_3 = reference_force * p.c_d_eta_3; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_eta_3 = cos_alpha * d_thrust_d_eta_3 - d_drag_d_eta_3; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_eta_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_eta_3 = sin_alpha * d_thrust_d_eta_3 + d_lift_d_eta_3; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_eta_3 = reference_force
+        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_eta_3 = inverse_momentum * d_normal_force_d_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_3 = p.c_bar_c_m_eta_3 * reference_force
-        + p.z_t * d_thrust_d_eta_3; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_3 = reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
@@ -672,13 +658,9 @@ pub fn drift_and_jacobians<R: Real>(
     // Derivatives with respect to delta_c
     let d_drag_d_delta_c = reference_force * d_c_d_d_delta_c; // lb/ft/rad
     let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
-    let d_lift_d_delta_c = reference_force * p.c_l_delta_c; // lb/ft/rad
-    let d_gamma_rate_d_delta_c = inverse_momentum * d_lift_d_delta_c; // 1/s
+    let d_gamma_rate_d_delta_c = inverse_momentum * reference_force * p.c_l_delta_c; // 1/s
     let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c * reference_force; // lb/rad
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-    let d_generalized_force_1_d_delta_c = reference_force * p.c_n_1_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force * p.c_n_2_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force * p.c_n_3_delta_c; // ft^0.5*slug^0.5/s^2/rad
 
     // Result
     let no_state = State::splat(R::ZERO);
@@ -804,19 +786,19 @@ pub fn drift_and_jacobians<R: Real>(
         eta_1: no_input,
         eta_dot_1: Input {
             delta_e: d_generalized_force_1_d_delta_e,
-            delta_c: d_generalized_force_1_d_delta_c,
+            delta_c: reference_force * p.c_n_1_delta_c,
             ..no_input
         },
         eta_2: no_input,
         eta_dot_2: Input {
             delta_e: d_generalized_force_2_d_delta_e,
-            delta_c: d_generalized_force_2_d_delta_c,
+            delta_c: reference_force * p.c_n_2_delta_c,
             ..no_input
         },
         eta_3: no_input,
         eta_dot_3: Input {
             delta_e: d_generalized_force_3_d_delta_e,
-            delta_c: d_generalized_force_3_d_delta_c,
+            delta_c: reference_force * p.c_n_3_delta_c,
             ..no_input
         },
     };

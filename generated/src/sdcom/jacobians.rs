@@ -7,7 +7,7 @@ use ahv_core::{Real, Vector};
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
 ///
-/// 464 operations: 156 additions, 303 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 452 operations: 153 additions, 294 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn jacobians<R: Real>(
     x: &State<R>,
@@ -151,7 +151,9 @@ pub fn jacobians<R: Real>(
         + reference_force * d_c_l_d_velocity; // lb*s/ft^2
     let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma * (apparent_gravity * inv_velocity_2 - inv_velocity * d_apparent_gravity_d_velocity)
+    let d_gamma_rate_d_velocity = cos_gamma
+        * (apparent_gravity * inv_velocity_2
+            - inv_velocity * d_apparent_gravity_d_velocity)
         + normal_force * d_inverse_momentum_d_velocity
         + inverse_momentum * d_normal_force_d_velocity; // rad/ft
     let d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
@@ -263,39 +265,33 @@ pub fn jacobians<R: Real>(
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to chi_1
-    let d_thrust_d_chi_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_1 = reference_force * p.c_d_eta_1; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_1 = cos_alpha * d_thrust_d_chi_1 - d_drag_d_chi_1; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_chi_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_1 = sin_alpha * d_thrust_d_chi_1 + d_lift_d_chi_1; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_1 = reference_force
+        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_1 = p.c_bar_c_m_eta_1 * reference_force
-        + p.z_t * d_thrust_d_chi_1; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_1 = reference_force
+        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_thrust_d_chi_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_2 = reference_force * p.c_d_eta_2; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_2 = cos_alpha * d_thrust_d_chi_2 - d_drag_d_chi_2; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_chi_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_2 = sin_alpha * d_thrust_d_chi_2 + d_lift_d_chi_2; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_2 = reference_force
+        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_2 = p.c_bar_c_m_eta_2 * reference_force
-        + p.z_t * d_thrust_d_chi_2; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_2 = reference_force
+        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_thrust_d_chi_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_3 = reference_force * p.c_d_eta_3; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_3 = cos_alpha * d_thrust_d_chi_3 - d_drag_d_chi_3; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_chi_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_3 = sin_alpha * d_thrust_d_chi_3 + d_lift_d_chi_3; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_3 = reference_force
+        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_3 = p.c_bar_c_m_eta_3 * reference_force
-        + p.z_t * d_thrust_d_chi_3; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_3 = reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
@@ -344,12 +340,9 @@ pub fn jacobians<R: Real>(
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = reference_force * p.c_n_1_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_delta_c = d_generalized_force_1_d_delta_c * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_2_d_delta_c = reference_force * p.c_n_2_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_delta_c = d_generalized_force_2_d_delta_c * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_3_d_delta_c = reference_force * p.c_n_3_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_delta_c = d_generalized_force_3_d_delta_c * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_1_d_delta_c = reference_force * p.c_n_1_delta_c_inv_omega_1_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_2_d_delta_c = reference_force * p.c_n_2_delta_c_inv_omega_2_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_3_d_delta_c = reference_force * p.c_n_3_delta_c_inv_omega_3_2; // ft^0.5*slug^0.5/rad
     let d_c_t_d_delta_c = p.c_t_eta_1 * d_eta_static_1_d_delta_c
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
         + p.c_t_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
@@ -470,7 +463,7 @@ pub fn jacobians<R: Real>(
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (27).
 ///
-/// 483 operations: 161 additions, 317 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 471 operations: 158 additions, 308 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift_and_jacobians<R: Real>(
     x: &State<R>,
@@ -629,7 +622,9 @@ pub fn drift_and_jacobians<R: Real>(
         + reference_force * d_c_l_d_velocity; // lb*s/ft^2
     let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma * (apparent_gravity * inv_velocity_2 - inv_velocity * d_apparent_gravity_d_velocity)
+    let d_gamma_rate_d_velocity = cos_gamma
+        * (apparent_gravity * inv_velocity_2
+            - inv_velocity * d_apparent_gravity_d_velocity)
         + normal_force * d_inverse_momentum_d_velocity
         + inverse_momentum * d_normal_force_d_velocity; // rad/ft
     let d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
@@ -741,39 +736,33 @@ pub fn drift_and_jacobians<R: Real>(
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to chi_1
-    let d_thrust_d_chi_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_1 = reference_force * p.c_d_eta_1; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_1 = cos_alpha * d_thrust_d_chi_1 - d_drag_d_chi_1; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_chi_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_1 = sin_alpha * d_thrust_d_chi_1 + d_lift_d_chi_1; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_1 = reference_force
+        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_1 = p.c_bar_c_m_eta_1 * reference_force
-        + p.z_t * d_thrust_d_chi_1; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_1 = reference_force
+        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_thrust_d_chi_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_2 = reference_force * p.c_d_eta_2; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_2 = cos_alpha * d_thrust_d_chi_2 - d_drag_d_chi_2; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_chi_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_2 = sin_alpha * d_thrust_d_chi_2 + d_lift_d_chi_2; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_2 = reference_force
+        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_2 = p.c_bar_c_m_eta_2 * reference_force
-        + p.z_t * d_thrust_d_chi_2; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_2 = reference_force
+        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_thrust_d_chi_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_3 = reference_force * p.c_d_eta_3; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_3 = cos_alpha * d_thrust_d_chi_3 - d_drag_d_chi_3; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_lift_d_chi_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_3 = sin_alpha * d_thrust_d_chi_3 + d_lift_d_chi_3; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_3 = reference_force
+        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_3 = p.c_bar_c_m_eta_3 * reference_force
-        + p.z_t * d_thrust_d_chi_3; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_3 = reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
@@ -822,12 +811,9 @@ pub fn drift_and_jacobians<R: Real>(
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = reference_force * p.c_n_1_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_delta_c = d_generalized_force_1_d_delta_c * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_2_d_delta_c = reference_force * p.c_n_2_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_delta_c = d_generalized_force_2_d_delta_c * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_3_d_delta_c = reference_force * p.c_n_3_delta_c; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_delta_c = d_generalized_force_3_d_delta_c * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_1_d_delta_c = reference_force * p.c_n_1_delta_c_inv_omega_1_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_2_d_delta_c = reference_force * p.c_n_2_delta_c_inv_omega_2_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_3_d_delta_c = reference_force * p.c_n_3_delta_c_inv_omega_3_2; // ft^0.5*slug^0.5/rad
     let d_c_t_d_delta_c = p.c_t_eta_1 * d_eta_static_1_d_delta_c
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
         + p.c_t_eta_3 * d_eta_static_3_d_delta_c; // 1/rad

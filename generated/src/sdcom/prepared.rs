@@ -168,12 +168,12 @@ pub struct Prepared<R> {
     pub m: R,
     /// `2 * c_m_alpha_2`.
     pub two_c_m_alpha_2: R,
-    /// `c_bar * c_m_eta_1`.
-    pub c_bar_c_m_eta_1: R,
-    /// `c_bar * c_m_eta_2`.
-    pub c_bar_c_m_eta_2: R,
-    /// `c_bar * c_m_eta_3`.
-    pub c_bar_c_m_eta_3: R,
+    /// `c_bar * c_m_eta_1 + z_t * c_t_eta_1`.
+    pub c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: R,
+    /// `c_bar * c_m_eta_2 + z_t * c_t_eta_2`.
+    pub c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: R,
+    /// `c_bar * c_m_eta_3 + z_t * c_t_eta_3`.
+    pub c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: R,
     /// `-chi_decay_1`.
     pub minus_chi_decay_1: R,
     /// `-chi_decay_2`.
@@ -190,6 +190,12 @@ pub struct Prepared<R> {
     pub two_c_d_delta_e_2: R,
     /// `2 * c_d_delta_c_2`.
     pub two_c_d_delta_c_2: R,
+    /// `c_n_1_delta_c * inv_omega_1_2`.
+    pub c_n_1_delta_c_inv_omega_1_2: R,
+    /// `c_n_2_delta_c * inv_omega_2_2`.
+    pub c_n_2_delta_c_inv_omega_2_2: R,
+    /// `c_n_3_delta_c * inv_omega_3_2`.
+    pub c_n_3_delta_c_inv_omega_3_2: R,
     /// `c_l_delta_e + c_l_delta_c * canard_gain`.
     pub c_l_delta_e_plus_c_l_delta_c_canard_gain: R,
     /// Part of C_M that belongs to g of the pitch_rate row, 1/rad.
@@ -212,7 +218,7 @@ pub struct Prepared<R> {
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 51 operations: 5 additions, 38 multiplications, 8 divisions.
+/// 60 operations: 8 additions, 44 multiplications, 8 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
@@ -330,9 +336,9 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         minus_two_earth_curvature: R::from_f64(-2.0) * earth_curvature,
         m: p.m,
         two_c_m_alpha_2: R::TWO * p.c_m_alpha_2,
-        c_bar_c_m_eta_1: p.c_bar * p.c_m_eta_1,
-        c_bar_c_m_eta_2: p.c_bar * p.c_m_eta_2,
-        c_bar_c_m_eta_3: p.c_bar * p.c_m_eta_3,
+        c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: p.c_bar * p.c_m_eta_1 + p.z_t * p.c_t_eta_1,
+        c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: p.c_bar * p.c_m_eta_2 + p.z_t * p.c_t_eta_2,
+        c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: p.c_bar * p.c_m_eta_3 + p.z_t * p.c_t_eta_3,
         minus_chi_decay_1: -chi_decay_1,
         minus_chi_decay_2: -chi_decay_2,
         minus_chi_decay_3: -chi_decay_3,
@@ -341,6 +347,9 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         d_c_n_3_d_delta_e,
         two_c_d_delta_e_2: R::TWO * p.c_d_delta_e_2,
         two_c_d_delta_c_2: R::TWO * p.c_d_delta_c_2,
+        c_n_1_delta_c_inv_omega_1_2: p.c_n_1_delta_c * inv_omega_1_2,
+        c_n_2_delta_c_inv_omega_2_2: p.c_n_2_delta_c * inv_omega_2_2,
+        c_n_3_delta_c_inv_omega_3_2: p.c_n_3_delta_c * inv_omega_3_2,
         c_l_delta_e_plus_c_l_delta_c_canard_gain: p.c_l_delta_e
             + p.c_l_delta_c * canard_gain,
         c_m_of_g_pitch_rate,

@@ -83,8 +83,7 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_d_0;
 
     reference_force * p.inv_m * (cos_alpha * c_t_of_f_velocity - c_d_of_f_velocity)
-        - gravity * sin_gamma
-        + f_velocity_eta
+        - gravity * sin_gamma + f_velocity_eta
 }
 
 /// Coefficient of phi (1) in the velocity rate, eq. (28). Unit: ft/s^2.
@@ -119,7 +118,7 @@ pub fn g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Derivatives of the velocity rate with respect to the coloured noises chi, eq. (29).
 ///
-/// 24 operations: 4 additions, 18 multiplications, 1 sin_cos, 1 exp.
+/// 21 operations: 4 additions, 15 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
@@ -133,21 +132,15 @@ pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let cos_alpha = x.alpha.cos();
 
     // Derivatives with respect to chi_1
-    let d_thrust_d_chi_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_1 = reference_force * p.c_d_eta_1; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_1 = cos_alpha * d_thrust_d_chi_1 - d_drag_d_chi_1; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_thrust_d_chi_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_2 = reference_force * p.c_d_eta_2; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_2 = cos_alpha * d_thrust_d_chi_2 - d_drag_d_chi_2; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_thrust_d_chi_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
-    let d_drag_d_chi_3 = reference_force * p.c_d_eta_3; // lb/ft^1.5/slug^0.5
-    let d_path_force_d_chi_3 = cos_alpha * d_thrust_d_chi_3 - d_drag_d_chi_3; // lb/ft^1.5/slug^0.5
+    let d_path_force_d_chi_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
 
     [d_velocity_rate_d_chi_1, d_velocity_rate_d_chi_2, d_velocity_rate_d_chi_3]
@@ -391,8 +384,7 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_0;
 
     inverse_momentum * reference_force * (sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
-        - apparent_gravity * inv_velocity * cos_gamma
-        + f_gamma_eta
+        - apparent_gravity * inv_velocity * cos_gamma + f_gamma_eta
 }
 
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
@@ -422,7 +414,7 @@ pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
 ///
-/// 26 operations: 4 additions, 19 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 23 operations: 4 additions, 16 multiplications, 1 division, 1 sin_cos, 1 exp.
 #[inline]
 pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
@@ -440,21 +432,18 @@ pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
     let inverse_momentum = p.inv_m * inv_velocity; // s/slug
 
     // Derivatives with respect to chi_1
-    let d_thrust_d_chi_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
-    let d_lift_d_chi_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_1 = sin_alpha * d_thrust_d_chi_1 + d_lift_d_chi_1; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_1 = reference_force
+        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_thrust_d_chi_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
-    let d_lift_d_chi_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_2 = sin_alpha * d_thrust_d_chi_2 + d_lift_d_chi_2; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_2 = reference_force
+        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_thrust_d_chi_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
-    let d_lift_d_chi_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_3 = sin_alpha * d_thrust_d_chi_3 + d_lift_d_chi_3; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_3 = reference_force
+        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
 
     [d_gamma_rate_d_chi_1, d_gamma_rate_d_chi_2, d_gamma_rate_d_chi_3]
@@ -708,8 +697,8 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_0;
 
     apparent_gravity * inv_velocity * cos_gamma
-        - inverse_momentum * reference_force * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha)
-        + f_alpha_eta
+        - inverse_momentum * reference_force
+            * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha) + f_alpha_eta
 }
 
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
@@ -722,7 +711,7 @@ pub fn g_alpha<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 
 /// Derivatives of the alpha rate with respect to the coloured noises chi, eq. (33).
 ///
-/// 26 operations: 4 additions, 19 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 23 operations: 4 additions, 16 multiplications, 1 division, 1 sin_cos, 1 exp.
 #[inline]
 pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
@@ -740,21 +729,18 @@ pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
     let inverse_momentum = p.inv_m * inv_velocity; // s/slug
 
     // Derivatives with respect to chi_1
-    let d_thrust_d_chi_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
-    let d_lift_d_chi_1 = reference_force * p.c_l_eta_1; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_1 = sin_alpha * d_thrust_d_chi_1 + d_lift_d_chi_1; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_1 = reference_force
+        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_thrust_d_chi_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
-    let d_lift_d_chi_2 = reference_force * p.c_l_eta_2; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_2 = sin_alpha * d_thrust_d_chi_2 + d_lift_d_chi_2; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_2 = reference_force
+        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_thrust_d_chi_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
-    let d_lift_d_chi_3 = reference_force * p.c_l_eta_3; // lb/ft^1.5/slug^0.5
-    let d_normal_force_d_chi_3 = sin_alpha * d_thrust_d_chi_3 + d_lift_d_chi_3; // lb/ft^1.5/slug^0.5
+    let d_normal_force_d_chi_3 = reference_force
+        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
     let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
 
     [-d_gamma_rate_d_chi_1, -d_gamma_rate_d_chi_2, -d_gamma_rate_d_chi_3]
@@ -1016,7 +1002,7 @@ pub fn g_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Derivatives of the pitch_rate rate with respect to the coloured noises chi, eq. (35).
 ///
-/// 23 operations: 4 additions, 18 multiplications, 1 exp.
+/// 14 operations: 1 addition, 12 multiplications, 1 exp.
 #[inline]
 pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
@@ -1027,21 +1013,18 @@ pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Derivatives with respect to chi_1
-    let d_thrust_d_chi_1 = reference_force * p.c_t_eta_1; // lb/ft^1.5/slug^0.5
-    let d_pitching_moment_d_chi_1 = p.c_bar_c_m_eta_1 * reference_force
-        + p.z_t * d_thrust_d_chi_1; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_1 = reference_force
+        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_thrust_d_chi_2 = reference_force * p.c_t_eta_2; // lb/ft^1.5/slug^0.5
-    let d_pitching_moment_d_chi_2 = p.c_bar_c_m_eta_2 * reference_force
-        + p.z_t * d_thrust_d_chi_2; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_2 = reference_force
+        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_thrust_d_chi_3 = reference_force * p.c_t_eta_3; // lb/ft^1.5/slug^0.5
-    let d_pitching_moment_d_chi_3 = p.c_bar_c_m_eta_3 * reference_force
-        + p.z_t * d_thrust_d_chi_3; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_3 = reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     [
