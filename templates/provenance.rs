@@ -6,6 +6,6 @@ use ahv_core::{Provenance, Status};
 /// Source, status and relative uncertainty of each parameter.
 pub const PROVENANCE: Parameters<Provenance> = Parameters {
 {%- for p in parameters %}
-    {{ p.name }}: Provenance::new("{{ p.source }}", Status::{{ p.status_variant() }}, {{ "{:?}"|format(p.uncertainty) }}),
+    {{ p.name }}: Provenance::new({{ "{:?}"|format(p.source) }}, Status::{{ p.status_variant() }}, {{ "{:?}"|format(p.uncertainty) }}),
 {%- endfor %}
 };

@@ -40,6 +40,9 @@ def main() -> int:
     except TableError as error:
         print(json.dumps({"diagnostics": [d.as_json() for d in error.diagnostics]}))
         return 2
+    except OSError as error:
+        print(f"error: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
+        return 1
     return 0
 
 

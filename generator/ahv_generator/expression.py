@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 
 import casadi as ca
@@ -10,7 +11,7 @@ from . import units
 
 Tree = str | float | list["Tree"]
 
-_BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
+_BINARY = {ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
 _UNARY = {ca.OP_NEG: "neg", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_EXP: "exp", ca.OP_SQRT: "sqrt"}
 
 
@@ -19,12 +20,17 @@ class ExpressionError(Exception):
 
 
 def tree(expr: ca.SX) -> Tree:
-    """The expression as nested lists: a name, a number, or an operator and its arguments."""
+    """The expression as nested lists: a name, a number, or an operator and its arguments.
+
+    Sums are n-ary: the depth of the tree does not grow with the number of terms.
+    """
     if expr.is_constant():
         return float(expr)
     if expr.is_symbolic():
         return str(expr.name())
     op = expr.op()
+    if op == ca.OP_ADD:
+        return ["+", *(tree(term) for term in _addends(expr))]
     args = [tree(expr.dep(i)) for i in range(expr.n_dep())]
     if op in _BINARY:
         return [_BINARY[op], *args]
@@ -39,6 +45,19 @@ def tree(expr: ca.SX) -> Tree:
     if op in (ca.OP_POW, ca.OP_CONSTPOW) and isinstance(args[1], float) and args[1].is_integer():
         return ["pow", *args]
     raise ExpressionError(f"the IR has no form for the CasADi operation {op} in {expr}")
+
+
+def _addends(expr: ca.SX) -> list[ca.SX]:
+    """The terms of a chain of additions, first to last, without recursion along the chain."""
+    found: list[ca.SX] = []
+    waiting = [expr]
+    while waiting:
+        term = waiting.pop()
+        if not term.is_constant() and not term.is_symbolic() and term.op() == ca.OP_ADD:
+            waiting += [term.dep(1), term.dep(0)]
+        else:
+            found.append(term)
+    return found
 
 
 def check_dimensions(name: str, expr: ca.SX, unit: str, known: Mapping[str, str]) -> None:
@@ -74,7 +93,7 @@ def _dimensions(node: Tree, known: Mapping[str, str]) -> units.Dimensions | None
     if op == "sqrt":
         return _scaled(parts[0], 0.5)
     if op in ("+", "-"):
-        return _common(parts[0], parts[1], node)
+        return functools.reduce(lambda left, right: _common(left, right, node), parts)
     return _product(parts[0], parts[1], 1.0 if op == "*" else -1.0)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -54,7 +55,7 @@ def load(path: Path) -> Table:
     """
     faults = Faults(path.name)
     try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
+        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         faults.key((), f"cannot read the table: {error}")
         faults.raise_any()
@@ -73,6 +74,9 @@ class _Reader:
 
     def read(self) -> Table:
         name, models = self._identity()
+        for key, text in self.sources.items():
+            if not isinstance(text, str) or not key.isprintable() or set('"\\') & set(key):
+                self.faults.key(("sources", key), "a source is a plain key with a text that says what it is")
         schema = self._schema(models)
         known = ("table", "sources", "validity", *schema.parameters, *(q.key for q in schema.quantities))
         for section in self.document:
@@ -127,9 +131,8 @@ class _Reader:
     def _schema(self, models: tuple[str, ...]) -> Schema:
         if "com" in models:
             return com_schema()
-        numbered = [int(s[4:]) for s in self.document if s.startswith("C_N_") and s[4:].isdigit()]
-        modes = max(numbered, default=1)
-        return dcom_schema(min(modes, 9))
+        numbered = [int(s[4:]) for s in self.document if re.fullmatch(r"C_N_[1-9]", s)]
+        return dcom_schema(max(numbered, default=1))
 
     def _entry(self, path: tuple[str, str], expected: str) -> tuple[float, Mapping[str, object]] | None:
         section = self.document[path[0]]
@@ -177,7 +180,7 @@ class _Reader:
 
     def _provenance(self, entry: Mapping[str, object], path: tuple[str, ...]) -> None:
         source = entry.get("source")
-        if "source" in entry and source not in self.sources:
+        if "source" in entry and not (isinstance(source, str) and source in self.sources):
             self.faults.value((*path, "source"), f"unknown source `{source}`", suggestion(str(source), self.sources))
         status = entry.get("status")
         if "status" in entry and status not in STATUSES:

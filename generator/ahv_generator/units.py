@@ -6,6 +6,7 @@ Only when the dimensions of an equation are checked does an angle count as a pur
 
 from __future__ import annotations
 
+import re
 from typing import cast
 
 import pint
@@ -22,6 +23,9 @@ _DEFINITIONS = (
 )
 
 _SHORT = {"foot": "ft", "second": "s", "radian": "rad", "degree": "deg", "pound_force": "lb"}
+
+_ATOM = r"(?:1|[a-z]+|\([a-z]+(?:[*/][a-z]+)*\))(?:\^\d(?:\.\d{1,3})?)?"
+_GRAMMAR = re.compile(rf"{_ATOM}(?:[*/]{_ATOM})*")
 
 Dimensions = dict[str, float]
 
@@ -43,6 +47,9 @@ class UnitError(Exception):
 def _parse(text: str) -> pint.Unit:
     if not text.strip():
         raise UnitError("the unit is empty; a pure number has the unit `1`")
+    # pint evaluates what it reads: only what a unit can look like is let through.
+    if not _GRAMMAR.fullmatch(text):
+        raise UnitError(f"{text!r} is not a unit; write it like `slug/ft^3` or `(ft*slug)^0.5/s`")
     try:
         return _REGISTRY.parse_units(text)
     except Exception as error:  # pint raises many unrelated types for malformed text

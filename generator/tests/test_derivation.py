@@ -97,3 +97,24 @@ def test_a_wrong_unit_in_the_derivation_is_refused() -> None:
         model.graph.define(
             "sum", model["lift"] + model["velocity"], symbol="", unit="lb/ft", doc="", equation="", section=""
         )
+
+
+def test_a_polynomial_may_have_many_terms(tmp_path: Path) -> None:
+    """The depth of the IR does not grow with the number of monomials."""
+    monomials = [f"alpha^{a}*delta_e^{e}*delta_c^{c}" for a in range(1, 6) for e in range(1, 6) for c in range(1, 5)]
+    entries = "".join(
+        f'"{m}" = {{ value = 0.1, unit = "1/rad^{sum(int(p[-1]) for p in m.split("*"))}" }}\n'
+        for m in monomials
+        if sum(int(p[-1]) for p in m.split("*")) <= 9
+    )
+    text = (TABLES / "dcom.toml").read_text(encoding="utf-8")
+    path = tmp_path / "dcom.toml"
+    path.write_text(text.replace("[C_M]\n", f"[C_M]\n{entries}"), encoding="utf-8")
+    table = load(path)
+    assert len(table.polynomials["C_M"].terms) > 60
+    text = ir.render(table, [BUILDERS[name](table) for name in table.models])
+    depth = deepest = 0
+    for character in text:
+        depth += (character in "[{") - (character in "]}")
+        deepest = max(deepest, depth)
+    assert deepest < 60

@@ -163,6 +163,9 @@ impl Dag {
                     return Err(fault("an operation without an operator"));
                 };
                 if let ("pow", [base, ir::Expr::Number(exponent)]) = (op.as_str(), arguments) {
+                    if exponent.fract() != 0.0 || exponent.abs() > 99.0 {
+                        return Err(fault(&format!("the exponent {exponent}")));
+                    }
                     let base = self.build(base, owner)?;
                     return Ok(self.power(base, *exponent as i32));
                 }

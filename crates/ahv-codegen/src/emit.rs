@@ -45,7 +45,12 @@ impl Options {
         match &self.core {
             Core::Path(path) => {
                 let version = env!("CARGO_PKG_VERSION");
-                format!("ahv-core = {{ version = \"{version}\", path = \"{path}\" }}")
+                // A TOML string of its own: a path may hold quotes and backslashes.
+                let path = toml_edit::Value::from(path.as_str());
+                format!(
+                    "ahv-core = {{ version = \"{version}\", path = {} }}",
+                    path.to_string().trim()
+                )
             }
             Core::Workspace => "ahv-core.workspace = true".to_owned(),
         }

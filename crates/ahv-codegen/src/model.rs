@@ -358,6 +358,25 @@ enum Shape {
 
 impl Shape {
     fn of(model: &ir::Model, output: &ir::Output) -> Result<Self, EmitError> {
+        if let Some(basis) = output.basis.iter().find(|b| !model.bases.contains_key(*b)) {
+            return Err(EmitError::Mismatch(format!(
+                "model `{}` has no basis `{basis}`",
+                model.name
+            )));
+        }
+        let known = |at: &[String]| {
+            at.len() == output.basis.len()
+                && at.iter().zip(&output.basis).all(|(name, basis)| {
+                    let variables = model.bases.get(basis);
+                    variables.is_some_and(|all| all.iter().any(|v| v.name == *name))
+                })
+        };
+        if let Some(entry) = output.entries.iter().find(|entry| !known(&entry.at)) {
+            return Err(EmitError::Mismatch(format!(
+                "model `{}` has an entry at {:?}, which its bases do not hold",
+                model.name, entry.at
+            )));
+        }
         let basis: Vec<&str> = output.basis.iter().map(String::as_str).collect();
         Ok(match basis.as_slice() {
             [] => Self::Scalar,

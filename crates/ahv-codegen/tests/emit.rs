@@ -132,3 +132,44 @@ fn the_hash_is_that_of_the_values() {
     assert_eq!(plain, hash("# a comment\n[a]\nc = 2.0\nb = 1.00\n"));
     assert_ne!(plain, hash("[a]\nb = 1.0\nc = 2.1\n"));
 }
+
+#[test]
+fn an_ir_that_was_edited_badly_is_refused() {
+    let edits = [
+        ("\"input\": [\n", "\"inputs\": [\n", "has no basis `input`"),
+        (
+            "{\"at\": [\"velocity\", \"phi\"]",
+            "{\"at\": [\"velocity\", \"phy\"]",
+            "bases do not hold",
+        ),
+        (
+            "\"x.velocity\", 2]",
+            "\"x.velocity\", 2.5]",
+            "the exponent 2.5",
+        ),
+    ];
+    for (from, to, message) in edits {
+        let mut irs = irs();
+        let text = irs.get_mut("com").unwrap();
+        assert!(text.contains(from), "no {from}");
+        *text = text.replacen(from, to, 1);
+        let error = emit(&[table("com")], &irs, &Options::default())
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn a_path_with_quotes_and_backslashes_is_a_toml_string() {
+    let options = Options {
+        core: ahv_codegen::Core::Path("C:\\new\\x\"y".to_owned()),
+        ..Options::default()
+    };
+    let tree = emit(&[table("com")], &irs(), &options).unwrap();
+    let manifest: toml_edit::DocumentMut = tree["Cargo.toml"].parse().unwrap();
+    assert_eq!(
+        manifest["dependencies"]["ahv-core"]["path"].as_str(),
+        Some("C:\\new\\x\"y")
+    );
+}
