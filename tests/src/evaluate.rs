@@ -19,7 +19,7 @@ pub fn vector<R: Real, V: Vector<R>>(kind: &str, inputs: &BTreeMap<String, f64>)
         R::from_f64(
             *inputs
                 .get(&label)
-                .unwrap_or_else(|| panic!("the point has no {label}")),
+                .unwrap_or_else(|| panic!("the point has no {label}; run `cargo xtask vectors`")),
         )
     })
 }

@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::io;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use ahv_generate::{Args, Surroundings};
@@ -14,10 +15,11 @@ use crate::shell;
 use crate::trajectory::{Trajectory, setting};
 
 const TABLE: &str = "generator/tables/dcom.toml";
-const QUANTITY: &str = "[C_L]";
+const SECTION: &str = "[C_L]";
+const ENTRY: &str = r#""alpha" ="#;
+const VALUE: &str = "value =";
 /// The lift slope by about two per cent: well inside its uncertainty, and plain in the flight.
-const NOMINAL: &str = r#""alpha" = { value = 4.6773,"#;
-const CHANGED: &str = r#""alpha" = { value = 4.7773,"#;
+const STEP: f64 = 0.1;
 const MODELS: [&str; 2] = ["dcom", "sdcom"];
 /// The airframe is unstable, so an open-loop flight is short.
 const T_END: &str = "3";
@@ -29,12 +31,17 @@ pub(crate) fn run() -> Result<(), String> {
     let demo = shell::root().join("target/demo");
     let scratch = demo.join("scratch");
     fs::create_dir_all(&demo).map_err(problem("make", &demo))?;
+    let table = shell::root().join(TABLE);
+    let change = Change::read(&fs::read_to_string(&table).map_err(problem("read", &table))?)?;
 
     heading("Regenerate from the tables");
     print!("{}", generate(shell::root())?);
     print!("{}", check(shell::root())?);
 
-    heading("Change a coefficient in a scratch copy: C_L alpha, 4.6773 to 4.7773 per rad");
+    heading(&format!(
+        "Change a coefficient in a scratch copy: C_L alpha, {} to {} per rad",
+        change.nominal, change.changed
+    ));
     copy_project(&scratch)?;
     change_coefficient(&scratch.join(TABLE))?;
     print!("{}", check(&scratch)?);
@@ -57,10 +64,10 @@ pub(crate) fn run() -> Result<(), String> {
     );
     let mut pairs = Vec::new();
     for model in MODELS {
-        pairs.push(fly(model, &nominal, &changed, &demo)?);
+        pairs.push(fly(model, &nominal, &changed, &change, &demo)?);
     }
     let picture = demo.join("flights.svg");
-    plot::draw(&pairs, &picture)?;
+    plot::draw(&pairs, &change, &picture)?;
 
     heading("Where everything lies");
     for model in MODELS {
@@ -109,17 +116,57 @@ fn generation(root: &Path) -> Result<(Args, Surroundings), String> {
     ))
 }
 
-fn change_coefficient(table: &Path) -> Result<(), String> {
-    let text = fs::read_to_string(table).map_err(problem("read", table))?;
-    let start = text.find(QUANTITY).unwrap_or_default();
-    let (before, quantity) = text.split_at(start);
-    if !quantity.contains(NOMINAL) {
-        return Err(format!(
-            "error: the demo changes `{NOMINAL}` of {QUANTITY}, which {TABLE} lacks"
-        ));
+/// The coefficient's value as the table has it, and the one that the demo gives it.
+pub(crate) struct Change {
+    pub(crate) nominal: String,
+    pub(crate) changed: String,
+    /// Where the value stands in the table's text.
+    at: Range<usize>,
+}
+
+impl Change {
+    fn read(table: &str) -> Result<Self, String> {
+        let missing = || {
+            format!(
+                "error: the demo changes `{ENTRY} {{ value = ...` of {SECTION}, which {TABLE} lacks"
+            )
+        };
+        let at = value_of_entry(table).ok_or_else(missing)?;
+        let nominal = &table[at.clone()];
+        let value: f64 = nominal.parse().map_err(|_| missing())?;
+        // Sums of decimal fractions are not exact: 4.6773 is to give 4.7773.
+        let changed = ((value + STEP) * 1e10).round() / 1e10;
+        Ok(Self {
+            nominal: nominal.to_owned(),
+            changed: format!("{changed:?}"),
+            at,
+        })
     }
-    let changed = format!("{before}{}", quantity.replacen(NOMINAL, CHANGED, 1));
-    fs::write(table, changed).map_err(problem("write", table))
+}
+
+/// Where the coefficient's value stands in the table.
+fn value_of_entry(table: &str) -> Option<Range<usize>> {
+    let (mut at, mut inside) = (0, false);
+    for line in table.split_inclusive('\n') {
+        if line.starts_with('[') {
+            inside = line.starts_with(SECTION);
+        } else if inside && line.starts_with(ENTRY) {
+            let key = line.find(VALUE)?;
+            let rest = line[key + VALUE.len()..].trim_start();
+            let start = at + line.len() - rest.len();
+            let end = rest.find(|c: char| c == ',' || c == '}' || c.is_whitespace())?;
+            return Some(start..start + end);
+        }
+        at += line.len();
+    }
+    None
+}
+
+fn change_coefficient(table: &Path) -> Result<(), String> {
+    let mut text = fs::read_to_string(table).map_err(problem("read", table))?;
+    let change = Change::read(&text)?;
+    text.replace_range(change.at, &change.changed);
+    fs::write(table, text).map_err(problem("write", table))
 }
 
 fn build(root: &Path, target: &Path) -> Result<PathBuf, String> {
@@ -138,7 +185,13 @@ fn build(root: &Path, target: &Path) -> Result<PathBuf, String> {
 }
 
 /// Flies the nominal model from its trim, and the changed one from that same state and inputs.
-fn fly(model: &str, nominal: &Path, changed: &Path, demo: &Path) -> Result<Pair, String> {
+fn fly(
+    model: &str,
+    nominal: &Path,
+    changed: &Path,
+    change: &Change,
+    demo: &Path,
+) -> Result<Pair, String> {
     let simulate = |ahv: &Path, name: &str, start: &[String]| {
         let out = demo.join(format!("{model}-{name}.csv"));
         let mut command = shell::program(ahv);
@@ -166,9 +219,11 @@ fn fly(model: &str, nominal: &Path, changed: &Path, demo: &Path) -> Result<Pair,
     let end = |flight: &Trajectory| flight.end("alpha").map(f64::to_degrees);
     match (end(&nominal), end(&changed)) {
         (Some(a), Some(b)) if a != b => println!(
-            "{:1$}  angle of attack at {T_END} s: {a:.4} deg with 4.6773, {b:.4} deg with 4.7773",
+            "{:1$}  angle of attack at {T_END} s: {a:.4} deg with {2}, {b:.4} deg with {3}",
             "",
-            model.len()
+            model.len(),
+            change.nominal,
+            change.changed
         ),
         _ => return Err(format!("error: {model} flies alike with both values")),
     }
@@ -242,4 +297,21 @@ fn copy_link(source: &Path, target: &Path) -> io::Result<()> {
 fn problem(deed: &str, path: &Path) -> impl FnOnce(io::Error) -> String {
     let message = format!("error: cannot {deed} {}", path.display());
     move |error| format!("{message}: {error}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Change;
+
+    #[test]
+    fn the_value_is_read_and_changed() {
+        let table = "[C_D]\n\"alpha\" = { value = 1.0 }\n[C_L]\n\"alpha\" = { value = 4.6773, unit = \"1/rad\" }\n";
+        let change = Change::read(table).expect("read");
+        assert_eq!((&*change.nominal, &*change.changed), ("4.6773", "4.7773"));
+        assert_eq!(&table[change.at], "4.6773");
+        for none in ["", "[C_L]\n", &table.replace("4.6773", "many")] {
+            let message = Change::read(none).err().expect("refused");
+            assert!(message.ends_with("which generator/tables/dcom.toml lacks"));
+        }
+    }
 }

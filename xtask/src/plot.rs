@@ -5,6 +5,7 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
+use crate::demo::Change;
 use crate::trajectory::Trajectory;
 
 /// One model with the table's value of the coefficient and with another.
@@ -50,15 +51,16 @@ const LEGEND_HEIGHT: u32 = 44;
 const FONT: (&str, u32) = ("sans-serif", 15);
 
 /// Draws one column a model and one row a state.
-pub(crate) fn draw(pairs: &[Pair], path: &Path) -> Result<(), String> {
-    try_draw(pairs, path).map_err(|error| format!("error: cannot draw {}: {error}", path.display()))
+pub(crate) fn draw(pairs: &[Pair], change: &Change, path: &Path) -> Result<(), String> {
+    try_draw(pairs, change, path)
+        .map_err(|error| format!("error: cannot draw {}: {error}", path.display()))
 }
 
-fn try_draw(pairs: &[Pair], path: &Path) -> Result<(), Box<dyn Error>> {
+fn try_draw(pairs: &[Pair], change: &Change, path: &Path) -> Result<(), Box<dyn Error>> {
     let area = SVGBackend::new(path, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let (legend, charts) = area.split_vertically(LEGEND_HEIGHT);
-    draw_legend(&legend)?;
+    draw_legend(&legend, change)?;
     let charts = charts.split_evenly((ROWS.len(), pairs.len()));
     for (index, chart) in charts.iter().enumerate() {
         let (row, pair) = (&ROWS[index / pairs.len()], &pairs[index % pairs.len()]);
@@ -119,17 +121,20 @@ fn draw_chart(area: &Area<'_>, row: &Row, pair: &Pair) -> Result<(), Box<dyn Err
     Ok(())
 }
 
-fn draw_legend(area: &Area<'_>) -> Result<(), Box<dyn Error>> {
+fn draw_legend(area: &Area<'_>, change: &Change) -> Result<(), Box<dyn Error>> {
     let (y, length) = (i32::try_from(LEGEND_HEIGHT / 2)?, 44);
-    let text = |x: i32, text| Text::new(text, (x + length + 8, y - 8), FONT);
+    let text = |x: i32, value: &str| {
+        let text = format!("C_L alpha = {value} / rad");
+        Text::new(text, (x + length + 8, y - 8), FONT)
+    };
     let (x, style) = (260, NOMINAL.stroke_width(2));
     area.draw(&PathElement::new([(x, y), (x + length, y)], style))?;
-    area.draw(&text(x, "C_L alpha = 4.6773 / rad"))?;
+    area.draw(&text(x, &change.nominal))?;
     let (x, style) = (600, CHANGED.stroke_width(2));
     for dash in (x..x + length).step_by(13) {
         area.draw(&PathElement::new([(dash, y), (dash + 8, y)], style))?;
     }
-    area.draw(&text(x, "C_L alpha = 4.7773 / rad"))?;
+    area.draw(&text(x, &change.changed))?;
     Ok(())
 }
 

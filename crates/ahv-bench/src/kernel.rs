@@ -34,6 +34,7 @@ pub(crate) struct Kernel {
     parameters: *const f64,
     arguments: Vec<*const f64>,
     outputs: Vec<Vec<f64>>,
+    place: usize,
     results: Vec<*mut f64>,
     integers: Vec<i64>,
     reals: Vec<f64>,
@@ -49,6 +50,9 @@ pub(crate) fn load(path: &Path) -> Result<&'static Library, String> {
         library.map_err(|error| format!("error: cannot load {}: {error}", path.display()))?;
     Ok(Box::leak(Box::new(library)))
 }
+
+/// Places that an output is moved through, in numbers.
+const PLACES: usize = 512;
 
 impl Kernel {
     /// The function of `subject` in `library`. `prepare` turns the parameters into what it takes.
@@ -71,7 +75,8 @@ impl Kernel {
                 unsafe { library.get::<Prepare>(name).map_err(lacking)?(parameters.as_ptr()) }
             }
         };
-        let mut outputs: Vec<Vec<f64>> = layout.iter().map(|it| vec![0.0; it.len()]).collect();
+        let room = |it: &Vec<usize>| vec![0.0; it.len() + PLACES];
+        let mut outputs: Vec<Vec<f64>> = layout.iter().map(room).collect();
         let mut results: Vec<*mut f64> = outputs.iter_mut().map(|it| it.as_mut_ptr()).collect();
         results.resize(results.len().max(work.results), std::ptr::null_mut());
         Ok(Self {
@@ -79,6 +84,7 @@ impl Kernel {
             parameters,
             arguments: vec![std::ptr::null(); work.arguments.max(3)],
             outputs,
+            place: 0,
             results,
             integers: vec![0; work.integers],
             reals: vec![0.0; work.reals],
@@ -89,6 +95,15 @@ impl Kernel {
                 .map(|(rows, columns)| rows * columns)
                 .sum(),
         })
+    }
+
+    /// Moves the outputs: how they lie to cache lines and pages changes a time by up to a tenth, and a
+    /// candidate shall be neither lucky nor unlucky for all rounds.
+    pub(crate) fn move_outputs(&mut self, round: u32) {
+        self.place = round as usize * 13 % PLACES;
+        for (result, output) in self.results.iter_mut().zip(&mut self.outputs) {
+            *result = output[self.place..].as_mut_ptr();
+        }
     }
 
     /// Evaluates at every point.
@@ -126,7 +141,7 @@ impl Kernel {
     fn gather(&self) -> Vec<f64> {
         let mut dense = vec![0.0; self.dense];
         for (positions, output) in self.layout.iter().zip(&self.outputs) {
-            for (&position, pointer) in positions.iter().zip(output) {
+            for (&position, pointer) in positions.iter().zip(&output[self.place..]) {
                 // SAFETY: a number of `outputs`, which the function writes behind the compiler's back.
                 dense[position] = unsafe { std::ptr::read_volatile(pointer) };
             }

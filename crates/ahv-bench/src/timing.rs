@@ -61,6 +61,7 @@ pub(crate) fn measure(candidates: &mut [Candidate], points: &[Points], rounds: u
             for turn in 0..candidates.len() {
                 // Another one begins each round, so that none always follows the same one.
                 let index = (turn + round as usize) % candidates.len();
+                candidates[index].kernels[subject].move_outputs(round);
                 let time = turn_of(&mut candidates[index], subject, points);
                 if round >= WARM_UP {
                     times[subject][index].push(time);

@@ -31,7 +31,7 @@ pub struct Args {
     pub out: Option<PathBuf>,
 
     /// Name of the generated package
-    #[arg(long, value_name = "NAME", default_value = PACKAGE)]
+    #[arg(long, value_name = "NAME", default_value = PACKAGE, value_parser = package_name)]
     pub package: String,
 
     /// Where the generated package finds ahv-core, relative to itself
@@ -84,6 +84,16 @@ impl Args {
             flag("--core-path", &self.core_path);
         }
         command
+    }
+}
+
+/// A name that cargo takes for a package.
+fn package_name(name: &str) -> Result<String, String> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(plain) {
+        Ok(name.to_owned())
+    } else {
+        Err("a package name starts with a letter and holds letters, digits, - and _".to_owned())
     }
 }
 

@@ -99,7 +99,9 @@ pub(crate) fn differences(out: &Path, tree: &Tree) -> Result<Vec<Difference>, Fa
         });
     }
     for path in owned_files(out)? {
-        if !tree.contains_key(&path) {
+        // What stands where a folder belongs is in the way, not stray.
+        let folder = format!("{path}/");
+        if !tree.contains_key(&path) && !tree.keys().any(|it| it.starts_with(&folder)) {
             found.push(Difference::without_text(path, Status::Stray));
         }
     }
@@ -131,6 +133,15 @@ pub(crate) fn checked_in_irs(
 pub(crate) fn manifest(out: &Path) -> Option<Manifest> {
     let text = fs::read_to_string(out.join(MANIFEST)).ok()?;
     Manifest::parse(&text).ok()
+}
+
+/// Whether the folder's manifest is one of ahv, perhaps with the markers of a merge conflict or of
+/// another version.
+pub(crate) fn is_generated(out: &Path) -> bool {
+    let text = fs::read(out.join(MANIFEST)).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text);
+    let names = |key: &str| text.contains(&format!("\"{key}\""));
+    Manifest::parse(&text).is_ok() || (names("emitter") && names("templates"))
 }
 
 /// The IRs that were derived from other tables than there are now.
@@ -189,11 +200,15 @@ fn read(path: &Path) -> Result<OnDisk, Failure> {
     }
 }
 
-/// All files below the owned folders, hidden ones excepted.
+/// All files below the owned folders, hidden ones excepted. Links to folders are followed.
 fn owned_files(out: &Path) -> Result<BTreeSet<String>, Failure> {
-    let mut files = BTreeSet::new();
+    let (mut files, mut seen) = (BTreeSet::new(), BTreeSet::new());
     let mut folders: Vec<PathBuf> = OWNED.iter().map(|name| out.join(name)).collect();
     while let Some(folder) = folders.pop() {
+        // A link may lead back to where it lies.
+        if fs::canonicalize(&folder).is_ok_and(|real| !seen.insert(real)) {
+            continue;
+        }
         let entries = match fs::read_dir(&folder) {
             Ok(entries) => entries,
             Err(error) => match error.kind() {
@@ -203,12 +218,9 @@ fn owned_files(out: &Path) -> Result<BTreeSet<String>, Failure> {
         };
         for entry in entries {
             let entry = entry.map_err(Failure::file("read", &folder))?;
-            let kind = entry
-                .file_type()
-                .map_err(Failure::file("read", &entry.path()))?;
             if entry.file_name().to_string_lossy().starts_with('.') {
                 continue;
-            } else if kind.is_dir() {
+            } else if fs::metadata(entry.path()).is_ok_and(|it| it.is_dir()) {
                 folders.push(entry.path());
             } else {
                 files.insert(slashed(

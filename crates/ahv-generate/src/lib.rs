@@ -46,7 +46,7 @@ pub fn run(args: &Args) -> u8 {
     match answer(args) {
         Ok(code) => code,
         Err(failure) => {
-            eprint!("{}", failure.render());
+            complain(&failure.render());
             FAILED
         }
     }
@@ -61,7 +61,7 @@ fn answer(args: &Args) -> Result<u8, Failure> {
         } else if checked.agrees() {
             print(&checked.text())?;
         } else {
-            eprint!("{}", checked.text());
+            complain(&checked.text());
         }
         Ok(if checked.agrees() { AGREES } else { DIFFERS })
     } else {
@@ -73,6 +73,11 @@ fn answer(args: &Args) -> Result<u8, Failure> {
         })?;
         Ok(AGREES)
     }
+}
+
+/// Writes to standard error; where that cannot be written, the exit code must do.
+fn complain(text: &str) {
+    let _ = io::stderr().write_all(text.as_bytes());
 }
 
 /// Writes to standard output; a reader that has gone away (`| head`) is no failure.
@@ -94,7 +99,7 @@ pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, F
     let project = Project::locate(args, surroundings);
     let (tree, _, seconds) = derive_and_emit(args, surroundings, &project)?;
     let differences = compare::differences(&project.out, &tree)?;
-    write::apply(&project, &differences)?;
+    write::apply(&project, &tree, &differences)?;
     Ok(Generated::new(&project, differences, seconds))
 }
 

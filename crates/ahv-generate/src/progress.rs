@@ -1,6 +1,6 @@
 //! Tells a person who waits what goes on.
 
-use std::io::{self, IsTerminal as _};
+use std::io::{self, IsTerminal as _, Write as _};
 use std::time::Duration;
 
 use indicatif::ProgressBar;
@@ -20,7 +20,7 @@ impl Progress {
     pub(crate) fn announced(message: impl Into<String>) -> Self {
         let message = message.into();
         if !io::stderr().is_terminal() {
-            eprintln!("{message}...");
+            let _ = writeln!(io::stderr(), "{message}...");
         }
         Self::quiet(message)
     }

@@ -43,7 +43,7 @@ enum DiagnosticPart {
 }
 
 impl Tables {
-    /// Reads every `*.toml` in the folder of tables.
+    /// Reads every `*.toml` in the folder of tables, hidden ones excepted.
     pub(crate) fn load(project: &Project) -> Result<Self, Failure> {
         let paths = table_files(project)?;
         let (mut sources, mut parsed, mut faults) = (Vec::new(), Vec::new(), Vec::new());
@@ -136,7 +136,9 @@ fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
         let path = entry
             .map_err(Failure::file("read", &project.tables))?
             .path();
-        if path.extension() == Some(OsStr::new("toml")) {
+        // Editors keep hidden files beside those that are open.
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if path.extension() == Some(OsStr::new("toml")) && !name.starts_with('.') {
             paths.push(path);
         }
     }
