@@ -60,29 +60,20 @@ pub(crate) fn apply(
     Ok(())
 }
 
-/// Nothing is overwritten or removed that may be somebody's own: in a folder that was generated, a
-/// stray file that does not say it was generated too; in any other, every such file.
+/// Nothing is overwritten or removed that may be somebody's own: only a folder that was generated holds
+/// nothing but generated code, in any other a file must say so itself.
 fn refuse_foreign(project: &Project, differences: &[Difference]) -> Result<(), Failure> {
-    let generated = compare::is_generated(&project.out);
-    let at_risk = |it: &&Difference| match it.status {
-        Status::Missing => false,
-        Status::Differs => !generated,
-        Status::Stray => true,
-    };
-    let mut risked = differences.iter().filter(at_risk);
+    if compare::is_generated(&project.out) {
+        return Ok(());
+    }
+    let mut risked = differences.iter().filter(|it| it.status != Status::Missing);
     let Some(it) = risked.find(|it| is_foreign(&project.out, &it.path)) else {
         return Ok(());
     };
-    let message = format!(
-        "{} was not generated, and would be lost",
-        project.shown_out(&it.path)
-    );
-    Err(Failure::new(if generated {
-        message
-    } else {
-        let out = project.shown(&project.out);
-        format!("{message}: {out} has no {MANIFEST} of ahv")
-    })
+    let (file, out) = (project.shown_out(&it.path), project.shown(&project.out));
+    Err(Failure::new(format!(
+        "{file} was not generated, and would be lost: {out} has no {MANIFEST} of ahv"
+    ))
     .with_help("move it away, or name another folder with --out"))
 }
 
