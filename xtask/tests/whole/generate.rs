@@ -171,6 +171,42 @@ fn a_full_disk_leaves_the_tree_as_it_was() {
     assert!(before == scratch.snapshot());
 }
 
+/// The derivation runs out of room: one message, no traceback.
+#[test]
+fn a_full_disk_while_deriving_leaves_the_tree_as_it_was() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot();
+    let mut command = Command::new("sh");
+    command.args(["-c", "trap '' XFSZ; ulimit -S -f 8; exec \"$0\" generate"]);
+    command
+        .arg(env!("CARGO_BIN_EXE_xtask"))
+        .current_dir(scratch.path(""));
+    let python = crate::common::generation_python();
+    let answer = crate::common::answer(command.env("AHV_PYTHON", python));
+    assert_eq!(answer.code, 2, "{}", answer.stderr);
+    assert!(
+        answer.stderr.starts_with("error: ") && !answer.stderr.contains("Traceback"),
+        "{}",
+        answer.stderr
+    );
+    assert!(before == scratch.snapshot(), "the tree changed");
+}
+
+/// A place that nobody can write to, root included.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_read_only_place_is_named() {
+    let answer = Scratch::new().generate(&["--out", "/sys/ahv-models"]);
+    assert_eq!(answer.code, 2, "{}", answer.stderr);
+    assert!(
+        answer
+            .stderr
+            .starts_with("error: cannot make the folder /sys/ahv-models"),
+        "{}",
+        answer.stderr
+    );
+}
+
 /// The command that messages name works when `generated/` is no package at all.
 #[test]
 fn xtask_builds_and_mends_when_generated_does_not() {
