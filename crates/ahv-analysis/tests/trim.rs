@@ -1,4 +1,4 @@
-//! Trims of the models against recomputed values (science.md, section 6).
+//! Trims of the models against values that were computed independently of this project.
 #![forbid(unsafe_code)]
 
 use ahv_analysis::trim::{LevelFlight, TrimError, trim};
