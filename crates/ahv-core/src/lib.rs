@@ -4,6 +4,8 @@
 //! * [`Vector`]: a vector whose components have names and units (a state, an input, a row of a Jacobian).
 //! * [`Model`], [`DifferentiableModel`], [`StochasticModel`]: what a generated model can do.
 //! * [`Bounds`]: an interval of validity.
+//! * [`Pattern`]: where the entries of a compressed matrix stand.
+//! * [`NoiseClass`]: how a column of the diffusion depends on the state.
 //!
 //! No heap and no panic: an index out of range is an [`Option`], never an abort.
 #![no_std]
@@ -13,12 +15,16 @@ mod bounds;
 mod elementary;
 mod model;
 mod nalgebra;
+mod noise;
+mod pattern;
 mod provenance;
 mod real;
 mod vector;
 
 pub use bounds::{Bounds, Outside, first_outside};
 pub use model::{DifferentiableModel, Model, StochasticModel};
+pub use noise::NoiseClass;
+pub use pattern::Pattern;
 pub use provenance::{Provenance, Status};
 pub use real::Real;
 pub use vector::Vector;

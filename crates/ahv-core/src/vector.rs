@@ -11,6 +11,10 @@ pub trait Vector<T>: Copy {
     const NAMES: &'static [&'static str];
     /// Units of the components, in order; `1` where there is none.
     const UNITS: &'static [&'static str];
+    /// The same in metre, kilogram, second and radian.
+    const SI_UNITS: &'static [&'static str];
+    /// What each component is multiplied with to be in its SI unit.
+    const SI_FACTORS: &'static [f64];
 
     /// The vector whose components all are `value`.
     fn splat(value: T) -> Self;
@@ -39,11 +43,11 @@ pub trait Vector<T>: Copy {
     }
 }
 
-/// Makes `struct Name<T>` of `len` components a [`Vector`], with conversions.
+/// Makes `struct Name<T>` a [`Vector`], with conversions. For each field stand its unit, its SI unit, and the factor
+/// between them.
 ///
-/// The struct is `Copy` where `T` is, and has inherent `NAMES: [&'static str; len]`,
-/// `UNITS: [&'static str; len]`, `to_array(self) -> [T; len]` and `from_array([T; len]) -> Self` in
-/// `impl<T> Name<T>`.
+/// The struct is `Copy` where `T` is. It also gets inherent `LEN`, `NAMES`, `UNITS`, `to_array(self) -> [T; LEN]` and
+/// `from_array([T; LEN]) -> Self`.
 ///
 /// ```
 /// #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,33 +56,52 @@ pub trait Vector<T>: Copy {
 ///     pub right: T,
 /// }
 ///
-/// impl<T> Pair<T> {
-///     pub const NAMES: [&'static str; 2] = ["left", "right"];
-///     pub const UNITS: [&'static str; 2] = ["ft", "rad"];
-///     pub fn to_array(self) -> [T; 2] {
-///         [self.left, self.right]
-///     }
-///     pub fn from_array([left, right]: [T; 2]) -> Self {
-///         Self { left, right }
+/// ahv_core::impl_vector! {
+///     Pair {
+///         left: ["ft", "m", 0.3048],
+///         right: ["rad", "rad", 1.0],
 ///     }
 /// }
 ///
-/// ahv_core::impl_vector!(Pair, 2);
-///
 /// let jacobian = Pair { left: Pair { left: 1, right: 2 }, right: Pair { left: 3, right: 4 } };
 /// assert_eq!(jacobian.to_matrix(), [[1, 2], [3, 4]]);
+/// assert_eq!(Pair::<f64>::UNITS, ["ft", "rad"]);
 /// ```
 #[macro_export]
 macro_rules! impl_vector {
-    ($name:ident, $len:literal) => {
+    ($name:ident { $($field:ident: [$unit:literal, $si_unit:literal, $si_factor:literal]),+ $(,)? }) => {
+        impl<T> $name<T> {
+            /// Number of components.
+            pub const LEN: usize = [$($unit),+].len();
+            /// Names of the components.
+            pub const NAMES: [&'static str; $name::<()>::LEN] = [$(stringify!($field)),+];
+            /// Units of the components.
+            pub const UNITS: [&'static str; $name::<()>::LEN] = [$($unit),+];
+
+            /// The components in order.
+            #[inline]
+            #[allow(clippy::wrong_self_convention, reason = "T is Copy wherever a vector is used")]
+            pub fn to_array(self) -> [T; $name::<()>::LEN] {
+                [$(self.$field),+]
+            }
+
+            /// A vector from its components in order.
+            #[inline]
+            pub fn from_array([$($field),+]: [T; $name::<()>::LEN]) -> Self {
+                Self { $($field),+ }
+            }
+        }
+
         impl<T: Copy> $crate::Vector<T> for $name<T> {
-            const LEN: usize = $len;
-            const NAMES: &'static [&'static str] = &$name::<T>::NAMES;
-            const UNITS: &'static [&'static str] = &$name::<T>::UNITS;
+            const LEN: usize = $name::<()>::LEN;
+            const NAMES: &'static [&'static str] = &$name::<()>::NAMES;
+            const UNITS: &'static [&'static str] = &$name::<()>::UNITS;
+            const SI_UNITS: &'static [&'static str] = &[$($si_unit),+];
+            const SI_FACTORS: &'static [f64] = &[$($si_factor),+];
 
             #[inline]
             fn splat(value: T) -> Self {
-                Self::from_array([value; $len])
+                Self::from_array([value; $name::<()>::LEN])
             }
 
             #[inline]
@@ -131,7 +154,7 @@ macro_rules! impl_vector {
 
             /// Rows of a vector of vectors, such as a Jacobian.
             #[inline]
-            pub fn to_matrix<E, const COLUMNS: usize>(self) -> [[E; COLUMNS]; $len]
+            pub fn to_matrix<E, const COLUMNS: usize>(self) -> [[E; COLUMNS]; $name::<()>::LEN]
             where
                 T: Into<[E; COLUMNS]>,
             {
@@ -140,7 +163,7 @@ macro_rules! impl_vector {
 
             /// The vector of vectors with these rows.
             #[inline]
-            pub fn from_matrix<E, const COLUMNS: usize>(rows: [[E; COLUMNS]; $len]) -> Self
+            pub fn from_matrix<E, const COLUMNS: usize>(rows: [[E; COLUMNS]; $name::<()>::LEN]) -> Self
             where
                 T: From<[E; COLUMNS]>,
             {
@@ -148,14 +171,14 @@ macro_rules! impl_vector {
             }
         }
 
-        impl<T> From<[T; $len]> for $name<T> {
+        impl<T> From<[T; $name::<()>::LEN]> for $name<T> {
             #[inline]
-            fn from(components: [T; $len]) -> Self {
+            fn from(components: [T; $name::<()>::LEN]) -> Self {
                 Self::from_array(components)
             }
         }
 
-        impl<T> From<$name<T>> for [T; $len] {
+        impl<T> From<$name<T>> for [T; $name::<()>::LEN] {
             #[inline]
             fn from(vector: $name<T>) -> Self {
                 vector.to_array()

@@ -11,56 +11,26 @@ struct State<T> {
     eta: T,
 }
 
-impl<T> State<T> {
-    const NAMES: [&'static str; 3] = ["velocity", "alpha", "eta"];
-    const UNITS: [&'static str; 3] = ["ft/s", "rad", "1"];
-
-    #[allow(
-        clippy::wrong_self_convention,
-        reason = "the shape of the generated code, where T is Copy"
-    )]
-    fn to_array(self) -> [T; 3] {
-        [self.velocity, self.alpha, self.eta]
-    }
-
-    fn from_array([velocity, alpha, eta]: [T; 3]) -> Self {
-        Self {
-            velocity,
-            alpha,
-            eta,
-        }
+ahv_core::impl_vector! {
+    State {
+        velocity: ["ft/s", "m/s", 0.3048],
+        alpha: ["rad", "rad", 1.0],
+        eta: ["1", "1", 1.0],
     }
 }
-
-ahv_core::impl_vector!(State, 3);
-ahv_core::impl_nalgebra!(State, 3);
-ahv_core::impl_nalgebra_matrix!(State, 3, State, 3);
+ahv_core::impl_nalgebra!(State);
+ahv_core::impl_nalgebra_matrix!(State, State);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Input<T> {
     phi: T,
 }
 
-impl<T> Input<T> {
-    const NAMES: [&'static str; 1] = ["phi"];
-    const UNITS: [&'static str; 1] = ["1"];
-
-    #[allow(
-        clippy::wrong_self_convention,
-        reason = "the shape of the generated code, where T is Copy"
-    )]
-    fn to_array(self) -> [T; 1] {
-        [self.phi]
-    }
-
-    fn from_array([phi]: [T; 1]) -> Self {
-        Self { phi }
-    }
-}
-
-ahv_core::impl_vector!(Input, 1);
-ahv_core::impl_nalgebra!(Input, 1);
-ahv_core::impl_nalgebra_matrix!(State, 3, Input, 1);
+ahv_core::impl_vector!(Input {
+    phi: ["1", "1", 1.0]
+});
+ahv_core::impl_nalgebra!(Input);
+ahv_core::impl_nalgebra_matrix!(State, Input);
 
 const X: State<f64> = State {
     velocity: 1.0,

@@ -11,8 +11,8 @@ use approx::assert_relative_eq;
 use common::vector;
 use order::observed_order;
 
-vector!(State, 2, price, ornstein);
-vector!(Noise, 2, w_price, w_ornstein);
+vector!(State, price, ornstein);
+vector!(Noise, w_price, w_ornstein);
 
 const MU: f64 = 0.3;
 const SIGMA: f64 = 0.4;

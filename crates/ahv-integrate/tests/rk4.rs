@@ -11,8 +11,8 @@ use approx::assert_relative_eq;
 use common::vector;
 use order::observed_order;
 
-vector!(State, 2, growth, position);
-vector!(Input, 1, rate);
+vector!(State, growth, position);
+vector!(Input, rate);
 
 /// Logistic growth, x' = r x (1 − x), and its integral: ln(1 − x₀ + x₀ e^{rt}) / r.
 struct Logistic;

@@ -2,27 +2,13 @@
 
 /// A named vector as the generated code has it.
 macro_rules! vector {
-    ($name:ident, $len:literal, $($field:ident),+) => {
+    ($name:ident, $($field:ident),+) => {
         #[derive(Clone, Copy, Debug, PartialEq)]
         struct $name<T> {
             $($field: T,)+
         }
 
-        impl<T> $name<T> {
-            const NAMES: [&'static str; $len] = [$(stringify!($field)),+];
-            const UNITS: [&'static str; $len] = ["1"; $len];
-
-            #[allow(clippy::wrong_self_convention, reason = "the shape of the generated code")]
-            fn to_array(self) -> [T; $len] {
-                [$(self.$field),+]
-            }
-
-            fn from_array([$($field),+]: [T; $len]) -> Self {
-                Self { $($field),+ }
-            }
-        }
-
-        ahv_core::impl_vector!($name, $len);
+        ahv_core::impl_vector!($name { $($field: ["1", "1", 1.0]),+ });
     };
 }
 pub(crate) use vector;
