@@ -3,12 +3,15 @@
 Shares nothing with ``ahv_generator`` but the coefficient tables.
 """
 
-from .evaluate import Evaluation, Number, Oracle
+from .evaluate import Evaluation, Oracle
+from .model import MODELS
+from .program import Number
 from .sampling import Point, sample
 from .table import Table, TableError, load_table
 from .vectors import write_vectors
 
 __all__ = [
+    "MODELS",
     "Evaluation",
     "Number",
     "Oracle",

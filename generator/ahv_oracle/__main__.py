@@ -1,4 +1,7 @@
-"""Command line: ``python -m ahv_oracle vectors --table T --model M --points N --seed S --out F``."""
+"""Command line: ``python -m ahv_oracle vectors --table T --model M --points N --seed S --out F``.
+
+``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
+"""
 
 import argparse
 import sys
@@ -20,9 +23,10 @@ def main(arguments: list[str] | None = None) -> int:
     vectors.add_argument("--points", type=int, required=True, help="number of sample points")
     vectors.add_argument("--seed", type=int, required=True)
     vectors.add_argument("--out", type=Path, required=True, help="file to write")
+    vectors.add_argument("--functions", type=lambda text: text.split(","), help="comma-separated names (default: all)")
     options = parser.parse_args(arguments)
     try:
-        oracle = Oracle(options.table, options.model)
+        oracle = Oracle(options.table, options.model, options.functions)
         write_vectors(oracle, options.points, options.seed, options.out)
     except (OSError, ValueError) as error:
         kind = "" if isinstance(error, (TableError, OSError)) else f"{type(error).__name__}: "

@@ -1,38 +1,49 @@
-"""The equations of motion, (1)-(4) and (23)-(25), as SymPy expressions."""
+"""The models' vectors and drifts, (1)-(4) and (23)-(25), as SymPy expressions."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
-import sympy
 from sympy import Expr, Symbol
 
+from .modes import cantilever_rows, ornstein_uhlenbeck, oscillator, restoring, static_deflection
+from .names import Names, symbol
+from .printed import printed_rows
 from .table import Table, TableError
+from .vehicle import (
+    RIGID,
+    Binding,
+    aerodynamics,
+    density,
+    generalised_forces,
+    own_rows,
+    pitching_moment,
+    polynomial,
+    pressure_force,
+    rigid_quantities,
+    rigid_rows,
+    variables,
+)
 
-MODELS = ("com", "dcom", "sdcom")
+MODELS = ("com_rigid", "com", "dcom", "sdcom", "sdcom_printed", "sdcom_gust", "flexible_mode")
 """Names of the models that the oracle knows."""
 
-RIGID = ("velocity", "altitude", "gamma", "alpha", "pitch_rate")
-"""States of the rigid body."""
-
-Binding = Callable[[str], Expr]
-"""What a variable of a monomial stands for."""
-
-
-def symbol(kind: str, name: str) -> Symbol:
-    """Return the symbol of a state, input, noise, parameter, or of a generalised force kept whole."""
-    return Symbol(f"{kind}_{name}", real=True)
+RIGID_NOISES = ("w_gamma", "w_alpha", "w_q")
+"""Formal white noise in flight-path angle, incidence and pitch rate."""
 
 
 @dataclass(frozen=True)
 class Model:
-    """Names of a model's vectors and its drift, row by row."""
+    """Names of a model's vectors, its drift row by row, and its quantities by the name of their function."""
 
     name: str
     table: Table
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     noises: tuple[str, ...]
-    drift: Mapping[str, Expr]
+    extra: tuple[str, ...] = ()
+    names: Names = field(default_factory=Names)
+    drift: dict[str, Expr] = field(default_factory=dict)
+    quantities: dict[str, Expr] = field(default_factory=dict)
 
     def arguments(self) -> dict[str, Symbol]:
         """All symbols of the model by qualified name (``state.velocity``), in column order."""
@@ -41,6 +52,7 @@ class Model:
             "input": self.inputs,
             "noise": self.noises,
             "parameter": tuple(self.table.values),
+            "argument": self.extra,
         }
         return {f"{kind}.{name}": symbol(kind, name) for kind in names for name in names[kind]}
 
@@ -49,157 +61,121 @@ def build_model(table: Table, name: str) -> Model:
     """Build the model `name` from the monomials of `table`."""
     if name not in MODELS or name not in table.models:
         raise TableError(f"{table.name}: no model {name!r}")
-    inputs = ("phi", "delta_e") if name == "com" else ("phi", "delta_e", "delta_c")
-    modes = () if name == "com" else table.modes
-    flexible: tuple[str, ...] = ()
-    noises: tuple[str, ...] = ()
-    if name == "dcom":
-        flexible = tuple(f"{state}_{i}" for i in modes for state in ("eta", "eta_dot"))
-    if name == "sdcom":
-        flexible = tuple(f"chi_{i}" for i in modes)
-        noises = ("w_gamma", "w_alpha", "w_q", *(f"xi_{i}" for i in modes))
-    states = RIGID + flexible
-    return Model(name, table, states, inputs, noises, _drift(table, name, states, inputs))
+    if name == "flexible_mode":
+        return _flexible_mode(table)
+    if name.startswith("com"):
+        return _com(table, name)
+    return _dcom(table) if name == "dcom" else _sdcom(table, name)
 
 
-def _bindings(
-    table: Table, name: str, states: tuple[str, ...], inputs: tuple[str, ...]
-) -> tuple[Binding, dict[int, Expr]]:
-    """What the monomials are written in, and the generalised forces by mode."""
-    rigid = variables(states, inputs)
-    forces = generalised_forces(table, rigid) if name != "com" else {}
-    if name != "sdcom":
-        return rigid, forces
-    etas = {f"eta_{i}": static_deflection(i, force) + symbol("state", f"chi_{i}") for i, force in forces.items()}
-    return variables(states, inputs, etas), forces
+def _flexible_mode(table: Table) -> Model:
+    states = ("eta", "eta_dot", "chi")
+    model = Model("flexible_mode", table, states, ("force",), ("xi",), ("time", "frequency"))
+    model.drift["eta"] = symbol("state", "eta_dot")
+    model.drift["eta_dot"] = restoring(None, symbol("input", "force"))
+    model.drift["chi"] = ornstein_uhlenbeck(model.names, None)
+    return model
 
 
-def _drift(table: Table, name: str, states: tuple[str, ...], inputs: tuple[str, ...]) -> dict[str, Expr]:
-    bind, forces = _bindings(table, name, states, inputs)
-    rows = rigid_rows(aerodynamics(table, bind), own_rows())
+def _com(table: Table, name: str) -> Model:
+    modes = table.modes if name == "com" else ()
+    inputs = ("phi", "delta_e")
+    model = Model(name, table, RIGID + _oscillators(modes), inputs, ())
+    bind = variables(model.states, inputs)
+    fits = _named_fits(model, bind)
+    rows = rigid_rows(model.names, fits, own_rows())
+    model.quantities.update(rigid_quantities(model.names, fits))
+    if name == "com":
+        forces = generalised_forces(table, model.names, bind)
+        rows |= cantilever_rows(model.names, pitching_moment(model.names, fits), forces)
+        model.quantities.update({f"generalized_force_{i}": force for i, force in forces.items()})
+    _set_drift(model, rows)
+    return model
+
+
+def _dcom(table: Table) -> Model:
+    model = Model("dcom", table, RIGID + _oscillators(table.modes), _dcom_inputs(), _dcom_noises(table))
+    bind = variables(model.states, model.inputs)
+    forces = generalised_forces(table, model.names, bind)
+    fits = _named_fits(model, bind)
+    rows = rigid_rows(model.names, fits, own_rows())
     for i, force in forces.items():
-        rows |= _mode(i) if name == "sdcom" else _oscillator(i, force)
-    return {state: rows[state] for state in states}
+        rows |= oscillator(i, force)
+    model.quantities.update(rigid_quantities(model.names, fits) | _forces(model, bind, forces))
+    _set_drift(model, rows)
+    return model
 
 
-def quantities(model: Model) -> dict[str, Expr]:
-    """Air, curve fits, forces, moment and modal quantities of (2), (3) and (25), by the name of their function."""
-    bind, forces = _bindings(model.table, model.name, model.states, model.inputs)
+def _sdcom(table: Table, name: str) -> Model:
+    states, noises = RIGID + tuple(f"chi_{i}" for i in table.modes), _dcom_noises(table)
+    if name == "sdcom_gust":
+        states += ("alpha_gust",)
+        noises = (*(noise for noise in noises if noise not in ("w_gamma", "w_alpha")), "w_gust")
+    model = Model(name, table, states, _dcom_inputs(), noises)
+    bind, forces = reduced_binding(model)
+    modal_quantities = _forces(model, bind, forces)
+    for i, force in forces.items():
+        modal_quantities |= {f"eta_static_{i}": static_deflection(i, force), f"eta_{i}": bind(f"eta_{i}")}
+    if name == "sdcom_printed":
+        air = {"density": density(model.names)}
+        air["dynamic_pressure"] = pressure_force(model.names) / symbol("parameter", "s")
+        model.quantities.update(air | modal_quantities)
+        rows = printed_rows(table, model.names, forces)
+    else:
+        fits = _named_fits(model, bind)
+        model.quantities.update(rigid_quantities(model.names, fits) | modal_quantities)
+        rows = rigid_rows(model.names, fits, own_rows())
+    for i in table.modes:
+        rows[f"chi_{i}"] = ornstein_uhlenbeck(model.names, i)
+    if name == "sdcom_gust":
+        rows["alpha_gust"] = -symbol("state", "alpha_gust") / symbol("parameter", "gust_time")
+    _set_drift(model, rows)
+    return model
+
+
+def reduced_binding(model: Model) -> tuple[Binding, dict[int, Expr]]:
+    """What the monomials of a reduced model are written in, (25), and the generalised forces by mode."""
+    incidence: dict[str, Expr] = {}
+    if "alpha_gust" in model.states:
+        incidence["alpha"] = symbol("state", "alpha") + symbol("state", "alpha_gust")
+    forces = generalised_forces(model.table, model.names, variables(model.states, model.inputs, incidence))
+    etas = {
+        f"eta_{i}": model.names.name(f"eta_{i}", static_deflection(i, force) + symbol("state", f"chi_{i}"))
+        for i, force in forces.items()
+    }
+    return variables(model.states, model.inputs, etas | incidence), forces
+
+
+def exact_rows(model: Model) -> dict[str, Expr]:
+    """Rigid rows of SDCOM with everything that (1)-(4) and (25) imply, for a model with its states."""
+    bind, _ = reduced_binding(model)
+    return rigid_rows(model.names, _named_fits(model, bind), own_rows())
+
+
+def _named_fits(model: Model, bind: Binding) -> dict[str, Expr]:
     fits = aerodynamics(model.table, bind)
-    force = pressure_force()
-    thrust = fits["T"] if "T" in fits else force * fits["C_T"]
-    moment = symbol("parameter", "z_t") * thrust + force * symbol("parameter", "c_bar") * fits["C_M"]
-    found = {"density": density(), "dynamic_pressure": force / symbol("parameter", "s")}
-    found |= {name.lower(): fit for name, fit in fits.items() if name != "T"}
-    found |= {"thrust": thrust, "lift": force * fits["C_L"], "drag": force * fits["C_D"], "pitching_moment": moment}
-    for i, generalised in forces.items():
-        found |= {f"c_n_{i}": polynomial(model.table, f"C_N_{i}", bind), f"generalized_force_{i}": generalised}
-        if model.name == "sdcom":
-            found |= {f"eta_static_{i}": static_deflection(i, generalised), f"eta_{i}": bind(f"eta_{i}")}
+    return {quantity: model.names.name(quantity.lower(), fit) for quantity, fit in fits.items()}
+
+
+def _forces(model: Model, bind: Binding, forces: Mapping[int, Expr]) -> dict[str, Expr]:
+    found: dict[str, Expr] = {}
+    for i, force in forces.items():
+        found |= {f"c_n_{i}": polynomial(model.table, f"C_N_{i}", bind), f"generalized_force_{i}": force}
     return found
 
 
-def static_deflection(mode: int, force: Expr) -> Expr:
-    """N_i / omega_i^2 of (25)."""
-    return force / _omega(mode) ** 2
+def _set_drift(model: Model, rows: Mapping[str, Expr]) -> None:
+    for row in model.states:
+        model.drift[row] = model.names.name(f"drift_{row}", rows[row])
 
 
-def variables(states: tuple[str, ...], inputs: tuple[str, ...], replaced: Mapping[str, Expr] | None = None) -> Binding:
-    """Binds the variables of monomials; the canard is the one that the airframe sees, (4)."""
-    bound: dict[str, Expr] = {name: symbol("state", name) for name in states}
-    bound |= {name: symbol("input", name) for name in inputs}
-    if "delta_c" in bound:
-        ratio = symbol("parameter", "c_l_delta_e") / symbol("parameter", "c_l_delta_c")
-        slaved = symbol("parameter", "canard_slaving") * ratio * bound["delta_e"]
-        bound["delta_c"] = bound["delta_c"] - slaved
-    bound |= replaced or {}
-
-    def bind(name: str) -> Expr:
-        if name not in bound:
-            raise TableError(f"a monomial holds {name!r}, which this model does not have")
-        return bound[name]
-
-    return bind
+def _oscillators(modes: tuple[int, ...]) -> tuple[str, ...]:
+    return tuple(f"{state}_{i}" for i in modes for state in ("eta", "eta_dot"))
 
 
-def polynomial(table: Table, quantity: str, bind: Binding) -> Expr:
-    """Return the sum of coefficients times monomials of one quantity, (3)."""
-    if quantity not in table.quantities:
-        raise TableError(f"{table.name}: the section [{quantity}] is missing")
-    terms = [
-        sympy.Mul(symbol("parameter", term.parameter), *(bind(name) ** power for name, power in term.powers))
-        for term in table.quantities[quantity]
-    ]
-    return sympy.Add(*terms)
+def _dcom_inputs() -> tuple[str, ...]:
+    return ("phi", "delta_e", "delta_c")
 
 
-def aerodynamics(table: Table, bind: Binding) -> dict[str, Expr]:
-    """Return the polynomials of the rigid body: ``C_L``, ``C_D``, ``C_M`` and ``T`` or ``C_T``."""
-    if ("T" in table.quantities) == ("C_T" in table.quantities):
-        raise TableError(f"{table.name}: needs one of [T] and [C_T]")
-    thrust = "T" if "T" in table.quantities else "C_T"
-    return {quantity: polynomial(table, quantity, bind) for quantity in ("C_L", "C_D", "C_M", thrust)}
-
-
-def generalised_forces(table: Table, bind: Binding) -> dict[int, Expr]:
-    """N_i = qbar S C_N_i by mode, (2)."""
-    return {i: pressure_force() * polynomial(table, f"C_N_{i}", bind) for i in table.modes}
-
-
-def density() -> Expr:
-    """Air density of the exponential atmosphere."""
-    decay = (symbol("state", "altitude") - symbol("parameter", "h_0")) / symbol("parameter", "h_s")
-    return symbol("parameter", "rho_0") * sympy.exp(-decay)
-
-
-def pressure_force() -> Expr:
-    """Dynamic pressure times reference area."""
-    return sympy.Rational(1, 2) * density() * symbol("state", "velocity") ** 2 * symbol("parameter", "s")
-
-
-def rigid_rows(coefficients: Mapping[str, Expr], rest: Mapping[str, Expr]) -> dict[str, Expr]:
-    """Rows of (1): what is linear in the coefficient polynomials, plus `rest`."""
-    force, alpha = pressure_force(), symbol("state", "alpha")
-    mass, inertia = symbol("parameter", "m"), symbol("parameter", "i_yy")
-    momentum = mass * symbol("state", "velocity")
-    thrust = coefficients["T"] if "T" in coefficients else force * coefficients["C_T"]
-    turn = force * coefficients["C_L"] / momentum + thrust * sympy.sin(alpha) / momentum
-    pitch = symbol("parameter", "c_bar") * force * coefficients["C_M"]
-    return {
-        "velocity": thrust * sympy.cos(alpha) / mass - force * coefficients["C_D"] / mass + rest["velocity"],
-        "altitude": rest["altitude"],
-        "gamma": turn + rest["gamma"],
-        "alpha": -turn + rest["alpha"],
-        "pitch_rate": symbol("parameter", "z_t") * thrust / inertia + pitch / inertia + rest["pitch_rate"],
-    }
-
-
-def own_rows() -> dict[str, Expr]:
-    """Return the part of (1) without aerodynamics: gravity and kinematics, on the Earth that is chosen."""
-    velocity, gamma = symbol("state", "velocity"), symbol("state", "gamma")
-    curvature = symbol("parameter", "spherical_earth") / symbol("parameter", "r_e")
-    stretch = 1 + curvature * symbol("state", "altitude")
-    gravity = symbol("parameter", "g") / stretch**2
-    turn = gravity * sympy.cos(gamma) / velocity - curvature * velocity * sympy.cos(gamma) / stretch
-    return {
-        "velocity": -gravity * sympy.sin(gamma),
-        "altitude": velocity * sympy.sin(gamma),
-        "gamma": -turn,
-        "alpha": symbol("state", "pitch_rate") + turn,
-        "pitch_rate": sympy.Integer(0),
-    }
-
-
-def _omega(mode: int) -> Symbol:
-    return symbol("parameter", f"omega_{mode}")
-
-
-def _oscillator(mode: int, force: Expr) -> dict[str, Expr]:
-    eta, rate = symbol("state", f"eta_{mode}"), symbol("state", f"eta_dot_{mode}")
-    damping = 2 * symbol("parameter", f"zeta_{mode}") * _omega(mode) * rate
-    return {f"eta_{mode}": rate, f"eta_dot_{mode}": -damping - _omega(mode) ** 2 * eta + force}
-
-
-def _mode(mode: int) -> dict[str, Expr]:
-    chi = symbol("state", f"chi_{mode}")
-    return {f"chi_{mode}": -symbol("parameter", f"zeta_{mode}") * _omega(mode) * chi}
+def _dcom_noises(table: Table) -> tuple[str, ...]:
+    return (*RIGID_NOISES, *(f"xi_{i}" for i in table.modes))

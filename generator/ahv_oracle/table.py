@@ -11,8 +11,31 @@ from typing import Any
 PARAMETER_SECTIONS = ("vehicle", "environment", "modes", "noise")
 """Sections whose entries are parameters under their own (lower-case) name."""
 
-_OTHER_SECTIONS = ("table", "sources", "validity")
-_QUANTITY = re.compile(r"T|C_[TLDM]|C_N_[1-9]\d*")
+CHOICES: Mapping[str, tuple[str, Mapping[str, Mapping[str, float]]]] = {
+    "canard": (
+        "vehicle",
+        {
+            "free": {"canard_command": 1.0, "canard_slaving": 0.0},
+            "slaved": {"canard_command": 0.0, "canard_slaving": 1.0},
+            "none": {"canard_command": 0.0, "canard_slaving": 0.0},
+        },
+    ),
+    "earth": ("environment", {"flat": {"spherical_earth": 0.0}, "spherical": {"spherical_earth": 1.0}}),
+    "noise": ("noise", {"independent": {"shared_noise": 0.0}, "shared": {"shared_noise": 1.0}}),
+    "reduction": (
+        "noise",
+        {
+            "printed": {"variance_matching": 0.0, "moment_matching": 0.0},
+            "variance": {"variance_matching": 1.0, "moment_matching": 0.0},
+            "moment": {"variance_matching": 0.0, "moment_matching": 1.0},
+        },
+    ),
+}
+"""For each choice: the section after which its switches stand, and the switches by what is chosen."""
+
+_OTHER_SECTIONS = ("table", "sources", "choices", "validity", "sets")
+_QUANTITY = re.compile(r"T|C_[TLDM]|(?:C_)?N_[1-9]")
+_MODE = re.compile(r"(?:C_)?N_([1-9])")
 _FACTOR = re.compile(r"([a-z]\w*?)(?:\^([1-9]\d*))?")
 
 
@@ -45,33 +68,30 @@ class Table:
 
     @property
     def modes(self) -> tuple[int, ...]:
-        """Numbers of the flexible modes, from the sections ``C_N_i``."""
-        found = sorted(int(name[4:]) for name in self.quantities if name.startswith("C_N_"))
+        """Numbers of the flexible modes, from the sections ``C_N_i`` or ``N_i``."""
+        matches = (_MODE.fullmatch(name) for name in self.quantities)
+        found = sorted(int(match[1]) for match in matches if match)
         if found != list(range(1, len(found) + 1)):
             raise TableError(f"{self.name}: modes {found} do not count from 1")
         return tuple(found)
 
 
-def load_table(path: Path | str) -> Table:
-    """Parse the TOML file at `path`."""
+def load_table(path: Path | str, set: str | None = None) -> Table:
+    """Parse the TOML file at `path`, with the values of the parameter set `set` in place of its own."""
     with Path(path).open("rb") as file:
         data = tomllib.load(file)
-    values: dict[str, float] = {}
-    quantities: dict[str, tuple[Term, ...]] = {}
-    for section, entries in data.items():
-        if section in _OTHER_SECTIONS:
-            continue
-        if section not in PARAMETER_SECTIONS:
-            quantities[section] = _terms(section, entries)
-        for key, entry in entries.items():
-            name = key.lower() if section in PARAMETER_SECTIONS else parameter_name(section, key)
-            if name in values:
-                raise TableError(f"{section}.{key}: a second parameter named {name}")
-            values[name] = float(entry["value"])
+    name = str(data["table"]["name"])
+    if set is not None and set != data["table"].get("set"):
+        _apply(data, name, set)
+    quantities = {
+        section: _terms(section, entries)
+        for section, entries in data.items()
+        if section not in PARAMETER_SECTIONS + _OTHER_SECTIONS
+    }
     return Table(
-        name=str(data["table"]["name"]),
+        name=name,
         models=tuple(data["table"]["models"]),
-        values=values,
+        values=_values(data, tuple(quantities)),
         quantities=quantities,
         validity={name: _limits(entry) for name, entry in data["validity"].items()},
     )
@@ -81,6 +101,48 @@ def parameter_name(quantity: str, monomial: str) -> str:
     """Name of a coefficient: ``C_T``, ``phi*alpha^3`` gives ``c_t_phi_alpha_3``; ``1`` counts as ``0``."""
     tail = "0" if monomial == "1" else monomial.replace("*", "_").replace("^", "_")
     return f"{quantity}_{tail}".lower()
+
+
+def _apply(data: dict[str, Any], table: str, chosen: str) -> None:
+    """Replace entries of the table by those of a parameter set."""
+    if chosen not in data.get("sets", {}):
+        raise TableError(f"{table}: no parameter set {chosen!r}")
+    for section, entries in data["sets"][chosen].items():
+        for key, entry in entries.items():
+            if key not in data.get(section, {}):
+                raise TableError(f"sets.{chosen}.{section}.{key}: the table has no such entry")
+            data[section][key] = entry
+
+
+def _values(data: Mapping[str, Any], quantities: tuple[str, ...]) -> dict[str, float]:
+    """Values by parameter name, section by section with the switches of the choices where they belong."""
+    found: list[tuple[str, str, float]] = []
+    for section in PARAMETER_SECTIONS:
+        for key, entry in data.get(section, {}).items():
+            found.append((f"{section}.{key}", key.lower(), float(entry["value"])))
+        found += _switches(data.get("choices", {}), section)
+    for quantity in quantities:
+        for key, entry in data[quantity].items():
+            found.append((f"{quantity}.{key}", parameter_name(quantity, key), float(entry["value"])))
+    values: dict[str, float] = {}
+    for place, name, value in found:
+        if name in values:
+            raise TableError(f"{place}: a second parameter named {name}")
+        values[name] = value
+    return values
+
+
+def _switches(choices: Mapping[str, str], section: str) -> list[tuple[str, str, float]]:
+    unknown = [choice for choice in choices if choice not in CHOICES]
+    if unknown:
+        raise TableError(f"choices.{unknown[0]}: not a choice of these models")
+    found: list[tuple[str, str, float]] = []
+    for choice, (place, options) in CHOICES.items():
+        if place == section and choice in choices:
+            if choices[choice] not in options:
+                raise TableError(f"choices.{choice}: {choices[choice]!r} is none of {', '.join(options)}")
+            found += [(f"choices.{choice}", name, value) for name, value in options[choices[choice]].items()]
+    return found
 
 
 def _terms(section: str, entries: Mapping[str, Any]) -> tuple[Term, ...]:

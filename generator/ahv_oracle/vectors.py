@@ -1,7 +1,8 @@
 """Reference vectors: sampled inputs with 50-digit outputs, one text row a point.
 
 Line 1 is a comment, line 2 the columns ``inputs|outputs``; a row is ``inputs|outputs`` with each
-output ``hi;lo;K``: the nearest double, what it misses of the exact value, and K.
+output ``hi;lo;K``: the nearest double, what it misses of the exact value, and K; ``nan;0;0`` where
+there is no real value.
 """
 
 import os
@@ -11,7 +12,8 @@ from pathlib import Path
 
 import mpmath
 
-from .evaluate import DIGITS, Number, Oracle
+from .evaluate import DIGITS, Oracle
+from .program import Number
 from .sampling import Point, sample
 
 
@@ -31,23 +33,30 @@ def write_vectors(oracle: Oracle, points: int, seed: int, out: Path) -> None:
 
 def vector_lines(oracle: Oracle, points: int, seed: int) -> Iterator[str]:
     """Yield the lines of a file of reference vectors."""
-    model, table = oracle.model.name, oracle.table.name
-    yield (
-        f"# ahv reference vectors, model {model}, table {table}, seed {seed}, points {points}; "
-        "inputs|outputs, an output is hi;lo;K"
-    )
-    yield f"{','.join(oracle.names)}|{','.join(oracle.labels)}"
+    yield from heading(oracle, points, seed)
     for index in range(points):
-        yield _row(oracle, sample(oracle.model, seed, index))
+        yield vector_row(oracle, sample(oracle.model, seed, index))
 
 
-def _row(oracle: Oracle, point: Point) -> str:
+def heading(oracle: Oracle, points: int, seed: int) -> tuple[str, str]:
+    """Return the two lines before the rows: what this is, and the columns."""
+    model, table = oracle.model.name, oracle.table.name
+    functions = f"functions {' '.join(oracle.functions)}" if oracle.restricted else "all functions"
+    comment = f"# ahv reference vectors, model {model}, table {table}, seed {seed}, points {points}, {functions}; "
+    columns = f"{','.join(oracle.names)}|{','.join(oracle.labels)}"
+    return comment + "inputs|outputs, an output is hi;lo;K", columns
+
+
+def vector_row(oracle: Oracle, point: Point) -> str:
+    """Return the row of a point."""
     inputs = ",".join(repr(point[name]) for name in oracle.names)
     results = oracle.evaluate(point)
     return f"{inputs}|{','.join(_output(*results[label]) for label in oracle.labels)}"
 
 
 def _output(value: Number, magnitude: Number) -> str:
+    if mpmath.isnan(value):
+        return "nan;0;0"
     with mpmath.workdps(DIGITS):
         high = float(value)
         low = float(value - mpmath.mpf(high))
