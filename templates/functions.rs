@@ -1,17 +1,27 @@
-//! Functions of {{ label }}. Units are foot, slug, second and radian.
+//! Functions of {{ label }}. Units are {{ units }}.
 {%- if paper_names %}
 #![allow(non_snake_case)]
 {%- endif %}
 
 use super::{ {{- imports.join(", ") -}} };
-use ahv_core::{Real{% if needs_vector %}, Vector{% endif %}};
+use ahv_core::{ {%- if has_patterns() %}Pattern, {% endif -%} Real{% if needs_vector %}, Vector{% endif -%} };
 
-{%- for f in functions %}
+{%- for item in items %}
+{%- match item %}
+{%- when Item::Pattern(pattern) %}
+/// Where the entries of the compressed [`{{ pattern.alias }}`] stand.
+pub const {{ pattern.name }}: Pattern<{{ pattern.dimensions }}> = Pattern::new([{{ pattern.shape }}], &[
+    {%- for entry in pattern.entries %}{{ entry }}, {% endfor -%}
+]);
+{%- when Item::Function(f) %}
 {%- for line in f.docs %}
 ///{% if !line.is_empty() %} {{ line }}{% endif %}
 {%- endfor %}
 #[inline]
 pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
+{%- if let Some(source) = f.source %}
+    {{ source }}
+{%- endif %}
 {%- for statement in f.statements %}
     {{ statement.source() }}
 {%- endfor %}
@@ -20,8 +30,8 @@ pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
 {%- else if f.sets_result_off() %}
     __section!("");
 {%- endif %}
-{%- for (name, of) in f.zeros %}
-    let {{ name }} = {{ of }}::splat(R::ZERO);
+{%- for (name, of, component) in f.zeros %}
+    let {{ name }} = {{ of }}::splat({{ component }});
 {%- endfor %}
 {%- if f.outputs.len() == 1 %}
     {{ f.outputs[0].1 }}
@@ -32,4 +42,5 @@ pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
     ({% for (name, _) in f.outputs %}{{ name }}{% if !loop.last %}, {% endif %}{% endfor %})
 {%- endif %}
 }
+{%- endmatch %}
 {%- endfor %}

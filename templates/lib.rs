@@ -1,6 +1,6 @@
 //! Models of a flexible air-breathing hypersonic vehicle, generated from tables of curve-fitted coefficients.
 //!
-//! Units are foot, slug, second and radian, per foot of vehicle width. Every function is generic over the scalar
+//! Units are {{ units }}; forces, mass and inertia are per unit of vehicle width. Every function is generic over the scalar
 //! ([`ahv_core::Real`]), has no branches and no heap, and follows IEEE arithmetic: outside a model's domain
 //! (velocity > 0) a result may be infinite or NaN.
 #![no_std]

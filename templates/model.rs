@@ -5,17 +5,20 @@
 {% for group in groups %}pub use {{ group }}::*;
 {% endfor -%}
 {%- if shared_parameters %}
-pub use crate::{{ home }}::{NOMINAL, PROVENANCE, Parameters, VALIDITY, Validity};
+pub use crate::{{ home }}::{ {{- shared.join(", ") -}} };
 {%- else %}
-pub use nominal::{NOMINAL, VALIDITY};
+{%- if has_choices %}
+pub use choices::*;
+{%- endif %}
+pub use nominal::*;
 pub use parameters::{Parameters, Validity};
-pub use provenance::PROVENANCE;
+pub use provenance::*;
 {%- endif %}
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, Real};
+use ahv_core::{Bounds, {% if model.noise.is_some() %}NoiseClass, {% endif %}Real};
 
-{%- for v in vectors %}
+{%- for (v, implementation) in vectors %}
 /// {{ v.doc }} of {{ label }}.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -26,35 +29,11 @@ pub struct {{ v.name }}<T> {
 {%- endfor %}
 }
 
-impl<T> {{ v.name }}<T> {
-    /// Names of the components.
-    pub const NAMES: [&'static str; {{ v.fields.len() }}] = [
-        {%- for field in v.fields %}"{{ field.name }}", {% endfor -%}
-    ];
-    /// Units of the components.
-    pub const UNITS: [&'static str; {{ v.fields.len() }}] = [
-        {%- for field in v.fields %}"{{ field.unit }}", {% endfor -%}
-    ];
-
-    /// The components in order.
-    #[inline]
-    pub fn to_array(self) -> [T; {{ v.fields.len() }}] {
-        [{% for field in v.fields %}self.{{ field.name }}, {% endfor %}]
-    }
-
-    /// A vector from its components in order.
-    #[inline]
-    pub fn from_array(values: [T; {{ v.fields.len() }}]) -> Self {
-        let [{% for field in v.fields %}{{ field.name }}, {% endfor %}] = values;
-        Self { {% for field in v.fields %}{{ field.name }}, {% endfor %} }
-    }
-}
-
-ahv_core::impl_vector!({{ v.name }}, {{ v.fields.len() }});
+{{ implementation }}
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!({{ v.name }}, {{ v.fields.len() }});
+ahv_core::impl_nalgebra!({{ v.name }});
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, {{ vectors[0].fields.len() }}, {{ v.name }}, {{ v.fields.len() }});
+ahv_core::impl_nalgebra_matrix!(State, {{ v.name }});
 
 {%- if let Some(bounds) = v.bounds %}
 /// Where the curve fits are meant to be used.
@@ -66,13 +45,36 @@ pub const {{ bounds }}: {{ v.name }}<Bounds> = {{ v.name }} {
 {%- endif %}
 {%- endfor %}
 
-/// ∂f/∂x: `jacobian.velocity.alpha` is the derivative of the velocity's rate with respect to the angle of attack.
+/// ∂f/∂x: `jacobian.{{ model.bases["state"][0].name }}.{{ model.bases["state"][1].name }}` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
 /// ∂f/∂u, by rows of the state.
 pub type InputJacobian<T> = State<Input<T>>;
-{%- if stochastic %}
+/// ∂f/∂p, by rows of the state.
+pub type ParameterJacobian<T> = State<Parameters<T>>;
+/// ∂²f/∂x², by rows of the state.
+pub type Hessian<T> = State<State<State<T>>>;
+{%- if let Some(noise) = model.noise %}
 /// G, by rows of the state.
 pub type Diffusion<T> = State<Noise<T>>;
+/// L^j b^k, by rows of the state, j and k.
+pub type NoiseDerivatives<T> = State<Noise<Noise<T>>>;
+
+/// How each column of the diffusion depends on the state.
+pub const NOISE_CLASS: Noise<NoiseClass> = Noise {
+{%- for column in noise.columns %}
+    {{ column.name }}: NoiseClass::{{ class(column) }},
+{%- endfor %}
+};
+/// Whether two columns of the diffusion commute: L^j b^k = L^k b^j.
+pub const NOISE_COMMUTES: Noise<Noise<bool>> = Noise {
+{%- for j in noise.columns %}
+    {{ j.name }}: Noise {
+    {%- for k in noise.columns %}
+        {{ k.name }}: {{ commute(j, k) }},
+    {%- endfor %}
+    },
+{%- endfor %}
+};
 {%- endif %}
 
 /// {{ label }} with its parameters prepared.
@@ -114,7 +116,7 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
         drift_and_jacobians(x, u, &self.prepared)
     }
 }
-{%- if stochastic %}
+{%- if model.noise.is_some() %}
 
 impl<R: Real> ahv_core::StochasticModel for Model<R> {
     type Noise = Noise<R>;

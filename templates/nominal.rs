@@ -3,12 +3,33 @@
 use super::{Parameters, Validity};
 use ahv_core::Bounds;
 
-/// Nominal values of the parameters.
+/// The unit system: `ft-slug-s-rad` or `si`.
+pub const UNIT_SYSTEM: &str = "{{ system }}";
+
+/// Values of the parameters in the table{% if !own_set.is_empty() %}, the set `{{ own_set }}`{% endif %}.
 pub const NOMINAL: Parameters<f64> = Parameters {
 {%- for (name, value) in values %}
     {{ name }}: {{ value }},
 {%- endfor %}
 };
+
+{%- for set in sets %}
+/// The set `{{ set.name }}`.
+pub const {{ set.constant }}: Parameters<f64> = Parameters {
+{%- for (name, value) in set.values %}
+    {{ name }}: {{ value }},
+{%- endfor %}
+    ..NOMINAL
+};
+{%- endfor %}
+
+/// Sets of parameters by name.
+pub const SETS: [(&str, Parameters<f64>); {{ sets.len() + 1 }}] = [
+    ("{{ own_set }}", NOMINAL),
+{%- for set in sets %}
+    ("{{ set.name }}", {{ set.constant }}),
+{%- endfor %}
+];
 
 /// The box in which the curve fits are meant to be used.
 pub const VALIDITY: Validity = Validity {

@@ -12,31 +12,7 @@ pub struct Parameters<T> {
 {%- endfor %}
 }
 
-impl<T> Parameters<T> {
-    /// Names of the parameters.
-    pub const NAMES: [&'static str; {{ parameters.len() }}] = [
-        {%- for p in parameters %}"{{ p.name }}", {% endfor -%}
-    ];
-    /// Units of the parameters.
-    pub const UNITS: [&'static str; {{ parameters.len() }}] = [
-        {%- for p in parameters %}"{{ p.unit }}", {% endfor -%}
-    ];
-
-    /// The parameters in the order of the table.
-    #[inline]
-    pub fn to_array(self) -> [T; {{ parameters.len() }}] {
-        [{% for p in parameters %}self.{{ p.name }}, {% endfor %}]
-    }
-
-    /// The parameters from an array in the order of the table.
-    #[inline]
-    pub fn from_array(values: [T; {{ parameters.len() }}]) -> Self {
-        let [{% for p in parameters %}{{ p.name }}, {% endfor %}] = values;
-        Self { {% for p in parameters %}{{ p.name }}, {% endfor %} }
-    }
-}
-
-ahv_core::impl_vector!(Parameters, {{ parameters.len() }});
+{{ implementation }}
 
 /// The box in which the curve fits are meant to be used.
 #[derive(Clone, Copy, Debug, PartialEq)]

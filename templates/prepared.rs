@@ -7,7 +7,9 @@ use ahv_core::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared<R> {
 {%- for field in fields %}
-    /// {{ field.doc }}
+{%- for line in field.docs %}
+    /// {{ line }}
+{%- endfor %}
     pub {{ field.name }}: R,
 {%- endfor %}
 }

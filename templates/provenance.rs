@@ -3,9 +3,14 @@
 use super::Parameters;
 use ahv_core::{Provenance, Status};
 
-/// Source, status and relative uncertainty of each parameter.
-pub const PROVENANCE: Parameters<Provenance> = Parameters {
-{%- for p in parameters %}
-    {{ p.name }}: Provenance::new({{ "{:?}"|format(p.source) }}, Status::{{ p.status_variant() }}, {{ "{:?}"|format(p.uncertainty) }}),
+{%- for list in lists %}
+/// Source, status and relative uncertainty of each parameter{% if !list.set.is_empty() %} of the set `{{ list.set }}`{% endif %}.
+pub const {{ list.constant }}: Parameters<Provenance> = Parameters {
+{%- for (name, source, status, uncertainty) in list.entries %}
+    {{ name }}: Provenance::new({{ source }}, Status::{{ status }}, {{ uncertainty }}),
 {%- endfor %}
+{%- if list.rest %}
+    ..PROVENANCE
+{%- endif %}
 };
+{%- endfor %}

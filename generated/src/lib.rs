@@ -2,15 +2,19 @@
 
 //! Models of a flexible air-breathing hypersonic vehicle, generated from tables of curve-fitted coefficients.
 //!
-//! Units are foot, slug, second and radian, per foot of vehicle width. Every function is generic over the scalar
+//! Units are foot, slug, second and radian; forces, mass and inertia are per unit of vehicle width. Every function is generic over the scalar
 //! ([`ahv_core::Real`]), has no branches and no heap, and follows IEEE arithmetic: outside a model's domain
 //! (velocity > 0) a result may be infinite or NaN.
 #![no_std]
 #![forbid(unsafe_code)]
 
-/// COM: control-oriented model, rigid body, eq. (1)-(3).
+/// COM: control-oriented model, forebody and aftbody flexible, eq. (1)-(3).
 #[rustfmt::skip]
 pub mod com;
+
+/// COM_RIGID: control-oriented model, rigid body, eq. (1)-(3).
+#[rustfmt::skip]
+pub mod com_rigid;
 
 /// DCOM: decoupled control-oriented model, eq. (1)-(4).
 #[rustfmt::skip]
@@ -19,3 +23,15 @@ pub mod dcom;
 /// SDCOM: stochastic decoupled control-oriented model, exact form, eq. (24)-(35).
 #[rustfmt::skip]
 pub mod sdcom;
+
+/// SDCOM_PRINTED: stochastic decoupled control-oriented model, the paper's truncated form without its misprints, eq. (24)-(35).
+#[rustfmt::skip]
+pub mod sdcom_printed;
+
+/// SDCOM_GUST: stochastic decoupled control-oriented model with a band-limited gust, eq. (24)-(27).
+#[rustfmt::skip]
+pub mod sdcom_gust;
+
+/// FLEXIBLE_MODE: a flexible mode and its reduction to coloured noise, eq. (5)-(26).
+#[rustfmt::skip]
+pub mod flexible_mode;

@@ -12,7 +12,7 @@ import json
 import sys
 from pathlib import Path
 
-from . import ir, reference
+from . import audit, ir, reference
 from .diagnostics import Diagnostic, TableError
 from .models import BUILDERS
 from .table import load
@@ -23,7 +23,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="ahv_generator")
     commands = parser.add_subparsers(dest="command", required=True)
     derive = commands.add_parser("derive", help="derive the models of tables and write their IR")
-    derive.add_argument("--out", type=Path, required=True, help="folder for <table>.json")
+    derive.add_argument("--out", type=Path, required=True, help="folder for <table>.json, audit.json")
     derive.add_argument("tables", type=Path, nargs="+")
     evaluate = commands.add_parser("evaluate", help="evaluate a model at the points of an oracle file")
     evaluate.add_argument("--table", type=Path, required=True)
@@ -48,6 +48,7 @@ def main() -> int:
 
 def _derive(tables: list[Path], out: Path) -> None:
     texts: dict[str, str] = {}
+    printed = False
     diagnostics: list[Diagnostic] = []
     for path in tables:
         try:
@@ -55,9 +56,12 @@ def _derive(tables: list[Path], out: Path) -> None:
         except TableError as error:
             diagnostics += error.diagnostics
             continue
+        printed = printed or "sdcom_printed" in table.models
         texts[table.name] = ir.render(table, [BUILDERS[name](table) for name in table.models])
     if diagnostics:
         raise TableError(diagnostics)
+    if printed:
+        texts["audit"] = audit.render()
     for name, text in texts.items():
         (out / f"{name}.json").write_text(text, encoding="utf-8", newline="\n")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -26,36 +28,54 @@ class Quantity:
 class Graph:
     """Leaves (states, inputs, parameters, increments) and the quantities built on them, in order."""
 
-    def __init__(self) -> None:
+    def __init__(self, system: str = units.IMPERIAL) -> None:
+        self.system = system
         self.symbols: dict[str, ca.SX] = {}
         self.units: dict[str, str] = {}
         self.quantities: dict[str, Quantity] = {}
+        self.latex: dict[str, str] = {}
+        self._position: dict[str, int] = {}
+        # Of a name: what its expression mentions, and the leaves that it depends on in the end.
+        self._names: dict[str, list[str]] = {}
+        self._leaves: dict[str, frozenset[str]] = {}
         self._derivatives: dict[tuple[str, str], ca.SX] = {}
+        # Of a derivative: its order, and the symbols above and below the bar.
+        self._derived: dict[str, tuple[int, str, str]] = {}
 
-    def leaf(self, name: str, unit: str) -> ca.SX:
-        """Declare a leaf."""
+    def leaf(self, name: str, unit: str, symbol: str = "") -> ca.SX:
+        """Declare a leaf; its unit is turned into that of the graph's system."""
         if name in self.symbols:
             raise ValueError(f"the name {name} is taken")
+        self._position[name] = len(self.symbols)
+        self._leaves[name] = frozenset([name])
         self.symbols[name] = ca.SX.sym(name)
-        self.units[name] = unit
+        self.units[name] = units.converted(unit, self.system)
+        if symbol:
+            self.latex[name] = symbol
         return self.symbols[name]
 
     def define(self, name: str, expr: ca.SX, *, symbol: str, unit: str, doc: str, equation: str, section: str) -> ca.SX:
         """Name a quantity and return its symbol; its dimensions are checked against `unit`."""
         check_dimensions(name, expr, unit, self.units)
         result = self.leaf(name, unit)
-        self.quantities[name] = Quantity(name, symbol, unit, doc, equation, section, expr)
+        self._names[name] = self._names_in(expr)
+        self._leaves[name] = frozenset().union(*(self._leaves[used] for used in self._names[name]))
+        self.quantities[name] = Quantity(name, symbol, self.units[name], doc, equation, section, expr)
         return result
 
-    def _used(self, expr: ca.SX) -> list[str]:
+    def _names_in(self, expr: ca.SX) -> list[str]:
         # CasADi lists symbols in traversal order; the order of declaration is the one a reader knows.
-        used = {symbol.name() for symbol in ca.symvar(expr)}
-        return [name for name in self.symbols if name in used]
+        return sorted((symbol.name() for symbol in ca.symvar(expr)), key=self._position.__getitem__)
 
     def derivative(self, expr: ca.SX, variable: str) -> ca.SX:
         """The total derivative of `expr` with respect to a leaf; 0 where it is structurally zero."""
+        return self._chained(expr, self._names_in(expr), variable)
+
+    def _chained(self, expr: ca.SX, names: list[str], variable: str) -> ca.SX:
         total = ca.SX(0)
-        for name in self._used(expr):
+        for name in names:
+            if variable not in self._leaves[name]:
+                continue
             inner = self._derivative_of(name, variable)
             if inner.is_zero():
                 continue
@@ -73,34 +93,68 @@ class Graph:
             return ca.SX(0)
         key = (name, variable)
         if key not in self._derivatives:
-            total = self.derivative(quantity.expr, variable)
-            self._derivatives[key] = total if _is_plain(total) else self._define_derivative(quantity, variable, total)
+            total = self._chained(quantity.expr, self._names[name], variable)
+            plain = _is_plain(total, variable, self.quantities)
+            self._derivatives[key] = total if plain else self._define_derivative(quantity, variable, total)
         return self._derivatives[key]
 
     def _define_derivative(self, quantity: Quantity, variable: str, total: ca.SX) -> ca.SX:
         plain = variable.rpartition(".")[2]
+        order, symbol, below = self._derived.get(quantity.name, (0, quantity.symbol, ""))
+        stem = quantity.name.removeprefix("d_" if order == 1 else f"d{order}_") if order else quantity.name
+        name = f"d{order + 1 if order else ''}_{stem}_d_{plain}"
+        below = rf"{below}\,\partial {self._latex(variable)}"
+        power = f"^{order + 1}" if order else ""
+        self._derived[name] = (order + 1, symbol, below)
+        of = quantity.doc.removeprefix("derivative of ") if order else quantity.doc
         return self.define(
-            f"d_{quantity.name}_d_{plain}",
+            name,
             total,
-            symbol=rf"\partial {quantity.symbol}/\partial {plain}",
+            symbol=rf"\frac{{\partial{power} {symbol}}}{{{below.removeprefix(chr(92) + ',')}}}",
             unit=units.quotient(quantity.unit, self.units[variable]),
-            doc=f"derivative of {quantity.doc} with respect to {plain}",
+            doc=f"derivative of {of} {'and' if order else 'with respect to'} {plain}",
             equation="",
-            section=f"Derivatives with respect to {plain}",
+            section=f"Derivatives with respect to {self._section_of(variable, plain)}",
         )
 
+    def _section_of(self, variable: str, plain: str) -> str:
+        return "parameters" if variable.startswith("p.") else plain
 
-def _is_plain(expr: ca.SX) -> bool:
+    def _latex(self, variable: str) -> str:
+        return self.latex.get(variable, rf"\mathrm{{{variable.rpartition('.')[2]}}}".replace("_", r"\_"))
+
+
+def _is_plain(expr: ca.SX, variable: str, quantities: Mapping[str, Quantity]) -> bool:
     """Whether a derivative needs no name of its own.
 
-    That is a number, a name, a name negated, or a quantity times a parameter; a derivative times a parameter is
-    used often enough to be named.
+    That is a number, a name, a name negated, a product of leaves alone (the alpha^2 that a coefficient is multiplied
+    with), or a quantity times a parameter. A derivative times a parameter is used often enough to be named. By a
+    parameter, a product of quantities and leaves needs no name either.
     """
     if expr.is_constant() or expr.is_symbolic():
         return True
+    if _is_product(expr):
+        used = [symbol.name() for symbol in ca.symvar(expr)]
+        inner = [name for name in used if name in quantities]
+        if not inner or (variable.startswith("p.") and not any(_is_derivative(name) for name in inner)):
+            return True
     parts = [expr.dep(i) for i in range(expr.n_dep())]
     if not all(part.is_symbolic() for part in parts):
         return False
     names = [part.name() for part in parts]
-    scaled = any(name.startswith("p.") for name in names) and not any(name.startswith("d_") for name in names)
+    scaled = any(name.startswith("p.") for name in names) and not any(_is_derivative(name) for name in names)
     return bool(expr.op() == ca.OP_NEG or (expr.op() == ca.OP_MUL and scaled))
+
+
+def _is_derivative(name: str) -> bool:
+    return re.match(r"d\d?_", name) is not None
+
+
+_PRODUCT = (ca.OP_MUL, ca.OP_NEG, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV, ca.OP_POW, ca.OP_CONSTPOW)
+
+
+def _is_product(expr: ca.SX) -> bool:
+    """Whether there is neither a sum nor an elementary function in an expression."""
+    if expr.is_constant() or expr.is_symbolic():
+        return True
+    return expr.op() in _PRODUCT and all(_is_product(expr.dep(i)) for i in range(expr.n_dep()))

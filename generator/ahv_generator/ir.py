@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from importlib.metadata import version
 
-from . import __version__
+from . import __version__, units
 from .expression import tree
 from .model import Function, Model, Output
-from .schema import VariableSpec
+from .schema import Choice, VariableSpec
 from .table import Parameter, Table
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 class _Line:
@@ -31,8 +31,14 @@ def render(table: Table, models: list[Model]) -> str:
     document = {
         "schema_version": SCHEMA_VERSION,
         "provenance": {"table": table.name, "generator": __version__, "casadi": casadi_version()},
+        "units": _units(table, models),
+        "choices": [_choice(c) for c in table.schema.choices],
+        "sets": [{"name": s.name, "parameters": [_Line(_replacement(p)) for p in s.parameters]} for s in table.sets],
         "parameters": [_Line(_parameter(p)) for p in table.parameters],
-        "validity": [_Line({"name": v.name, "unit": v.unit, "doc": v.doc}) for v in table.validity],
+        "validity": [
+            _Line({"name": v.name, "symbol": v.symbol, "unit": units.converted(v.unit, table.units), "doc": v.doc})
+            for v in table.validity
+        ],
         "models": [_model(m) for m in models],
     }
     return _dump(document, 0) + "\n"
@@ -51,16 +57,52 @@ def _parameter(p: Parameter) -> dict[str, object]:
     }
 
 
-def _variable(v: VariableSpec) -> dict[str, object]:
-    return {"name": v.name, "symbol": v.symbol, "unit": v.unit, "doc": v.doc, "validity": v.validity}
+def _replacement(p: Parameter) -> dict[str, object]:
+    whole = _parameter(p)
+    return {key: whole[key] for key in ("name", "path", "source", "status", "uncertainty")}
+
+
+def _choice(choice: Choice) -> dict[str, object]:
+    keys = [switch.key for switch in choice.switches]
+    options = [
+        _Line({"name": o.name, "doc": o.doc, "values": dict(zip(keys, map(_plain, o.values), strict=True))})
+        for o in choice.options
+    ]
+    return {"name": choice.name, "type": choice.type_name, "doc": choice.doc, "options": options}
+
+
+def _units(table: Table, models: list[Model]) -> dict[str, object]:
+    """Every unit of the document, with what it is in the other system."""
+    other = units.other(table.units)
+    used = {p.unit for p in table.parameters} | {units.converted(v.unit, table.units) for v in table.validity}
+    for m in models:
+        used |= {m.unit(v.name) for basis in m.bases.values() for v in basis}
+        used |= {q.unit for q in m.graph.quantities.values()}
+        used |= {o.unit for f in m.functions for o in f.outputs if o.unit is not None}
+    factors = {unit: _Line([units.converted(unit, other), units.conversion(unit, other)]) for unit in sorted(used)}
+    return {"system": table.units, "other": other, "factors": factors}
+
+
+def _variable(v: VariableSpec, unit: str) -> dict[str, object]:
+    return {"name": v.name, "symbol": v.symbol, "unit": unit, "doc": v.doc, "validity": v.validity}
 
 
 def _model(m: Model) -> dict[str, object]:
+    document = _document(m)
+    if m.noise_structure is not None:
+        document["noise"] = {
+            "columns": [_Line({"name": name, "class": kind}) for name, kind in m.noise_structure.columns],
+            "commuting": [_Line(list(pair)) for pair in m.noise_structure.commuting],
+        }
+    return document
+
+
+def _document(m: Model) -> dict[str, object]:
     return {
         "name": m.name,
         "title": m.title,
         "equations": m.equations,
-        "bases": {name: [_Line(_variable(v)) for v in basis] for name, basis in m.bases.items()},
+        "bases": {name: [_Line(_variable(v, m.unit(v.name))) for v in basis] for name, basis in m.bases.items()},
         "quantities": [
             _Line(
                 {
@@ -86,6 +128,7 @@ def _function(f: Function) -> dict[str, object]:
         "doc": f.doc,
         "equation": f.equation,
         "outputs": [_output(o) for o in f.outputs],
+        "compressed": f.compressed,
     }
 
 
@@ -94,6 +137,7 @@ def _output(o: Output) -> dict[str, object]:
         "name": o.name,
         "basis": list(o.basis),
         "unit": o.unit,
+        "symmetric": o.symmetric,
         "entries": [_Line({"at": list(e.at), "expr": _plain(tree(e.expr))}) for e in o.entries],
     }
 

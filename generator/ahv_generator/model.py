@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import casadi as ca
 
+from . import units
 from .graph import Graph
 from .schema import VariableSpec
 from .table import Table
 
 # Prefixes that tell leaves of different bases apart: a Wiener increment and its intensity share a name.
-LEAVES = {"state": "x", "input": "u", "noise": "w"}
+LEAVES = {"state": "x", "input": "u", "noise": "w", "argument": "t"}
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,7 @@ class Output:
     basis: tuple[str, ...]
     entries: tuple[Entry, ...]
     unit: str | None = None
+    symmetric: bool = False
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,15 @@ class Function:
     doc: str
     equation: str
     outputs: tuple[Output, ...]
+    compressed: bool = False
+
+
+@dataclass(frozen=True)
+class NoiseStructure:
+    """The class of each column of the diffusion, and the pairs of columns that commute."""
+
+    columns: tuple[tuple[str, str], ...]
+    commuting: tuple[tuple[str, str], ...]
 
 
 @dataclass
@@ -53,15 +64,17 @@ class Model:
     equations: str
     table: Table
     bases: dict[str, tuple[VariableSpec, ...]]
-    graph: Graph = field(default_factory=Graph)
+    graph: Graph = field(init=False)
     functions: list[Function] = field(default_factory=list)
+    noise_structure: NoiseStructure | None = None
 
     def __post_init__(self) -> None:
+        self.graph = Graph(self.table.units)
         for basis, prefix in LEAVES.items():
             for variable in self.bases.get(basis, ()):
-                self.graph.leaf(f"{prefix}.{variable.name}", variable.unit)
+                self.graph.leaf(f"{prefix}.{variable.name}", variable.unit, variable.symbol)
         for parameter in self.table.parameters:
-            self.graph.leaf(f"p.{parameter.name}", parameter.unit)
+            self.graph.leaf(f"p.{parameter.name}", parameter.unit, parameter.symbol)
 
     def parameter(self, name: str) -> ca.SX:
         """The symbol of a parameter, by its name in the generated code."""
@@ -71,6 +84,10 @@ class Model:
         """The symbol of a Wiener increment."""
         return self.graph.symbols[f"w.{name}"]
 
+    def argument(self, name: str) -> ca.SX:
+        """The symbol of an argument that is neither state nor input, such as a time."""
+        return self.graph.symbols[f"t.{name}"]
+
     def __getitem__(self, name: str) -> ca.SX:
         """The symbol of a quantity, a state or an input."""
         for known in (name, f"x.{name}", f"u.{name}"):
@@ -79,12 +96,15 @@ class Model:
         raise KeyError(name)
 
     def unit(self, name: str) -> str:
-        """The unit of a state or an input."""
-        return next(v.unit for basis in self.bases.values() for v in basis if v.name == name)
+        """The unit of a state, an input or another component, in the system of the table."""
+        unit = next(v.unit for basis in self.bases.values() for v in basis if v.name == name)
+        return units.converted(unit, self.table.units)
 
-    def qualified(self, basis: str) -> tuple[str, ...]:
-        """Names of the leaves of a basis as expressions hold them."""
-        return tuple(f"{LEAVES[basis]}.{name}" for name in self.names(basis))
+    def leaves(self, basis: str) -> dict[str, str]:
+        """Names of the entries of a basis, in order, with the names that they have in expressions."""
+        if basis == "parameter":
+            return {p.name: f"p.{p.name}" for p in self.table.parameters}
+        return {v.name: f"{LEAVES[basis]}.{v.name}" for v in self.bases[basis]}
 
     def names(self, basis: str) -> tuple[str, ...]:
         """Names of the entries of a basis, in order."""
@@ -100,32 +120,30 @@ class Model:
         # Column by column, so that the derivatives with respect to one variable stand together.
         found = {
             (row, column): self.graph.derivative(exprs[row], leaf)
-            for column, leaf in zip(self.names(columns), self.qualified(columns), strict=True)
+            for column, leaf in self.leaves(columns).items()
             for row in self.names(rows)
         }
-        at = [(row, column) for row in self.names(rows) for column in self.names(columns)]
+        at = [(row, column) for row in self.names(rows) for column in self.leaves(columns)]
         entries = tuple(Entry(key, found[key]) for key in at if not found[key].is_zero())
         return Output(name, (rows, columns), entries)
 
-    def add(self, name: str, group: str, doc: str, equation: str, outputs: Iterable[Output]) -> None:
-        """Add a function."""
-        self.functions.append(Function(name, group, doc, equation, tuple(outputs)))
+    def add(
+        self, name: str, group: str, doc: str, equation: str, outputs: Iterable[Output], *, compressed: bool = False
+    ) -> None:
+        """Add a function; the units of its outputs are turned into those of the table."""
+        system = self.table.units
+        converted = tuple(
+            replace(o, unit=units.converted(o.unit, system)) if o.unit is not None else o for o in outputs
+        )
+        self.functions.append(Function(name, group, doc, equation, converted, compressed))
 
-    def add_drift_and_jacobians(self, rates: dict[str, ca.SX], equation: str) -> None:
-        """The functions that every model has."""
-        drift = self.vector("state", rates, "drift")
-        by_state = self.matrix("state", "state", "state", rates)
-        by_input = self.matrix("input", "state", "input", rates)
-        slopes = "derivatives of the drift with respect to the state and to the input"
-        self.add("drift", "drift", "Time derivative of the state", equation, [drift])
-        self.add("jacobians", "jacobians", slopes.capitalize(), equation, [by_state, by_input])
-        both = f"Time derivative of the state, and the {slopes}, for less than one after the other"
-        self.add("drift_and_jacobians", "jacobians", both, equation, [drift, by_state, by_input])
+    def add_scalar(self, name: str, group: str, doc: str, equation: str, expr: ca.SX, unit: str) -> None:
+        """Add a function with one number as its result."""
+        self.add(name, group, doc, equation, [Output("", (), (Entry((), expr),), unit)])
 
     def add_evaluations(self, *names: str) -> None:
         """Functions that give one named quantity each, for whoever needs no more."""
         for name in names:
             quantity = self.graph.quantities[name]
             doc = quantity.doc[0].upper() + quantity.doc[1:]
-            value = Output("value", (), (Entry((), self.graph.symbols[name]),), quantity.unit)
-            self.add(name, "evaluations", doc, quantity.equation, [value])
+            self.add_scalar(name, "evaluations", doc, quantity.equation, self.graph.symbols[name], quantity.unit)

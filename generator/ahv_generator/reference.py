@@ -11,7 +11,7 @@ import casadi as ca
 from .ir import casadi_version
 from .model import Model
 
-_COLUMNS = {"x": "state", "u": "input", "w": "noise", "p": "parameter"}
+_COLUMNS = {"x": "state", "u": "input", "w": "noise", "p": "parameter", "t": "argument"}
 
 
 def expanded(model: Model) -> ca.Function:

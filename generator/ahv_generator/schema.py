@@ -50,19 +50,22 @@ VEHICLE = (
     ParameterSpec("c_bar", r"\bar c", "ft", "mean aerodynamic chord", positive=True),
     ParameterSpec("z_T", "z_T", "ft", "thrust-to-moment coupling arm"),
 )
-CANARD = (ParameterSpec("canard_slaving", "s_c", "1", "share of law (4) in the canard deflection: 1 slaved, 0 free"),)
 ENVIRONMENT = (
     ParameterSpec("rho_0", r"\rho_0", "slug/ft^3", "air density at the reference altitude", positive=True),
     ParameterSpec("h_0", "h_0", "ft", "reference altitude of the air density"),
     ParameterSpec("h_s", "h_s", "ft", "scale height of the air density", positive=True),
     ParameterSpec("g", "g", "ft/s^2", "acceleration of gravity at sea level", positive=True),
     ParameterSpec("R_E", "R_E", "ft", "radius of the Earth", positive=True),
-    ParameterSpec("spherical_earth", "s_E", "1", "share of the Earth's curvature in the motion: 1 spherical, 0 flat"),
 )
 RIGID_NOISE = (
     ParameterSpec("w_gamma", r"\sigma_{w_\gamma}", "rad*s^0.5", "intensity of the white noise w_gamma", lowest=0.0),
     ParameterSpec("w_alpha", r"\sigma_{w_\alpha}", "rad*s^0.5", "intensity of the white noise w_alpha", lowest=0.0),
     ParameterSpec("w_q", r"\sigma_{w_Q}", "rad/s^0.5", "intensity of the white noise w_Q", lowest=0.0),
+)
+
+GUST = (
+    ParameterSpec("gust_rms", r"\sigma_g", "rad", "root mean square of the gust incidence", lowest=0.0),
+    ParameterSpec("gust_time", r"\tau_g", "s", "correlation time of the gust incidence", positive=True),
 )
 
 RIGID_STATE = (
@@ -79,31 +82,114 @@ DELTA_C = VariableSpec("delta_c", r"\delta_c", "rad", "canard deflection", "delt
 
 def modal_parameters(modes: int) -> tuple[ParameterSpec, ...]:
     """Frequencies and damping ratios of the flexible modes."""
-    omega = [
-        ParameterSpec(f"omega_{i}", rf"\omega_{i}", "rad/s", f"natural frequency of mode {i}", positive=True)
+    return tuple(_frequency(f"_{i}", f" of mode {i}") for i in range(1, modes + 1)) + tuple(
+        _damping(f"_{i}", f" of mode {i}") for i in range(1, modes + 1)
+    )
+
+
+def coupling_parameters(modes: int) -> tuple[ParameterSpec, ...]:
+    """Inertial couplings of cantilever modes with the pitching motion."""
+    return tuple(
+        ParameterSpec(f"psi_{i}", rf"\psi_{i}", FLEXIBLE, f"inertial coupling of mode {i} with the pitch rate")
         for i in range(1, modes + 1)
-    ]
-    zeta = [
-        ParameterSpec(f"zeta_{i}", rf"\zeta_{i}", "1", f"damping ratio of mode {i}", lowest=0.0)
-        for i in range(1, modes + 1)
-    ]
-    return (*omega, *zeta)
+    )
+
+
+def _frequency(suffix: str, of: str) -> ParameterSpec:
+    return ParameterSpec(f"omega{suffix}", rf"\omega{suffix}", "rad/s", f"natural frequency{of}", positive=True)
+
+
+def _damping(suffix: str, of: str) -> ParameterSpec:
+    return ParameterSpec(f"zeta{suffix}", rf"\zeta{suffix}", "1", f"damping ratio{of}", positive=True)
+
+
+def _intensity(suffix: str, of: str) -> ParameterSpec:
+    unit = f"{FLEXIBLE}/s^1.5"
+    return ParameterSpec(f"sigma{suffix}", rf"\sigma{suffix}", unit, f"intensity of the white noise{of}", lowest=0.0)
 
 
 def noise_parameters(modes: int) -> tuple[ParameterSpec, ...]:
     """Noise intensities of the flexible modes, then of the rigid body."""
-    sigma = tuple(
-        ParameterSpec(
-            f"sigma_{i}", rf"\sigma_{i}", f"{FLEXIBLE}/s^1.5", f"intensity of the noise on mode {i}", lowest=0.0
-        )
-        for i in range(1, modes + 1)
-    )
-    return sigma + RIGID_NOISE
+    return tuple(_intensity(f"_{i}", f" on mode {i}") for i in range(1, modes + 1)) + RIGID_NOISE
 
 
 def eta_names(modes: int) -> tuple[str, ...]:
     """Names of the flexible generalized coordinates."""
     return tuple(f"eta_{i}" for i in range(1, modes + 1))
+
+
+@dataclass(frozen=True)
+class Option:
+    """One way to choose, and the values of the switches that it sets."""
+
+    name: str
+    doc: str
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A key of `[choices]`, its type in the generated code, its switches and its options."""
+
+    name: str
+    type_name: str
+    doc: str
+    switches: tuple[ParameterSpec, ...]
+    options: tuple[Option, ...]
+
+
+def _switch(key: str, symbol: str, doc: str) -> ParameterSpec:
+    return ParameterSpec(key, symbol, "1", doc)
+
+
+CANARD = Choice(
+    "canard",
+    "Canard",
+    "canard",
+    (
+        _switch("canard_command", "s_{cc}", "share of the commanded canard deflection: 1 canard free, else 0"),
+        _switch("canard_slaving", "s_c", "share of law (4) in the canard deflection: 1 canard slaved, else 0"),
+    ),
+    (
+        Option("free", "the canard deflection is an input", (1.0, 0.0)),
+        Option("slaved", "the canard follows the elevator by law (4)", (0.0, 1.0)),
+        Option("none", "there is no canard", (0.0, 0.0)),
+    ),
+)
+EARTH = Choice(
+    "earth",
+    "Earth",
+    "Earth",
+    (_switch("spherical_earth", "s_E", "share of the Earth's curvature in the motion: 1 spherical, 0 flat"),),
+    (
+        Option("flat", "gravity is constant and the path is straight, as (1) has it", (0.0,)),
+        Option("spherical", "gravity falls with altitude, and flight follows the curvature", (1.0,)),
+    ),
+)
+NOISE = Choice(
+    "noise",
+    "ModalNoise",
+    "noise of the flexible modes",
+    (_switch("shared_noise", r"\rho_\xi", "correlation of the noise of modes 2, 3, ... with that of mode 1"),),
+    (
+        Option("independent", "every mode has a white noise of its own", (0.0,)),
+        Option("shared", "one white noise drives all modes, as (16) has it", (1.0,)),
+    ),
+)
+REDUCTION = Choice(
+    "reduction",
+    "Reduction",
+    "reduction of a flexible mode to coloured noise",
+    (
+        _switch("variance_matching", "s_v", "share of the reduction that matches decay rate and variance"),
+        _switch("moment_matching", "s_m", "share of the reduction that matches variance and gain at zero frequency"),
+    ),
+    (
+        Option("printed", "decay rate and gain at zero frequency, as (23) has it; the variance is off", (0.0, 0.0)),
+        Option("variance", "decay rate and variance; the spectrum at zero frequency is off", (1.0, 0.0)),
+        Option("moment", "variance and spectrum at zero frequency; fast for small damping", (0.0, 1.0)),
+    ),
+)
 
 
 @dataclass(frozen=True)
@@ -113,6 +199,7 @@ class Schema:
     models: tuple[str, ...]
     modes: int
     parameters: dict[str, tuple[ParameterSpec, ...]]
+    choices: tuple[Choice, ...]
     quantities: tuple[QuantitySpec, ...]
     validity: tuple[VariableSpec, ...]
 
@@ -122,27 +209,50 @@ class Schema:
         return units | dict.fromkeys(eta_names(self.modes), FLEXIBLE)
 
 
-def com_schema() -> Schema:
-    """COM, rigid part: thrust is fitted in lb/ft."""
+COM_FAMILY = ("com", "com_rigid")
+DCOM_FAMILY = ("dcom", "sdcom", "sdcom_printed", "sdcom_gust")
+MODE_FAMILY = ("flexible_mode",)
+FAMILIES = (COM_FAMILY, DCOM_FAMILY, MODE_FAMILY)
+
+_ETA = VariableSpec("eta", r"\eta", FLEXIBLE, "flexible generalized coordinate")
+_ETA_DOT = VariableSpec("eta_dot", r"\dot\eta", f"{FLEXIBLE}/s", "rate of the flexible generalized coordinate")
+_CHI = VariableSpec("chi", r"\chi", FLEXIBLE, "coloured noise of a flexible mode")
+ALPHA_GUST = VariableSpec("alpha_gust", r"\alpha_g", "rad", "incidence of the gust", "alpha_gust")
+FORCE = VariableSpec("force", "N", f"{FLEXIBLE}/s^2", "generalized force", "force")
+
+
+def com_schema(models: tuple[str, ...]) -> Schema:
+    """COM: thrust is fitted in lb/ft; with two cantilever modes unless the rigid body alone is wanted."""
     aero = ("alpha", "delta_e")
+    modes = 2 if "com" in models else 0
+    flexible: dict[str, tuple[ParameterSpec, ...]] = {
+        "modes": modal_parameters(modes) + coupling_parameters(modes),
+    }
+    forces = tuple(
+        QuantitySpec(f"N_{i}", f"N_{i}", f"{FLEXIBLE}/s^2", f"generalized force of mode {i}", aero)
+        for i in range(1, modes + 1)
+    )
     return Schema(
-        models=("com",),
-        modes=0,
-        parameters={"vehicle": VEHICLE, "environment": ENVIRONMENT},
+        models=COM_FAMILY,
+        modes=modes,
+        parameters={"vehicle": VEHICLE, "environment": ENVIRONMENT} | (flexible if modes else {}),
+        choices=(EARTH,),
         quantities=(
             QuantitySpec("T", "T", "lb/ft", "thrust", ("phi", "alpha")),
             QuantitySpec("C_L", "C_L", "1", "lift coefficient", aero),
             QuantitySpec("C_D", "C_D", "1", "drag coefficient", aero),
             QuantitySpec("C_M", "C_M", "1", "pitching-moment coefficient", aero),
+            *forces,
         ),
-        validity=(*RIGID_STATE, PHI, DELTA_E),
+        validity=(*RIGID_STATE, *((_ETA, _ETA_DOT) if modes else ()), PHI, DELTA_E),
     )
 
 
-def dcom_schema(modes: int) -> Schema:
+def dcom_schema(models: tuple[str, ...], modes: int) -> Schema:
     """DCOM and SDCOM: thrust is a coefficient, `modes` flexible modes."""
     eta = eta_names(modes)
     control = ("alpha", "delta_e", "delta_c")
+    gust = "sdcom_gust" in models
     generalized = tuple(
         QuantitySpec(
             f"C_N_{i}",
@@ -154,14 +264,15 @@ def dcom_schema(modes: int) -> Schema:
         for i in range(1, modes + 1)
     )
     return Schema(
-        models=("dcom", "sdcom"),
+        models=DCOM_FAMILY,
         modes=modes,
         parameters={
-            "vehicle": VEHICLE + CANARD,
+            "vehicle": VEHICLE,
             "environment": ENVIRONMENT,
             "modes": modal_parameters(modes),
-            "noise": noise_parameters(modes),
+            "noise": noise_parameters(modes) + (GUST if gust else ()),
         },
+        choices=(CANARD, EARTH, NOISE, REDUCTION),
         quantities=(
             QuantitySpec("C_T", "C_T", "1", "thrust coefficient", ("phi", "alpha", *eta)),
             QuantitySpec("C_L", "C_L", "1", "lift coefficient", (*control, *eta), ("delta_e", "delta_c")),
@@ -169,13 +280,17 @@ def dcom_schema(modes: int) -> Schema:
             QuantitySpec("C_M", "C_M", "1", "pitching-moment coefficient", (*control, *eta)),
             *generalized,
         ),
-        validity=(
-            *RIGID_STATE,
-            VariableSpec("eta", r"\eta", FLEXIBLE, "flexible generalized coordinate"),
-            VariableSpec("eta_dot", r"\dot\eta", f"{FLEXIBLE}/s", "rate of the flexible generalized coordinate"),
-            VariableSpec("chi", r"\chi", FLEXIBLE, "coloured noise of a flexible mode"),
-            PHI,
-            DELTA_E,
-            DELTA_C,
-        ),
+        validity=(*RIGID_STATE, _ETA, _ETA_DOT, _CHI, *((ALPHA_GUST,) if gust else ()), PHI, DELTA_E, DELTA_C),
+    )
+
+
+def mode_schema() -> Schema:
+    """One flexible mode and its reduction, by themselves."""
+    return Schema(
+        models=MODE_FAMILY,
+        modes=1,
+        parameters={"modes": (_frequency("", ""), _damping("", "")), "noise": (_intensity("", ""),)},
+        choices=(REDUCTION,),
+        quantities=(),
+        validity=(_ETA, _ETA_DOT, _CHI, FORCE),
     )

@@ -12,13 +12,33 @@ from pathlib import Path
 from . import units
 from .diagnostics import Faults, suggestion
 from .polynomial import MonomialError, Polynomial, Powers, Term, monomial_name, parse_monomial
-from .schema import STATUSES, ParameterSpec, QuantitySpec, Schema, VariableSpec, com_schema, dcom_schema
+from .schema import (
+    COM_FAMILY,
+    FAMILIES,
+    MODE_FAMILY,
+    STATUSES,
+    Choice,
+    ParameterSpec,
+    QuantitySpec,
+    Schema,
+    VariableSpec,
+    com_schema,
+    dcom_schema,
+    mode_schema,
+)
 
-_HEADER_KEYS = ("name", "models", "units", "source", "status", "uncertainty")
+_HEADER_KEYS = ("name", "models", "units", "set", "source", "status", "uncertainty")
 _ENTRY_KEYS = ("value", "unit", "source", "status", "uncertainty")
 _BOX_KEYS = ("min", "max", "unit")
-_COMBINATIONS = (("com",), ("dcom",), ("dcom", "sdcom"))
-_MODELS = ("com", "dcom", "sdcom")
+_MODELS = tuple(model for family in FAMILIES for model in family)
+CHOICES = "choices"
+
+_SET_NAME = re.compile(r"[a-z][a-z0-9._-]*")
+_SET_LETTERS = "lower-case letters, digits, `.`, `_`, `-`"
+# A set becomes a constant of the generated code; these stand beside it.
+_CONSTANTS = ("nominal", "provenance", "sets", "unit_system", "validity", "state_bounds", "input_bounds")
+# What law (4) divides by.
+_DIVISOR = "c_l_delta_c"
 
 
 @dataclass(frozen=True)
@@ -26,7 +46,7 @@ class Parameter:
     """A parameter or coefficient of a table; its value stays in the table."""
 
     name: str
-    path: tuple[str, str]
+    path: tuple[str, ...]
     symbol: str
     unit: str
     doc: str
@@ -36,15 +56,25 @@ class Parameter:
 
 
 @dataclass(frozen=True)
+class ParameterSet:
+    """A named set: the parameters that it replaces, with the places of their new values."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+
+
+@dataclass(frozen=True)
 class Table:
     """A checked table: parameters in order, and the polynomial of each quantity."""
 
     name: str
     models: tuple[str, ...]
+    units: str
     schema: Schema
     parameters: tuple[Parameter, ...]
     polynomials: dict[str, Polynomial]
     validity: tuple[VariableSpec, ...]
+    sets: tuple[ParameterSet, ...]
 
 
 def load(path: Path) -> Table:
@@ -74,23 +104,29 @@ class _Reader:
 
     def read(self) -> Table:
         name, models = self._identity()
+        system = str(self.header.get("units", units.IMPERIAL))
+        self.system = system if system in units.SYSTEMS else units.IMPERIAL
         for key, text in self.sources.items():
             if not isinstance(text, str) or not key.isprintable() or set('"\\') & set(key):
                 self.faults.key(("sources", key), "a source is a plain key with a text that says what it is")
         schema = self._schema(models)
-        known = ("table", "sources", "validity", *schema.parameters, *(q.key for q in schema.quantities))
+        self.known = (*schema.parameters, *(q.key for q in schema.quantities))
+        known = ("table", "sources", CHOICES, "validity", "sets", *self.known)
         for section in self.document:
             if section not in known:
                 self.faults.key((section,), f"unknown section `{section}`", suggestion(section, known))
         parameters: list[Parameter] = []
         for section, specs in schema.parameters.items():
             parameters += self._parameters(section, specs)
+        parameters += self._choices(schema.choices)
         polynomials: dict[str, Polynomial] = {}
         for quantity in schema.quantities:
             polynomials[quantity.key], found = self._quantity(quantity, schema.variable_units())
             parameters += found
         self._validity(schema.validity)
-        return Table(name, models, schema, tuple(parameters), polynomials, schema.validity)
+        sets = self._sets(schema, parameters)
+        self._inertia(("vehicle", "I_yy", "value"))
+        return Table(name, models, self.system, schema, tuple(parameters), polynomials, schema.validity, sets)
 
     def _section(self, name: str) -> Mapping[str, object]:
         section = self.document.get(name)
@@ -112,8 +148,15 @@ class _Reader:
         name = self.header.get("name", "table")
         if not (isinstance(name, str) and name.isidentifier() and name == name.lower()):
             self.faults.value(("table", "name"), "`name` must be a lower-case identifier")
-        if self.header.get("units", units.SYSTEM) != units.SYSTEM:
-            self.faults.value(("table", "units"), "unknown unit system", f"known is `{units.SYSTEM}`")
+        elif name == "audit":
+            self.faults.value(("table", "name"), "`audit` is the name of the paper's audit; choose another")
+        system = self.header.get("units", units.IMPERIAL)
+        if system not in units.SYSTEMS:
+            help_line = suggestion(str(system), units.SYSTEMS)
+            self.faults.value(("table", "units"), f"unknown unit system `{system}`", help_line)
+        if "set" in self.header and not _SET_NAME.fullmatch(str(self.header["set"])):
+            message = f"`set` must name the table's own parameter set, in {_SET_LETTERS}"
+            self.faults.value(("table", "set"), message)
         self._provenance(self.header, ("table",))
         return str(name), self._models()
 
@@ -124,19 +167,26 @@ class _Reader:
         unknown = [m for m in models if m not in _MODELS]
         for model in unknown:
             self.faults.value(path, f"unknown model `{model}`", suggestion(model, _MODELS))
-        if "models" in self.header and not unknown and models not in _COMBINATIONS:
-            self.faults.value(path, '`models` must be ["com"], ["dcom"] or ["dcom", "sdcom"]')
+        if "models" in self.header and not unknown:
+            chosen = [[m for m in family if m in models] for family in FAMILIES]
+            if not models or tuple(next((c for c in chosen if c), ())) != models:
+                families = "; ".join(", ".join(f"`{m}`" for m in family) for family in FAMILIES)
+                message = "`models` must list models of one family, each once, in this order"
+                self.faults.value(path, message, f"the families are: {families}")
         return models
 
     def _schema(self, models: tuple[str, ...]) -> Schema:
-        if "com" in models:
-            return com_schema()
+        if set(models) & set(COM_FAMILY):
+            return com_schema(models)
+        if set(models) & set(MODE_FAMILY):
+            return mode_schema()
         numbered = [int(s[4:]) for s in self.document if re.fullmatch(r"C_N_[1-9]", s)]
-        return dcom_schema(max(numbered, default=1))
+        return dcom_schema(models, max(numbered, default=1))
 
-    def _entry(self, path: tuple[str, str], expected: str) -> tuple[float, Mapping[str, object]] | None:
-        section = self.document[path[0]]
-        entry = section[path[1]] if isinstance(section, dict) else None
+    def _entry(self, path: tuple[str, ...], expected: str) -> tuple[float, Mapping[str, object]] | None:
+        entry: object = self.document
+        for key in path:
+            entry = entry.get(key) if isinstance(entry, dict) else None
         if not isinstance(entry, dict):
             self.faults.value(path, 'an entry is a table like { value = 1.0, unit = "1/rad" }')
             return None
@@ -148,7 +198,7 @@ class _Reader:
                 self.faults.key(path, f"`{key}` is missing")
         value = self._number(entry, (*path, "value")) if "value" in entry else None
         if "unit" in entry:
-            self._unit(entry["unit"], (*path, "unit"), expected)
+            self._unit(entry["unit"], (*path, "unit"), units.converted(expected, self.system))
         self._provenance(entry, path)
         return None if value is None else (value, entry)
 
@@ -174,7 +224,7 @@ class _Reader:
         if scale != 1.0:
             self.faults.value(
                 path,
-                f"`{text}` measures the right thing, but the table is in {units.SYSTEM}",
+                f"`{text}` measures the right thing, but the table is in {self.system}",
                 f"write the value in `{expected}`",
             )
 
@@ -191,7 +241,7 @@ class _Reader:
                 self.faults.value((*path, "uncertainty"), "a relative uncertainty is not negative")
 
     def _parameter(
-        self, path: tuple[str, str], name: str, symbol: str, unit: str, doc: str, entry: Mapping[str, object]
+        self, path: tuple[str, ...], name: str, symbol: str, unit: str, doc: str, entry: Mapping[str, object]
     ) -> Parameter:
         def inherited(key: str) -> object:
             return entry.get(key, self.header.get(key))
@@ -201,7 +251,7 @@ class _Reader:
             name,
             path,
             symbol,
-            unit,
+            units.converted(unit, self.system),
             doc,
             str(inherited("source")),
             str(inherited("status")),
@@ -220,16 +270,123 @@ class _Reader:
                 if content:
                     self.faults.key((section,), f"`{key}` ({spec.doc}) is missing in `[{section}]`")
                 continue
-            path = (section, key)
-            checked = self._entry(path, spec.unit)
-            if checked is None:
-                continue
-            value, entry = checked
-            if (spec.positive and value <= 0) or value < spec.lowest:
-                bound = "positive" if spec.positive else f"at least {spec.lowest:g}"
-                self.faults.value((*path, "value"), f"`{key}` ({spec.doc}) must be {bound}")
-            found.append(self._parameter(path, key.lower(), spec.symbol, spec.unit, spec.doc, entry))
+            entry = self._ranged((section, key), spec)
+            if entry is not None:
+                found.append(self._parameter((section, key), key.lower(), spec.symbol, spec.unit, spec.doc, entry))
         return found
+
+    def _ranged(self, path: tuple[str, ...], spec: ParameterSpec) -> Mapping[str, object] | None:
+        """The entry at `path` if it is one, its value held against what `spec` allows."""
+        checked = self._entry(path, spec.unit)
+        if checked is None:
+            return None
+        value, entry = checked
+        if (spec.positive and value <= 0) or value < spec.lowest:
+            bound = "positive" if spec.positive else f"at least {spec.lowest:g}"
+            self.faults.value((*path, "value"), f"`{spec.key}` ({spec.doc}) must be {bound}")
+        return entry
+
+    def _choices(self, choices: Iterable[Choice]) -> list[Parameter]:
+        content = self._section(CHOICES)
+        by_name = {choice.name: choice for choice in choices}
+        for key in content:
+            if key not in by_name:
+                self.faults.key((CHOICES, key), f"unknown choice `{key}`", suggestion(key, by_name))
+        found: list[Parameter] = []
+        for name, choice in by_name.items():
+            options = [option.name for option in choice.options]
+            chosen = content.get(name)
+            if name not in content:
+                if content:
+                    known = ", ".join(f"`{option}`" for option in options)
+                    self.faults.key((CHOICES,), f"`{name}` is missing in `[{CHOICES}]`", f"choose one of {known}")
+            elif chosen not in options:
+                self.faults.value((CHOICES, name), f"`{chosen}` is no {choice.doc}", suggestion(str(chosen), options))
+            for spec in choice.switches:
+                place = (CHOICES, name)
+                found.append(Parameter(spec.key, place, spec.symbol, spec.unit, spec.doc, CHOICES, "assumed", 0.0))
+        return found
+
+    def _sets(self, schema: Schema, parameters: Iterable[Parameter]) -> tuple[ParameterSet, ...]:
+        """The table's own set, which replaces nothing, and those of `[sets]`."""
+        own = str(self.header.get("set", ""))
+        content = self.document.get("sets", {})
+        if not isinstance(content, dict):
+            self.faults.value(("sets",), '`sets` must hold sections like `[sets."section5.3".vehicle]`')
+            content = {}
+        known = {p.path: p for p in parameters}
+        specs = {(section, spec.key): spec for section, group in schema.parameters.items() for spec in group}
+        found = [ParameterSet(own, ())]
+        taken = set(_CONSTANTS)
+        for name, sections in content.items():
+            constant = re.sub("[._-]", "_", name)
+            constants = {constant, f"{constant}_provenance"}
+            if not _SET_NAME.fullmatch(name) or name == own or constants & taken:
+                self.faults.key(("sets", name), f"a set has a name of its own, of {_SET_LETTERS}")
+                continue
+            taken |= constants
+            found.append(ParameterSet(name, tuple(self._replacements(name, sections, known, specs))))
+            self._inertia(("sets", name), name)
+        return tuple(found)
+
+    def _replacements(
+        self,
+        name: str,
+        sections: object,
+        known: Mapping[tuple[str, ...], Parameter],
+        specs: Mapping[tuple[str, str], ParameterSpec],
+    ) -> Iterable[Parameter]:
+        if not isinstance(sections, dict):
+            self.faults.value(("sets", name), "a set holds sections like those of the table")
+            return
+        for section, entries in sections.items():
+            place = ("sets", name, section)
+            if section not in self.known or not isinstance(entries, dict):
+                self.faults.key(place, f"`{section}` is no section of parameters", suggestion(section, self.known))
+                continue
+            own = self.document.get(section)
+            listed = list(own) if isinstance(own, dict) else []
+            keys = list(dict.fromkeys([*(path[1] for path in specs if path[0] == section), *listed]))
+            for key in entries:
+                parameter = known.get((section, key))
+                if parameter is None and key in keys:
+                    continue  # What is wrong with it in the table is told there.
+                if parameter is None:
+                    help_line = suggestion(key, keys)
+                    self.faults.key((*place, key), f"`[{section}]` of the table has no `{key}` to replace", help_line)
+                    continue
+                # A coefficient may have any value, but for what law (4) divides by.
+                spec = specs.get((section, key), ParameterSpec(key, "", parameter.unit, parameter.doc))
+                entry = self._ranged((*place, key), spec)
+                if entry is not None:
+                    self._divisor((*place, key), parameter.name, entry)
+                    yield self._parameter(
+                        (*place, key), parameter.name, parameter.symbol, parameter.unit, parameter.doc, entry
+                    )
+
+    def _inertia(self, path: tuple[str, ...], replacing: str = "") -> None:
+        """The mass matrix of pitch and cantilever modes must be positive definite."""
+        inertia, *couplings = numbers = self._masses(replacing)
+        if replacing and numbers == self._masses(""):
+            return  # Told of the table itself.
+        if any(couplings) and inertia <= sum(coupling**2 for coupling in couplings):
+            message = "`I_yy` must exceed the sum of the squares of `psi_i`: no mass matrix is like this"
+            self.faults.value(path, message)
+
+    def _masses(self, replacing: str) -> list[float]:
+        return [self._value(replacing, "vehicle", "I_yy")] + [
+            self._value(replacing, "modes", f"psi_{i}") for i in (1, 2)
+        ]
+
+    def _value(self, replacing: str, section: str, key: str) -> float:
+        """A value as a set has it, or the table where the set does not; 0 where there is none."""
+        for path in (("sets", replacing, section, key, "value"), (section, key, "value")):
+            entry: object = self.document
+            for step in path:
+                entry = entry.get(step) if isinstance(entry, dict) else None
+            if isinstance(entry, int | float):
+                return float(entry)
+        return 0.0
 
     def _quantity(self, spec: QuantitySpec, variable_units: Mapping[str, str]) -> tuple[Polynomial, list[Parameter]]:
         content = self._section(spec.key)
@@ -266,13 +423,16 @@ class _Reader:
         checked = self._entry((spec.key, key), unit)
         if checked is None:
             return None
-        value, entry = checked
-        if spec.required and powers == (("delta_c", 1),) and value == 0:
-            self.faults.value((spec.key, key, "value"), f"law (4) divides by the {spec.key} of `delta_c`")
+        _, entry = checked
         name = f"{spec.key.lower()}_{monomial_name(powers)}"
+        self._divisor((spec.key, key), name, entry)
         doc = f"coefficient of {key} in {spec.key}" if powers else f"constant part of {spec.key}"
         symbol = _coefficient_symbol(spec, powers)
         return self._parameter((spec.key, key), name, symbol, str(entry.get("unit", unit)), doc, entry)
+
+    def _divisor(self, path: tuple[str, ...], name: str, entry: Mapping[str, object]) -> None:
+        if name == _DIVISOR and entry["value"] == 0:
+            self.faults.value((*path, "value"), f"law (4) divides by the {path[-2]} of `{path[-1]}`")
 
     def _monomial(self, spec: QuantitySpec, key: str) -> Powers | None:
         try:
@@ -315,10 +475,10 @@ class _Reader:
         low, high = self._number(box, (*path, "min")), self._number(box, (*path, "max"))
         if low is not None and high is not None and low >= high:
             self.faults.value((*path, "min"), "`min` must be below `max`")
-        try:
-            units.factor(str(box["unit"]), spec.unit)
-        except units.UnitError as error:
-            self.faults.value((*path, "unit"), str(error))
+        expected = units.converted(spec.unit, self.system)
+        # An angle may be in degrees here; nothing else is converted.
+        radians = re.sub(r"\bdeg\b", "rad", str(box["unit"]))
+        self._unit(radians, (*path, "unit"), expected)
 
 
 def _coefficient_symbol(spec: QuantitySpec, powers: Powers) -> str:

@@ -1,4 +1,4 @@
-"""The unit system of the tables: foot, slug, second, radian.
+"""The unit systems of the tables: foot, slug, second, radian; and metre, kilogram, second, radian.
 
 The radian is a base unit here, so that 1/rad and 1/deg and 1 are told apart in a table.
 Only when the dimensions of an equation are checked does an angle count as a pure number.
@@ -6,12 +6,19 @@ Only when the dimensions of an equation are checked does an angle count as a pur
 
 from __future__ import annotations
 
+import functools
 import re
+from decimal import Decimal, localcontext
 from typing import cast
 
 import pint
 
-SYSTEM = "ft-slug-s-rad"
+IMPERIAL = "ft-slug-s-rad"
+SI = "si"
+SYSTEMS = (IMPERIAL, SI)
+
+_FOOT = Decimal("0.3048")  # m, exact
+_POUND_FORCE = Decimal("4.4482216152605")  # N, exact
 
 _DEFINITIONS = (
     "foot = [length] = ft",
@@ -20,12 +27,30 @@ _DEFINITIONS = (
     "radian = [angle] = rad",
     "degree = 0.017453292519943295 * radian = deg",
     "pound_force = slug * foot / second ** 2 = lb",
+    f"metre = foot / {_FOOT} = m",
+    f"newton = pound_force / {_POUND_FORCE} = N",
+    "kilogram = newton * second ** 2 / metre = kg",
 )
 
-_SHORT = {"foot": "ft", "second": "s", "radian": "rad", "degree": "deg", "pound_force": "lb"}
+_SHORT = {
+    "foot": "ft",
+    "second": "s",
+    "radian": "rad",
+    "degree": "deg",
+    "pound_force": "lb",
+    "metre": "m",
+    "newton": "N",
+    "kilogram": "kg",
+}
 
-_ATOM = r"(?:1|[a-z]+|\([a-z]+(?:[*/][a-z]+)*\))(?:\^\d(?:\.\d{1,3})?)?"
+_ATOM = r"(?:1|[A-Za-z]+|\([A-Za-z]+(?:[*/][A-Za-z]+)*\))(?:\^\d(?:\.\d{1,3})?)?"
 _GRAMMAR = re.compile(rf"{_ATOM}(?:[*/]{_ATOM})*")
+
+_PAIRS = {"ft": "m", "slug": "kg", "lb": "N"}
+_WORDS = {IMPERIAL: {si: ft for ft, si in _PAIRS.items()}, SI: _PAIRS}
+_SIZES = {"ft": _FOOT, "lb": _POUND_FORCE, "slug": _POUND_FORCE / _FOOT}
+
+_KNOWN = "ft, slug, lb, m, kg, N, s, rad, deg"
 
 Dimensions = dict[str, float]
 
@@ -44,6 +69,7 @@ class UnitError(Exception):
     """A unit that cannot be read or does not fit."""
 
 
+@functools.cache
 def _parse(text: str) -> pint.Unit:
     if not text.strip():
         raise UnitError("the unit is empty; a pure number has the unit `1`")
@@ -53,7 +79,7 @@ def _parse(text: str) -> pint.Unit:
     try:
         return _REGISTRY.parse_units(text)
     except Exception as error:  # pint raises many unrelated types for malformed text
-        raise UnitError(f"`{text}` is not a unit; known are ft, slug, s, rad, deg, lb") from error
+        raise UnitError(f"`{text}` is not a unit; known are {_KNOWN}") from error
 
 
 def factor(text: str, expected: str) -> float:
@@ -69,12 +95,39 @@ def factor(text: str, expected: str) -> float:
     return ratio
 
 
+def other(system: str) -> str:
+    """The system that is not `system`."""
+    return SI if system == IMPERIAL else IMPERIAL
+
+
+def converted(text: str, system: str) -> str:
+    """The unit that `system` has in the place of `text`: `slug/ft^3` in SI is `kg/m^3`."""
+    return re.sub(r"[A-Za-z]+", lambda word: _WORDS[system].get(word[0], word[0]), text)
+
+
+def conversion(text: str, system: str) -> float:
+    """The number that turns a value in `text` into one in `converted(text, system)`.
+
+    Decimal arithmetic gives the same bits on every platform, which powers of doubles do not.
+    """
+    with localcontext() as context:
+        context.prec = 40
+        size = Decimal(1)
+        for name, power in _parse(converted(text, IMPERIAL))._units.items():
+            size *= _SIZES.get(_SHORT.get(name, name), Decimal(1)) ** Decimal(str(power))
+        if converted(text, system) == text:
+            return 1.0
+        return float(size if system == SI else 1 / size)
+
+
+@functools.cache
 def dimensions(text: str) -> Dimensions:
     """Exponents of length, mass and time; an angle counts as a pure number."""
     found = _parse(text).dimensionality
     return {str(k): cast("float", v) * 1.0 for k, v in found.items() if str(k) != "[angle]" and v != 0}
 
 
+@functools.cache
 def quotient(numerator: str, denominator: str) -> str:
     """The unit text of a derivative."""
     unit = _parse(numerator) / _parse(denominator)

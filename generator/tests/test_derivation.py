@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 
 import casadi as ca
+import mpmath
 import pytest
+from oracle_support import TABLE_OF
 
 from ahv_generator import ir
 from ahv_generator.expression import ExpressionError
@@ -19,13 +21,13 @@ from ahv_oracle import Oracle, sample
 
 GENERATOR = Path(__file__).parents[1]
 TABLES = GENERATOR / "tables"
-MODELS = [("com", "com"), ("dcom", "dcom"), ("dcom", "sdcom")]
+NAMES = ("com", "dcom", "flexible_mode")
 
 
 def derive(out: Path, hash_seed: str) -> dict[str, bytes]:
     out.mkdir()
     command = [sys.executable, "-m", "ahv_generator", "derive", "--out", str(out)]
-    tables = [str(TABLES / "com.toml"), str(TABLES / "dcom.toml")]
+    tables = [str(TABLES / f"{name}.toml") for name in NAMES]
     environment = os.environ | {"PYTHONHASHSEED": hash_seed, "PYTHONPATH": str(GENERATOR)}
     subprocess.run(command + tables, check=True, env=environment)
     return {path.name: path.read_bytes() for path in out.iterdir()}
@@ -33,7 +35,7 @@ def derive(out: Path, hash_seed: str) -> dict[str, bytes]:
 
 def test_ir_is_byte_identical_whatever_the_hash_seed(tmp_path: Path) -> None:
     runs = [derive(tmp_path / seed, seed) for seed in ("0", "1", "4242")]
-    assert sorted(runs[0]) == ["com.json", "dcom.json"]
+    assert sorted(runs[0]) == ["audit.json", *(f"{name}.json" for name in NAMES)]
     assert runs[0] == runs[1] == runs[2]
 
 
@@ -49,20 +51,23 @@ def test_a_value_does_not_reach_the_ir(tmp_path: Path) -> None:
     assert render(changed) == render(TABLES / "dcom.toml")
 
 
-@pytest.mark.parametrize(("table", "name"), MODELS)
-def test_casadi_agrees_with_the_oracle(table: str, name: str) -> None:
-    path = TABLES / f"{table}.toml"
+@pytest.mark.parametrize("name", BUILDERS)
+def test_casadi_agrees_with_the_oracle(name: str) -> None:
+    path = TABLES / f"{TABLE_OF[name]}.toml"
     model = BUILDERS[name](load(path))
     oracle = Oracle(path, name)
     function, order, outputs = expanded(model), columns(model), labels(model)
-    assert set(outputs) == set(oracle.labels), set(outputs) ^ set(oracle.labels)
-    for index in range(60):
+    assert set(outputs) <= set(oracle.labels), set(outputs) - set(oracle.labels)
+    for index in range(12):
         point = sample(oracle.model, 7, index)
         values = function.call([ca.DM(point[column]) for column in order])
         reference = oracle.evaluate(point)
+        # What is not derived is a structural zero.
+        assert not [label for label in set(oracle.labels) - set(outputs) if reference[label][0] != 0]
         for label, value in zip(outputs, values, strict=True):
             exact, magnitude = reference[label]
-            assert abs(float(value) - exact) <= 8 * 2.0**-52 * magnitude, f"{name} {label} at point {index}"
+            if not mpmath.isnan(exact):  # outside the domain of a function of one damping regime
+                assert abs(float(value) - exact) <= 8 * 2.0**-52 * magnitude, f"{name} {label} at point {index}"
 
 
 def test_new_monomials_reach_the_split(tmp_path: Path) -> None:

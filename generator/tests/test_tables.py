@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,10 @@ def faults(tmp_path: Path, old: str, new: str, table: str = "dcom") -> list[Diag
 
 
 CL_ALPHA = '[C_L]\n"alpha" = { value = 4.6773, unit = "1/rad" }'
+
+DCOM_MODELS = 'models = ["dcom", "sdcom", "sdcom_printed", "sdcom_gust"]'
+SET_MASS = '[sets."section5.3".vehicle]\nm = { value = 191.3, unit = "slug/ft"'
+ORDER = "models of one family, each once, in this order"
 
 CASES = [
     # what is replaced, by what, path, part of the message, part of the help
@@ -49,13 +54,57 @@ CASES = [
     ("m = { value = 300.0", "mass = { value = 300.0", ("vehicle", "mass"), "unknown key", None),
     ("m = { value = 300.0", "m = { value = -300.0", ("vehicle", "m", "value"), "positive", None),
     ("value = 0.44838", "value = 0.0", ("C_L", "delta_c", "value"), "divides", None),
-    ('models = ["dcom", "sdcom"]', 'models = ["dcm"]', ("table", "models"), "unknown model", "`dcom`"),
+    (DCOM_MODELS, 'models = ["dcm"]', ("table", "models"), "unknown model", "`dcom`"),
     ('status = "published"', 'status = "publshed"', ("table", "status"), "unknown status", "`published`"),
     ('source = "plate"', 'source = "plat"', ("C_L", "delta_c", "source"), "unknown source", "`plate`"),
     ("uncertainty = 0.4", "uncertainty = -0.4", ("table", "uncertainty"), "not negative", None),
     ("min = -5.0, max = 5.0", "min = 5.0, max = -5.0", ("validity", "gamma", "min"), "below", None),
     ('gamma = { min = -5.0, max = 5.0, unit = "deg" }', 'gamma = { min = -5.0, max = 5.0, unit = "ft" }',
      ("validity", "gamma", "unit"), "does not fit", None),
+    # choices
+    ('canard = "none"', 'canrad = "none"', ("choices", "canrad"), "unknown choice", "`canard`"),
+    ('canard = "none"', "", ("choices",), "`canard` is missing", "`free`, `slaved`, `none`"),
+    ('canard = "none"', 'canard = "slave"', ("choices", "canard"), "`slave` is no canard", "`slaved`"),
+    ('reduction = "printed"', 'reduction = "exact"', ("choices", "reduction"), "`exact` is no reduction", "`moment`"),
+    ('earth = "flat"', "earth = 1", ("choices", "earth"), "`1` is no Earth", "`spherical`"),
+    ("[choices]", "[choises]", (), "`[choices]` is missing", None),
+    ("[choices]", "[choises]", ("choises",), "unknown section", "`choices`"),
+    # sets
+    ('set = "section5.1"', "", ("table",), "`set` is missing", None),
+    ('set = "section5.1"', "set = 5.1", ("table", "set"), "lower-case letters", None),
+    ('set = "section5.1"', """set = 'a"b'""", ("table", "set"), "lower-case letters", None),
+    ('set = "section5.1"', 'set = "section5.3"', ("sets", "section5.3"), "name of its own", None),
+    (SET_MASS, SET_MASS.replace("section5.3", "Section 5.3"), ("sets", "Section 5.3"), "name of its own", None),
+    (SET_MASS, SET_MASS.replace("section5.3", "nominal"), ("sets", "nominal"), "name of its own", None),
+    (SET_MASS, SET_MASS.replace("section5.3", "section5_3"), ("sets", "section5.3"), "name of its own", None),
+    (SET_MASS, SET_MASS.replace(".vehicle", ".vehicel"), ("sets", "section5.3", "vehicel"), "no section",
+     "`vehicle`"),
+    (SET_MASS, SET_MASS.replace(".vehicle", ".choices"), ("sets", "section5.3", "choices"), "no section", None),
+    (SET_MASS, SET_MASS.replace("m =", "mass ="), ("sets", "section5.3", "vehicle", "mass"), "no `mass` to replace",
+     "`m`"),
+    (SET_MASS, SET_MASS.replace("slug/ft", "slug"), ("sets", "section5.3", "vehicle", "m", "unit"), "does not fit",
+     "`slug/ft`"),
+    (SET_MASS, SET_MASS.replace("slug/ft", "kg/m"), ("sets", "section5.3", "vehicle", "m", "unit"), "right thing",
+     "`slug/ft`"),
+    (SET_MASS, SET_MASS.replace(', unit = "slug/ft"', ""), ("sets", "section5.3", "vehicle", "m"),
+     "`unit` is missing", None),
+    ("omega_1 = { value = 20.5", "omega_1 = { value = 0.0", ("sets", "section5.3", "modes", "omega_1", "value"),
+     "must be positive", None),
+    (SET_MASS, '[sets."section5.3".C_L]\n"delta_c" = { value = 0.0, unit = "1/rad" }\n' + SET_MASS,
+     ("sets", "section5.3", "C_L", "delta_c", "value"), "divides", None),
+    (SET_MASS, '[sets."section5.3".C_L]\n"alpha^2" = { value = 1.0, unit = "1/rad^2" }\n' + SET_MASS,
+     ("sets", "section5.3", "C_L", "alpha^2"), "no `alpha^2` to replace", "`alpha`"),
+    # models
+    (DCOM_MODELS, 'models = ["dcom", "com"]', ("table", "models"), ORDER, "the families are: `com`, `com_rigid`;"),
+    (DCOM_MODELS, 'models = ["sdcom", "dcom"]', ("table", "models"), ORDER, None),
+    (DCOM_MODELS, 'models = ["dcom", "dcom"]', ("table", "models"), ORDER, None),
+    (DCOM_MODELS, "models = []", ("table", "models"), ORDER, None),
+    (DCOM_MODELS, 'models = ["com_rigid"]', ("C_N_1",), "unknown section", None),
+    ('gust_rms = { value = 1.7453293e-3, unit = "rad", source = "assumed", status = "assumed" }\n', "", ("noise",),
+     "`gust_rms`", None),
+    # units
+    ('units = "ft-slug-s-rad"', 'units = "SI"', ("table", "units"), "unknown unit system", "`si`"),
+    ('units = "ft-slug-s-rad"', 'units = "si"', ("vehicle", "m", "unit"), "the table is in si", "`kg/m`"),
 ]  # fmt: skip
 
 
@@ -83,6 +132,86 @@ def test_missing_parameter_and_quantity_are_named(tmp_path: Path) -> None:
     section = text[text.index("[C_D]") : text.index("[C_M]")]
     (fault,) = faults(tmp_path, section, "", "com")
     assert "`[C_D]` is missing" in fault.message
+
+
+# What an Iyy at or below the sum of psi squared makes: no mass matrix. That sum is 249944.17 in the table.
+LIGHT = [
+    ("I_yy = { value = 5.0e5", "I_yy = { value = 249944.0", ("vehicle", "I_yy", "value")),
+    ("psi_1 = { value = 401.86", "psi_1 = { value = -650.0", ("vehicle", "I_yy", "value")),
+    (
+        '[sets."section5.3"]',
+        '[sets."section5.3".vehicle]\nI_yy = { value = 86723.0, unit = "slug*ft" }',
+        ("sets", "section5.3"),
+    ),
+    (
+        '[sets."section5.3"]',
+        '[sets."section5.3".modes]\npsi_2 = { value = 600.0, unit = "(ft*slug)^0.5" }',
+        ("sets", "section5.3"),
+    ),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "path"), LIGHT)
+def test_inertia_that_the_modes_use_up_is_refused(tmp_path: Path, old: str, new: str, path: tuple[str, ...]) -> None:
+    (fault,) = faults(tmp_path, old, new, "com")
+    assert fault.path == path
+    assert "must exceed the sum of the squares" in fault.message
+
+
+def test_inertia_and_couplings_of_a_set_count_together(tmp_path: Path) -> None:
+    light = (
+        '[sets."section5.3".vehicle]\nI_yy = { value = 86723.0, unit = "slug*ft" }\n'
+        '[sets."section5.3".modes]\npsi_1 = { value = 0.0, unit = "(ft*slug)^0.5" }\n'
+        'psi_2 = { value = -100.0, unit = "(ft*slug)^0.5" }'
+    )
+    text = (TABLES / "com.toml").read_text(encoding="utf-8")
+    path = tmp_path / "com.toml"
+    path.write_text(text.replace('[sets."section5.3"]', light), encoding="utf-8")
+    table = load(path)
+    assert [s.name for s in table.sets] == ["section5.1", "section5.3"]
+    assert [p.name for p in table.sets[1].parameters] == ["i_yy", "psi_1", "psi_2"]
+
+
+def test_a_set_keeps_what_it_does_not_say(tmp_path: Path) -> None:
+    table = load(TABLES / "dcom.toml")
+    own, other = table.sets
+    assert (own.name, own.parameters, other.name) == ("section5.1", (), "section5.3")
+    replaced = {p.name: p for p in other.parameters}
+    assert list(replaced) == ["m", "i_yy", *(f"omega_{i}" for i in (1, 2, 3)), *(f"zeta_{i}" for i in (1, 2, 3))]
+    assert replaced["m"].path == ("sets", "section5.3", "vehicle", "m")
+    assert (replaced["m"].source, replaced["m"].status, replaced["m"].uncertainty) == ("ahv-quoted", "unverified", 0.4)
+
+
+def without(text: str, *sections: str) -> str:
+    """The table without these sections."""
+    parts = re.split(r"(?m)^(?=\[)", text)
+    return "".join(part for part in parts if not part.startswith(tuple(f"[{section}]" for section in sections)))
+
+
+def test_the_rigid_body_alone_needs_no_modes(tmp_path: Path) -> None:
+    text = without((TABLES / "com.toml").read_text(encoding="utf-8"), "modes", "N_1", "N_2")
+    text = text.replace('models = ["com", "com_rigid"]', 'models = ["com_rigid"]')
+    text = re.sub(r"(?m)^eta(_dot)? = .*\n", "", text)
+    path = tmp_path / "com.toml"
+    path.write_text(text, encoding="utf-8")
+    table = load(path)
+    assert (table.models, table.schema.modes) == (("com_rigid",), 0)
+    assert not {"omega_1", "psi_1", "n_1_alpha"} & {p.name for p in table.parameters}
+    path.write_text(text.replace('["com_rigid"]', '["com"]'), encoding="utf-8")
+    with pytest.raises(TableError) as caught:
+        load(path)
+    told = "\n".join(d.message for d in caught.value.diagnostics)
+    for missing in ("`[modes]` is missing", "`[N_1]` is missing", "`[N_2]` is missing", "`eta` (", "`eta_dot` ("):
+        assert missing in told
+
+
+def test_without_the_gust_model_the_table_needs_no_gust(tmp_path: Path) -> None:
+    text = (TABLES / "dcom.toml").read_text(encoding="utf-8")
+    text = text.replace(DCOM_MODELS, 'models = ["dcom", "sdcom"]')
+    text = re.sub(r"(?m)^(gust_rms|gust_time|alpha_gust) = .*\n", "", text)
+    path = tmp_path / "dcom.toml"
+    path.write_text(text, encoding="utf-8")
+    assert load(path).models == ("dcom", "sdcom")
 
 
 def test_all_faults_are_told_at_once(tmp_path: Path) -> None:

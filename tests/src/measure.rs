@@ -16,7 +16,12 @@ pub struct Worst {
 }
 
 /// The error of a value in units of 2⁻⁵²·K; infinite where a value is not finite, or not zero where K is.
+///
+/// Outside a function's domain the reference is NaN, and any value will do.
 pub fn error(value: f64, reference: Reference) -> f64 {
+    if reference.high.is_nan() {
+        return 0.0;
+    }
     let difference = ((value - reference.high) - reference.low).abs();
     if difference == 0.0 {
         0.0

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+mod book;
 mod demo;
 mod no_panic;
 mod plot;
@@ -34,6 +35,8 @@ enum Task {
     Vectors,
     /// Measure the generated functions beside their peers, and write docs/benchmarks.md
     Bench,
+    /// Build the documentation as pages for a browser, in target/book
+    Book,
     /// Change a coefficient, regenerate, and fly both models with both values
     Demo,
 }
@@ -46,6 +49,7 @@ fn main() -> ExitCode {
         Task::Audit { points } => audit(points),
         Task::Vectors => vectors::run(),
         Task::Bench => bench::run(),
+        Task::Book => book::run(),
         Task::Demo => demo::run(),
     };
     match done {

@@ -136,6 +136,8 @@ pub(crate) struct Scope<'a> {
     pub(crate) cost: Cost,
     /// Arguments that the body refers to.
     pub(crate) used: BTreeSet<Kind>,
+    /// Those of them that are scalars of their own, such as a time.
+    pub(crate) arguments: BTreeSet<String>,
     model: &'a ir::Model,
     prepared: Option<&'a Prepared>,
     bound: HashMap<Id, String>,
@@ -158,6 +160,7 @@ impl<'a> Scope<'a> {
             dag,
             cost: Cost::default(),
             used: BTreeSet::new(),
+            arguments: BTreeSet::new(),
             model,
             prepared,
             bound: HashMap::new(),

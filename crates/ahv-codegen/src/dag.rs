@@ -19,6 +19,8 @@ pub(crate) enum Kind {
     Input,
     Noise,
     Parameter,
+    /// Neither state nor input: a time, a lag, a frequency.
+    Argument,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -211,6 +213,7 @@ impl Dag {
             "u" => Kind::Input,
             "w" => Kind::Noise,
             "p" => Kind::Parameter,
+            "t" => Kind::Argument,
             _ => return None,
         };
         Some(self.intern(

@@ -3,14 +3,22 @@
 use askama::Template;
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::docs::{self, Costs, Page, Subject};
 use crate::format::format_rust;
-use crate::ir::{Document, Model, SCHEMA_VERSION, Variable};
+use crate::home;
+use crate::ir::{Document, Model, SCHEMA_VERSION};
 use crate::manifest::{Manifest, sha256};
 use crate::model::ModelEmitter;
+use crate::values::Values;
 use crate::{EmitError, Table, Tree};
 
 /// The command that makes and mends the generated files.
 const COMMAND: &str = "ahv generate";
+/// The model that has the paper's equations as they are printed.
+const PRINTED: &str = "sdcom_printed";
+/// Under this name stands, beside the IRs of the tables, the audit of the printed equations.
+pub const AUDIT: &str = "audit";
+const AUDIT_PAGE: &str = "docs/audit.md";
 
 /// What the generated package is called and where it finds `ahv-core`.
 #[derive(Clone, Debug)]
@@ -19,6 +27,8 @@ pub struct Options {
     pub package: String,
     /// Where `ahv-core` comes from.
     pub core: Core,
+    /// Unit system, `ft-slug-s-rad` or `si`; without one that of the table.
+    pub units: Option<String>,
 }
 
 /// Where the generated package finds `ahv-core`.
@@ -35,6 +45,7 @@ impl Default for Options {
         Self {
             package: "ahv-models".to_owned(),
             core: Core::Path("../crates/ahv-core".to_owned()),
+            units: None,
         }
     }
 }
@@ -68,31 +79,12 @@ struct CargoTemplate<'a> {
 #[template(path = "lib.rs")]
 struct LibTemplate<'a> {
     modules: &'a [Module],
+    units: &'static str,
 }
 
 struct Module {
     name: String,
     doc: String,
-}
-
-#[derive(Template)]
-#[template(path = "parameters.rs")]
-struct ParametersTemplate<'a> {
-    parameters: &'a [crate::ir::Parameter],
-    validity: &'a [Variable],
-}
-
-#[derive(Template)]
-#[template(path = "nominal.rs")]
-struct NominalTemplate {
-    values: Vec<(String, String)>,
-    bounds: Vec<(String, String, String)>,
-}
-
-#[derive(Template)]
-#[template(path = "provenance.rs")]
-struct ProvenanceTemplate<'a> {
-    parameters: &'a [crate::ir::Parameter],
 }
 
 /// The files of the generated package, by their path in it.
@@ -107,34 +99,45 @@ pub fn emit(
     options: &Options,
 ) -> Result<Tree, EmitError> {
     let mut tree = Tree::new();
-    let mut modules = Vec::new();
-    let mut taken = BTreeMap::new();
+    let mut read = Vec::new();
     for table in tables {
         let text = irs.get(&table.name).ok_or_else(|| {
             EmitError::Mismatch(format!("there is no IR for table `{}`", table.name))
         })?;
-        let document = Document::parse(&table.name, text)?;
-        for model in &document.models {
-            if let Some(other) = taken.insert(model.name.clone(), table.file_name.clone()) {
-                return Err(EmitError::Mismatch(format!(
-                    "both {other} and {} make the model `{}`; generate them into packages of their own",
-                    table.file_name, model.name
-                )));
-            }
-            modules.push(Module {
-                name: model.name.clone(),
-                doc: format!(
-                    "{}: {}, eq. {}.",
-                    model.name.to_uppercase(),
-                    model.title,
-                    model.equations
-                ),
-            });
-        }
-        emit_table(&mut tree, table, &document)?;
+        let mut document = Document::parse(&table.name, text)?;
+        let values = Values::read(table, &mut document, options.units.as_deref())?;
         tree.insert(format!("ir/{}.json", table.name), text.clone());
+        read.push((table, document, values));
     }
-    let lib = render(&LibTemplate { modules: &modules });
+    let modules = modules(read.iter().map(|(table, document, _)| (*table, document)))?;
+    let units: BTreeSet<_> = read.iter().map(|(_, d, _)| d.units.in_words()).collect();
+    if units.len() > 1 {
+        return Err(EmitError::Mismatch(
+            "the tables are in different unit systems; choose one with --units".to_owned(),
+        ));
+    }
+    let mut subjects = Vec::new();
+    for (table, document, values) in &read {
+        let subject = Subject {
+            table,
+            document,
+            values,
+        };
+        let costs = emit_table(&mut tree, &subject)?;
+        tree.extend(docs::emit_table(&subject, &costs)?);
+        subjects.push(subject);
+    }
+    tree.extend(emit_audit(&subjects, irs)?);
+    let further: Vec<Page> = tree
+        .contains_key(AUDIT_PAGE)
+        .then(audit_page)
+        .into_iter()
+        .collect();
+    tree.extend(docs::emit_index(&subjects, &further));
+    let lib = render(&LibTemplate {
+        modules: &modules,
+        units: units.first().copied().unwrap_or_default(),
+    });
     insert_rust(&mut tree, "src/lib.rs", "the tables", &lib)?;
     let cargo = CargoTemplate {
         options,
@@ -146,94 +149,88 @@ pub fn emit(
     Ok(tree)
 }
 
-fn emit_table(tree: &mut Tree, table: &Table, document: &Document) -> Result<(), EmitError> {
+/// The modules of the package, one a model.
+fn modules<'a>(
+    documents: impl Iterator<Item = (&'a Table, &'a Document)>,
+) -> Result<Vec<Module>, EmitError> {
+    let (mut modules, mut taken) = (Vec::new(), BTreeMap::new());
+    for (table, document) in documents {
+        for model in &document.models {
+            if let Some(other) = taken.insert(model.name.clone(), table.file_name.clone()) {
+                return Err(EmitError::Mismatch(format!(
+                    "both {other} and {} make the model `{}`; generate them into packages of their own",
+                    table.file_name, model.name
+                )));
+            }
+            let label = model.name.to_uppercase();
+            modules.push(Module {
+                name: model.name.clone(),
+                doc: format!("{label}: {}, eq. {}.", model.title, model.equations),
+            });
+        }
+    }
+    Ok(modules)
+}
+
+/// The audit of the paper's printed equations, for a package that holds the printed form.
+fn emit_audit(subjects: &[Subject<'_>], irs: &BTreeMap<String, String>) -> Result<Tree, EmitError> {
+    let mut models = subjects.iter().flat_map(|subject| &subject.document.models);
+    if !models.any(|model| model.name == PRINTED) {
+        return Ok(Tree::new());
+    }
+    let text = irs.get(AUDIT).ok_or_else(|| {
+        EmitError::Mismatch(format!(
+            "`{PRINTED}` needs the audit of the printed equations"
+        ))
+    })?;
+    Ok(Tree::from([
+        (format!("ir/{AUDIT}.json"), text.clone()),
+        (AUDIT_PAGE.to_owned(), docs::audit(text)?),
+    ]))
+}
+
+fn audit_page() -> Page {
+    Page {
+        path: "audit.md".to_owned(),
+        title: "Audit".to_owned(),
+        about: "the paper's printed equations beside the derived ones, with their differences"
+            .to_owned(),
+    }
+}
+
+/// The sources of one table and its models; the operations of each function.
+fn emit_table(tree: &mut Tree, subject: &Subject<'_>) -> Result<Costs, EmitError> {
+    let Subject {
+        table,
+        document,
+        values,
+    } = *subject;
     let Some(home) = document.models.first().map(|m| m.name.clone()) else {
         return Err(EmitError::Mismatch(format!(
             "the IR of table `{}` holds no model",
             table.name
         )));
     };
-    let source = table.file_name.clone();
-    let parameters = ParametersTemplate {
-        parameters: &document.parameters,
-        validity: &document.validity,
-    };
-    insert_rust(
-        tree,
-        &format!("src/{home}/parameters.rs"),
-        &source,
-        &render(&parameters),
-    )?;
-    let nominal = nominal(table, document)?;
-    insert_rust(
-        tree,
-        &format!("src/{home}/nominal.rs"),
-        &source,
-        &render(&nominal),
-    )?;
-    let provenance = ProvenanceTemplate {
-        parameters: &document.parameters,
-    };
-    insert_rust(
-        tree,
-        &format!("src/{home}/provenance.rs"),
-        &source,
-        &render(&provenance),
-    )?;
+    let source = &table.file_name;
+    for (file, text) in home::files(document, values)? {
+        insert_rust(tree, &format!("src/{home}/{file}.rs"), source, &text)?;
+    }
+    let mut costs = Costs::new();
     for model in &document.models {
         check_names(model)?;
-        for (file, text) in ModelEmitter::new(model, &home, document)?.files()? {
+        let mut emitter = ModelEmitter::new(model, &home, document)?;
+        for (file, text) in emitter.files()? {
             insert_rust(
                 tree,
                 &format!("src/{}/{file}.rs", model.name),
-                &source,
+                source,
                 &text,
             )?;
         }
+        let named = emitter.costs.into_iter();
+        costs.extend(named.map(|(function, cost)| ((model.name.clone(), function), cost)));
     }
-    Ok(())
-}
-
-fn nominal(table: &Table, document: &Document) -> Result<NominalTemplate, EmitError> {
-    let missing = |path: &[&str]| {
-        EmitError::Mismatch(format!(
-            "{} has no number at `{}`, which its IR names; derive it again",
-            table.file_name,
-            path.join(".")
-        ))
-    };
-    let mut values = Vec::new();
-    for parameter in &document.parameters {
-        let path = [
-            parameter.path.0.as_str(),
-            parameter.path.1.as_str(),
-            "value",
-        ];
-        let value = table.number(&path).ok_or_else(|| missing(&path))?;
-        values.push((parameter.name.clone(), format!("{value:?}")));
-    }
-    let mut bounds = Vec::new();
-    for variable in &document.validity {
-        let bound = |key: &str| {
-            let path = ["validity", variable.name.as_str(), key];
-            let value = table.number(&path).ok_or_else(|| missing(&path))?;
-            let unit = table
-                .text(&["validity", &variable.name, "unit"])
-                .unwrap_or_default();
-            // Other units of an angle than rad are refused by the derivation.
-            let in_degrees = unit.contains("deg");
-            Ok::<_, EmitError>(format!(
-                "{:?}",
-                if in_degrees {
-                    value.to_radians()
-                } else {
-                    value
-                }
-            ))
-        };
-        bounds.push((variable.name.clone(), bound("min")?, bound("max")?));
-    }
-    Ok(NominalTemplate { values, bounds })
+    Ok(costs)
 }
 
 /// Two leaves of one struct must not share a name, whatever the IR says.
@@ -251,8 +248,9 @@ fn check_names(model: &Model) -> Result<(), EmitError> {
 }
 
 fn manifest(tables: &[Table], irs: &BTreeMap<String, String>) -> Manifest {
-    let templates: Vec<&str> = vec![
+    let templates: Vec<&str> = [
         include_str!("../templates/manifest.toml"),
+        include_str!("../templates/choices.rs"),
         include_str!("../templates/functions.rs"),
         include_str!("../templates/lib.rs"),
         include_str!("../templates/model.rs"),
@@ -260,7 +258,10 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>) -> Manifest {
         include_str!("../templates/parameters.rs"),
         include_str!("../templates/prepared.rs"),
         include_str!("../templates/provenance.rs"),
-    ];
+    ]
+    .into_iter()
+    .chain(docs::TEMPLATES)
+    .collect();
     Manifest {
         schema_version: SCHEMA_VERSION,
         emitter: env!("CARGO_PKG_VERSION").to_owned(),
@@ -268,9 +269,9 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>) -> Manifest {
             .iter()
             .map(|t| (t.name.clone(), t.sha256()))
             .collect(),
-        ir: tables
+        ir: irs
             .iter()
-            .filter_map(|t| Some((t.name.clone(), sha256(irs.get(&t.name)?))))
+            .map(|(name, text)| (name.clone(), sha256(text)))
             .collect(),
         templates: sha256(&templates.concat()),
     }

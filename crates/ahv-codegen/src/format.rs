@@ -11,6 +11,14 @@ pub(crate) const TRAILING: &str = "__trailing!";
 /// Addends of a sum, separated by `|`, one a line.
 pub(crate) const ADDENDS: &str = "__addends!";
 
+/// An `impl_vector!` of `ahv-core`: the vector, then its fields, separated by `|`.
+const VECTOR: &str = "__vector!";
+
+/// An `impl_vector!` with a line for each field; the formatter does not lay out the body of a macro.
+pub(crate) fn vector(name: &str, fields: &[String]) -> String {
+    format!("{VECTOR}({:?});", format!("{name}|{}", fields.join("|")))
+}
+
 /// Lines of code stay below this width, comments included.
 const WIDTH: usize = 120;
 
@@ -47,6 +55,12 @@ pub(crate) fn format_rust(path: &str, header: &str, text: &str) -> Result<String
                 out.truncate(out.trim_end().len());
                 out += &format!(" // {comment}\n");
             }
+        } else if let Some(call) = code.strip_prefix(VECTOR) {
+            let mut call = call.to_owned();
+            while !call.ends_with(");") {
+                call += lines.next().map_or(");", str::trim);
+            }
+            out += &vector_call(&call);
         } else if let Some((start, call)) = code.split_once(ADDENDS) {
             let mut call = call.to_owned();
             while !call.ends_with([';', ')']) {
@@ -70,6 +84,21 @@ pub(crate) fn format_rust(path: &str, header: &str, text: &str) -> Result<String
     Ok(out)
 }
 
+/// The `impl_vector!` that a marker stands for.
+fn vector_call(marker: &str) -> String {
+    let text = marker
+        .trim_start_matches("(\"")
+        .trim_end_matches("\");")
+        .replace("\\\"", "\"");
+    let mut fields = text.split('|');
+    let name = fields.next().unwrap_or_default();
+    let mut out = format!("\nahv_core::impl_vector! {{\n    {name} {{\n");
+    for field in fields {
+        out += &format!("        {field}\n");
+    }
+    out + "    }\n}\n"
+}
+
 /// Whether a blank line separates an item from what stands before it.
 fn starts_item(indent: &str, code: &str, previous: &str) -> bool {
     let group = |text: &str| {
@@ -79,7 +108,7 @@ fn starts_item(indent: &str, code: &str, previous: &str) -> bool {
     };
     let described =
         previous.trim_start().starts_with("///") || previous.trim_start().starts_with("#[");
-    if code.starts_with('}') || described || previous.ends_with('{') {
+    if code.starts_with(['}', ')', ']']) || described || previous.ends_with('{') {
         return false;
     }
     match indent.len() {

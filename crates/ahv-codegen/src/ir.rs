@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::EmitError;
 
 /// The schema that this crate reads.
-pub const SCHEMA_VERSION: u64 = 1;
+pub const SCHEMA_VERSION: u64 = 2;
 
 /// The models of one table.
 #[derive(Debug, Deserialize)]
@@ -16,6 +16,12 @@ pub struct Document {
     pub schema_version: u64,
     /// What made the document.
     pub provenance: Provenance,
+    /// Units of the table, and the same in the other system.
+    pub units: Units,
+    /// What a user chooses by name.
+    pub choices: Vec<Choice>,
+    /// Sets of parameters; the first is the table's own and replaces nothing.
+    pub sets: Vec<ParameterSet>,
     /// Parameters and coefficients, in the order of the table.
     pub parameters: Vec<Parameter>,
     /// Entries of the validity box.
@@ -36,7 +42,72 @@ pub struct Provenance {
     pub casadi: String,
 }
 
-/// A parameter or coefficient; its value stays in the table.
+/// The unit system of a table, and what each of its units is in the other system.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Units {
+    /// `ft-slug-s-rad` or `si`.
+    pub system: String,
+    /// The other of the two.
+    pub other: String,
+    /// Unit and factor in the other system, by the unit in this one.
+    pub factors: BTreeMap<String, (String, f64)>,
+}
+
+/// A choice that a user makes by name, in `[choices]` of a table or when a model is made.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Choice {
+    /// Key in `[choices]`.
+    pub name: String,
+    /// Type of the choice in the generated code.
+    #[serde(rename = "type")]
+    pub type_name: String,
+    /// What is chosen.
+    pub doc: String,
+    /// The names to choose from.
+    pub options: Vec<ChoiceOption>,
+}
+
+/// One way to choose.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChoiceOption {
+    /// Its name.
+    pub name: String,
+    /// What it means.
+    pub doc: String,
+    /// Values of the parameters that it sets.
+    pub values: BTreeMap<String, f64>,
+}
+
+/// Entries that replace those of the table.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterSet {
+    /// Name, such as `section5.3`.
+    pub name: String,
+    /// The entries.
+    pub parameters: Vec<Replacement>,
+}
+
+/// A parameter that a set replaces; its value stays in the table.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Replacement {
+    /// Name of the parameter.
+    pub name: String,
+    /// Keys in the table.
+    pub path: Vec<String>,
+    /// Key of its source.
+    pub source: String,
+    /// `published`, `derived`, `unverified` or `assumed`.
+    pub status: String,
+    /// Relative uncertainty.
+    pub uncertainty: f64,
+}
+
+/// A parameter or coefficient; its value stays in the table. One whose section is `choices` is set by a choice.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Parameter {
@@ -92,6 +163,30 @@ pub struct Model {
     pub quantities: Vec<Quantity>,
     /// Functions to emit.
     pub functions: Vec<Function>,
+    /// What kind of noise drives the model, where one does.
+    #[serde(default)]
+    pub noise: Option<NoiseStructure>,
+}
+
+/// The columns of the diffusion, as the derivation found them by symbolic computation.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseStructure {
+    /// One for each Wiener process.
+    pub columns: Vec<NoiseColumn>,
+    /// Pairs of columns with L^j b^k = L^k b^j, a column with itself left out.
+    pub commuting: Vec<(String, String)>,
+}
+
+/// A column of the diffusion.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseColumn {
+    /// The Wiener process.
+    pub name: String,
+    /// `constant` (no entry depends on the state), `diagonal` (an entry depends on the state of its own row alone)
+    /// or `general`.
+    pub class: String,
 }
 
 /// A quantity with a name in the field.
@@ -128,6 +223,9 @@ pub struct Function {
     pub equation: String,
     /// Results; several are returned as a tuple.
     pub outputs: Vec<Output>,
+    /// Whether the structurally non-zero entries are offered by themselves as well.
+    #[serde(default)]
+    pub compressed: bool,
 }
 
 /// A scalar (no basis), vector or matrix; entries that are not listed are structural zeros.
@@ -142,6 +240,9 @@ pub struct Output {
     pub unit: Option<String>,
     /// Structurally non-zero entries.
     pub entries: Vec<Entry>,
+    /// Whether its last two bases are one and entries stand for their mirror images too.
+    #[serde(default)]
+    pub symmetric: bool,
 }
 
 /// An entry of an output.
@@ -158,7 +259,7 @@ pub struct Entry {
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 pub enum Expr {
-    /// A quantity, or a leaf with its prefix (`x.`, `u.`, `w.`, `p.`).
+    /// A quantity, or a leaf with its prefix (`x.`, `u.`, `w.`, `p.`, `t.`).
     Name(String),
     /// A constant.
     Number(f64),
@@ -196,15 +297,15 @@ impl Parameter {
     pub(crate) fn described(&self) -> String {
         described(&self.doc, &self.unit)
     }
+}
 
-    /// The variant of `ahv_core::Status` for the status.
-    pub(crate) fn status_variant(&self) -> &'static str {
-        match self.status.as_str() {
-            "published" => "Published",
-            "derived" => "Derived",
-            "assumed" => "Assumed",
-            _ => "Unverified",
-        }
+/// The variant of `ahv_core::Status` for a status.
+pub(crate) fn status_variant(status: &str) -> &'static str {
+    match status {
+        "published" => "Published",
+        "derived" => "Derived",
+        "assumed" => "Assumed",
+        _ => "Unverified",
     }
 }
 

@@ -6,18 +6,23 @@
 
 mod body;
 mod dag;
+mod docs;
 mod emit;
+mod evaluate;
 mod format;
+mod home;
 pub mod ir;
 mod manifest;
 mod model;
 mod names;
 mod print;
+mod shape;
 mod table;
+mod values;
 
 use std::collections::BTreeMap;
 
-pub use emit::{Core, Options, emit};
+pub use emit::{AUDIT, Core, Options, emit};
 pub use manifest::{Manifest, sha256};
 pub use table::{Part, Table, TableError};
 

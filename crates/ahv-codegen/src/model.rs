@@ -1,14 +1,17 @@
 //! The files of one model: its vectors, its prepared parameters and its functions.
 
 use askama::Template;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::EmitError;
 use crate::body::{Prepared, Scope, Statement};
 use crate::dag::{Dag, Id, Kind, Node};
 use crate::emit::render;
+use crate::format;
+use crate::home;
 use crate::ir::{self, Variable, capitalised, described};
-use crate::print::{literal, reference};
+use crate::print::reference;
+use crate::shape::{PatternText, Shape, Zeros};
 
 #[derive(Template)]
 #[template(path = "model.rs")]
@@ -19,8 +22,31 @@ struct ModelTemplate<'a> {
     shared_parameters: bool,
     modules: Vec<&'a str>,
     groups: Vec<&'a str>,
-    vectors: Vec<Vector<'a>>,
-    stochastic: bool,
+    has_choices: bool,
+    /// What the home of the table shares.
+    shared: Vec<String>,
+    /// Vectors, each with its implementation.
+    vectors: Vec<(Vector<'a>, String)>,
+}
+
+impl ModelTemplate<'_> {
+    /// The class of a column of the diffusion as a variant of `ahv_core::NoiseClass`.
+    fn class(&self, column: &ir::NoiseColumn) -> &'static str {
+        match column.class.as_str() {
+            "constant" => "Constant",
+            "diagonal" => "Diagonal",
+            _ => "General",
+        }
+    }
+
+    /// Whether two columns of the diffusion commute.
+    fn commute(&self, j: &ir::NoiseColumn, k: &ir::NoiseColumn) -> bool {
+        let pair = |(a, b): &(String, String)| {
+            (*a == j.name && *b == k.name) || (*a == k.name && *b == j.name)
+        };
+        let noise = self.model.noise.as_ref();
+        j.name == k.name || noise.is_some_and(|noise| noise.commuting.iter().any(pair))
+    }
 }
 
 struct Vector<'a> {
@@ -42,7 +68,7 @@ struct PreparedTemplate {
 
 struct PreparedField {
     name: String,
-    doc: String,
+    docs: Vec<String>,
     value: String,
 }
 
@@ -50,11 +76,18 @@ struct PreparedField {
 #[template(path = "functions.rs")]
 struct FunctionsTemplate {
     label: String,
+    units: &'static str,
     /// Types of the parent module, in alphabetical order.
     imports: Vec<&'static str>,
     paper_names: bool,
     needs_vector: bool,
-    functions: Vec<FunctionText>,
+    items: Vec<Item>,
+}
+
+/// What stands in a file of functions.
+enum Item {
+    Pattern(PatternText),
+    Function(FunctionText),
 }
 
 struct FunctionText {
@@ -62,9 +95,19 @@ struct FunctionText {
     docs: Vec<String>,
     arguments: Vec<String>,
     result: String,
+    /// What the dense form takes from the compressed one.
+    source: Option<String>,
     statements: Vec<Statement>,
-    zeros: Vec<(String, &'static str)>,
+    zeros: Zeros,
     outputs: Vec<(String, String)>,
+}
+
+impl FunctionsTemplate {
+    fn has_patterns(&self) -> bool {
+        self.items
+            .iter()
+            .any(|item| matches!(item, Item::Pattern(_)))
+    }
 }
 
 impl FunctionText {
@@ -82,6 +125,10 @@ pub(crate) struct ModelEmitter<'a> {
     dag: Dag,
     prepared: Prepared,
     roots: Vec<Vec<Id>>,
+    /// The parameters as a basis.
+    parameters: Vec<Variable>,
+    /// Operations of each function.
+    pub(crate) costs: BTreeMap<String, String>,
 }
 
 impl<'a> ModelEmitter<'a> {
@@ -107,6 +154,13 @@ impl<'a> ModelEmitter<'a> {
             .map(|(function, ids)| (function.name.clone(), ids.clone()))
             .collect();
         let prepared = Prepared::gather(&mut dag, model, &named);
+        let parameters = document.parameters.iter().map(|p| Variable {
+            name: p.name.clone(),
+            symbol: p.symbol.clone(),
+            unit: p.unit.clone(),
+            doc: p.doc.clone(),
+            validity: None,
+        });
         Ok(Self {
             model,
             document,
@@ -114,11 +168,13 @@ impl<'a> ModelEmitter<'a> {
             dag,
             prepared,
             roots,
+            parameters: parameters.collect(),
+            costs: BTreeMap::new(),
         })
     }
 
     /// The text of each file, by its name without ending.
-    pub(crate) fn files(mut self) -> Result<BTreeMap<String, String>, EmitError> {
+    pub(crate) fn files(&mut self) -> Result<BTreeMap<String, String>, EmitError> {
         let mut files = BTreeMap::new();
         let mut groups: Vec<&str> = Vec::new();
         for function in &self.model.functions {
@@ -130,7 +186,7 @@ impl<'a> ModelEmitter<'a> {
             files.insert(group.to_owned(), self.functions(group)?);
         }
         files.insert("prepared".to_owned(), self.prepare());
-        files.insert("mod".to_owned(), self.module(groups));
+        files.insert("mod".to_owned(), self.module(groups)?);
         Ok(files)
     }
 
@@ -142,12 +198,15 @@ impl<'a> ModelEmitter<'a> {
         self.model.bases.get(name).map_or(&[], Vec::as_slice)
     }
 
-    fn module(&self, mut groups: Vec<&'a str>) -> String {
+    fn module(&self, mut groups: Vec<&'a str>) -> Result<String, EmitError> {
         groups.sort_unstable();
         let mut modules = groups.clone();
         modules.push("prepared");
         if self.home == self.model.name {
             modules.extend(["nominal", "parameters", "provenance"]);
+            if !self.document.choices.is_empty() {
+                modules.push("choices");
+            }
         }
         modules.sort_unstable();
         let mut vectors = vec![
@@ -164,8 +223,7 @@ impl<'a> ModelEmitter<'a> {
                 bounds: Some("INPUT_BOUNDS"),
             },
         ];
-        let stochastic = self.model.bases.contains_key("noise");
-        if stochastic {
+        if self.model.noise.is_some() {
             vectors.push(Vector {
                 name: "Noise",
                 doc: "One value for each independent Wiener process",
@@ -173,16 +231,22 @@ impl<'a> ModelEmitter<'a> {
                 bounds: None,
             });
         }
-        render(&ModelTemplate {
+        let mut lists = Vec::new();
+        for vector in &vectors {
+            let fields = vector.fields.iter().map(|v| (&v.name, &v.unit));
+            lists.push(vector_impl(vector.name, fields, &self.document.units)?);
+        }
+        Ok(render(&ModelTemplate {
             model: self.model,
             label: self.label(),
             home: self.home,
             shared_parameters: self.home != self.model.name,
+            has_choices: !self.document.choices.is_empty(),
+            shared: home::names(self.document),
             modules,
             groups,
-            vectors,
-            stochastic,
-        })
+            vectors: vectors.into_iter().zip(lists).collect(),
+        }))
     }
 
     fn prepare(&mut self) -> String {
@@ -210,7 +274,7 @@ impl<'a> ModelEmitter<'a> {
             };
             fields.push(PreparedField {
                 name: field.name.clone(),
-                doc,
+                docs: wrapped(&doc),
                 value,
             });
         }
@@ -224,96 +288,231 @@ impl<'a> ModelEmitter<'a> {
     }
 
     fn functions(&mut self, group: &str) -> Result<String, EmitError> {
-        let mut functions = Vec::new();
+        let mut items = Vec::new();
         let mut imports = vec!["Input", "Prepared", "State"];
         for position in 0..self.model.functions.len() {
             let function = &self.model.functions[position];
             if function.group != group {
                 continue;
             }
-            let ids = self.roots[position].clone();
-            let text = self.function(function, &ids)?;
-            for alias in ["Diffusion", "InputJacobian", "Noise", "StateJacobian"] {
-                let mentions = text.result.contains(alias)
-                    || text.arguments.iter().any(|a| a.contains(alias))
-                    || text.zeros.iter().any(|(_, of)| *of == alias)
-                    || text
-                        .outputs
-                        .iter()
-                        .any(|(_, value)| value.contains(&format!("{alias} {{")));
-                if mentions && !imports.contains(&alias) {
-                    imports.push(alias);
-                }
+            let parameters = std::mem::take(&mut self.parameters);
+            let shapes = function
+                .outputs
+                .iter()
+                .map(|o| Shape::of(self.model, &parameters, o));
+            let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
+            for shape in &shapes {
+                imports.extend(shape.vectors());
+                imports.extend(shape.alias());
             }
-            functions.push(text);
+            let ids = self.roots[position].clone();
+            if function.compressed {
+                items.extend(
+                    shapes
+                        .iter()
+                        .filter_map(|shape| shape.pattern().map(Item::Pattern)),
+                );
+                items.push(Item::Function(self.function(function, &ids, &shapes, true)));
+                items.push(Item::Function(self.dense(function, &shapes)));
+            } else {
+                items.push(Item::Function(
+                    self.function(function, &ids, &shapes, false),
+                ));
+            }
+            self.parameters = parameters;
         }
+        let functions = || {
+            items.iter().filter_map(|item| match item {
+                Item::Function(function) => Some(function),
+                Item::Pattern(_) => None,
+            })
+        };
+        if functions().any(|f| f.arguments.iter().any(|a| a.contains("Noise<"))) {
+            imports.push("Noise");
+        }
+        // Named by what stands in the file: an alias hides the vectors that it is made of.
+        let mentions = |name: &str| {
+            functions().any(|f| {
+                let typed = |text: &String| text.contains(&format!("{name}<R>"));
+                let built = |text: &String| {
+                    text.contains(&format!("{name} {{"))
+                        || text.contains(&format!("{name}::splat("))
+                };
+                f.arguments.iter().any(typed)
+                    || typed(&f.result)
+                    || f.outputs.iter().any(|(_, value)| built(value))
+                    || f.zeros.iter().any(|(_, of, _)| *of == name)
+            }) || items.iter().any(|item| match item {
+                Item::Pattern(pattern) => pattern.shape.contains(&format!("{name}::")),
+                Item::Function(_) => false,
+            })
+        };
+        imports.retain(|name| mentions(name));
         imports.sort_unstable();
+        imports.dedup();
         Ok(render(&FunctionsTemplate {
             label: self.label(),
+            units: self.document.units.in_words(),
             imports,
-            paper_names: functions
-                .iter()
-                .any(|f| f.name.chars().any(char::is_uppercase)),
-            needs_vector: functions.iter().any(|f| !f.zeros.is_empty()),
-            functions,
+            paper_names: functions().any(|f| f.name.chars().any(char::is_uppercase)),
+            needs_vector: functions().any(|f| {
+                !f.zeros.is_empty()
+                    || f.outputs
+                        .iter()
+                        .any(|(_, value)| value.contains("::splat("))
+            }),
+            items,
         }))
     }
 
-    fn function(&mut self, function: &ir::Function, ids: &[Id]) -> Result<FunctionText, EmitError> {
-        let model = self.model;
-        let mut scope = Scope::new(&mut self.dag, model, Some(&self.prepared));
+    /// The function itself, or its compressed form.
+    fn function(
+        &mut self,
+        function: &ir::Function,
+        ids: &[Id],
+        shapes: &[Shape<'_>],
+        compressed: bool,
+    ) -> FunctionText {
+        let mut scope = Scope::new(&mut self.dag, self.model, Some(&self.prepared));
         let mut statements = scope.write(&function.name, ids);
-        let mut zeros = Vec::new();
+        let mut zeros = Zeros::new();
         let (mut outputs, mut results) = (Vec::new(), Vec::new());
         let mut remaining = ids.iter();
-        for output in &function.outputs {
+        for (output, shape) in function.outputs.iter().zip(shapes) {
             let values: Vec<String> = remaining
                 .by_ref()
                 .take(output.entries.len())
                 .map(|&id| reference(&mut scope, id))
                 .collect();
-            let shape = Shape::of(model, output)?;
-            results.push(shape.result());
-            outputs.push((
-                output.name.clone(),
-                shape.value(model, output, &values, &mut zeros),
-            ));
+            if compressed {
+                results.push(format!("[R; {}]", values.len()));
+                outputs.push((output.name.clone(), format!("[{}]", values.join(", "))));
+            } else {
+                results.push(shape.result());
+                outputs.push((output.name.clone(), shape.dense(&values, &mut zeros)));
+            }
         }
         if let [(_, result)] = outputs.as_mut_slice() {
             return_last(&mut statements, result);
         }
-        let argument = |name: &str, kind: Kind, ty: &str| {
-            let unused = if scope.used.contains(&kind) { "" } else { "_" };
-            format!("{unused}{name}: &{ty}<R>")
-        };
-        let mut arguments = vec![
-            argument("x", Kind::State, "State"),
-            argument("u", Kind::Input, "Input"),
-            argument("p", Kind::Parameter, "Prepared"),
-        ];
-        if scope.used.contains(&Kind::Noise) {
-            arguments.push(argument("dw", Kind::Noise, "Noise"));
+        let (used, scalars) = (scope.used.clone(), scope.arguments.clone());
+        let cost = capitalised(&scope.cost.describe());
+        self.costs.insert(function.name.clone(), cost.clone());
+        let mut docs = summary(function);
+        if compressed {
+            docs.push(String::new());
+            docs.push(
+                "The structurally non-zero entries alone, in the order of the pattern.".to_owned(),
+            );
         }
-        let unit = function.outputs.iter().find_map(|o| o.unit.as_deref());
-        let summary = format!("{}, eq. {}.", function.doc, function.equation);
-        let unit = unit.map_or_else(String::new, |u| format!(" Unit: {u}."));
-        let mut docs = wrapped(&(summary + &unit));
         docs.push(String::new());
-        docs.push(format!("{}.", capitalised(&scope.cost.describe())));
-        Ok(FunctionText {
-            name: function.name.clone(),
-            docs,
-            arguments,
-            result: if results.len() == 1 {
-                results.remove(0)
+        docs.push(format!("{cost}."));
+        FunctionText {
+            name: if compressed {
+                values_name(function)
             } else {
-                format!("({})", results.join(", "))
+                function.name.clone()
             },
+            docs,
+            arguments: arguments(|kind| used.contains(&kind), &scalars),
+            result: tuple(&results),
+            source: None,
             statements,
             zeros,
             outputs,
-        })
+        }
     }
+
+    /// The dense form of a compressed function.
+    fn dense(&self, function: &ir::Function, shapes: &[Shape<'_>]) -> FunctionText {
+        let mut zeros = Zeros::new();
+        let (mut lists, mut outputs, mut results) = (Vec::new(), Vec::new(), Vec::new());
+        for (output, shape) in function.outputs.iter().zip(shapes) {
+            let names = shape.entry_names();
+            lists.push(format!("[{}]", names.join(", ")));
+            results.push(shape.result());
+            outputs.push((output.name.clone(), shape.dense(&names, &mut zeros)));
+        }
+        // A result that is zero all over is the last zero itself.
+        if let ([(_, result)], Some((name, of, component))) = (outputs.as_mut_slice(), zeros.last())
+            && result == name
+        {
+            *result = format!("{of}::splat({component})");
+            zeros.pop();
+        }
+        FunctionText {
+            name: function.name.clone(),
+            docs: summary(function),
+            arguments: arguments(|kind| kind != Kind::Noise, &BTreeSet::new()),
+            result: tuple(&results),
+            source: Some(format!(
+                "let {} = {}(x, u, p);",
+                tuple(&lists),
+                values_name(function)
+            )),
+            statements: Vec::new(),
+            zeros,
+            outputs,
+        }
+    }
+}
+
+/// The name of the compressed form.
+fn values_name(function: &ir::Function) -> String {
+    format!("{}_values", function.name)
+}
+
+/// One item as it is, several as a tuple.
+fn tuple(items: &[String]) -> String {
+    match items {
+        [item] => item.clone(),
+        _ => format!("({})", items.join(", ")),
+    }
+}
+
+/// The arguments of a function; those that a model hands to every function may stay unused.
+fn arguments(used: impl Fn(Kind) -> bool, scalars: &BTreeSet<String>) -> Vec<String> {
+    let by_reference = |name: &str, kind: Kind, ty: &str| {
+        let unused = if used(kind) { "" } else { "_" };
+        format!("{unused}{name}: &{ty}<R>")
+    };
+    let mut arguments = vec![
+        by_reference("x", Kind::State, "State"),
+        by_reference("u", Kind::Input, "Input"),
+        by_reference("p", Kind::Parameter, "Prepared"),
+    ];
+    if used(Kind::Noise) {
+        arguments.push(by_reference("dw", Kind::Noise, "Noise"));
+    }
+    arguments.extend(scalars.iter().map(|name| format!("{name}: R")));
+    arguments
+}
+
+/// What a function computes, from which equation, in which unit.
+fn summary(function: &ir::Function) -> Vec<String> {
+    let unit = function.outputs.iter().find_map(|o| o.unit.as_deref());
+    let unit = match unit {
+        Some(unit) if function.outputs.len() == 1 => format!(" Unit: {unit}."),
+        _ => String::new(),
+    };
+    wrapped(&format!(
+        "{}, eq. {}.{unit}",
+        function.doc, function.equation
+    ))
+}
+
+/// The implementation of a vector, from the names and units of its fields.
+pub(crate) fn vector_impl<'a>(
+    vector: &str,
+    fields: impl Iterator<Item = (&'a String, &'a String)>,
+    units: &ir::Units,
+) -> Result<String, EmitError> {
+    let mut lines = Vec::new();
+    for (name, unit) in fields {
+        let (si, factor) = units.si(unit)?;
+        lines.push(format!("{name}: [{unit:?}, {si:?}, {factor:?}],"));
+    }
+    Ok(format::vector(vector, &lines))
 }
 
 /// A text in lines of a comment's width.
@@ -342,140 +541,6 @@ fn return_last(statements: &mut Vec<Statement>, result: &mut String) {
     {
         *result = value.source();
         statements.pop();
-    }
-}
-
-/// The shape of an output.
-enum Shape {
-    Scalar,
-    Array(usize),
-    Vector,
-    Matrix {
-        column: &'static str,
-        alias: &'static str,
-    },
-}
-
-impl Shape {
-    fn of(model: &ir::Model, output: &ir::Output) -> Result<Self, EmitError> {
-        if let Some(basis) = output.basis.iter().find(|b| !model.bases.contains_key(*b)) {
-            return Err(EmitError::Mismatch(format!(
-                "model `{}` has no basis `{basis}`",
-                model.name
-            )));
-        }
-        let known = |at: &[String]| {
-            at.len() == output.basis.len()
-                && at.iter().zip(&output.basis).all(|(name, basis)| {
-                    let variables = model.bases.get(basis);
-                    variables.is_some_and(|all| all.iter().any(|v| v.name == *name))
-                })
-        };
-        if let Some(entry) = output.entries.iter().find(|entry| !known(&entry.at)) {
-            return Err(EmitError::Mismatch(format!(
-                "model `{}` has an entry at {:?}, which its bases do not hold",
-                model.name, entry.at
-            )));
-        }
-        let basis: Vec<&str> = output.basis.iter().map(String::as_str).collect();
-        Ok(match basis.as_slice() {
-            [] => Self::Scalar,
-            ["state"] => Self::Vector,
-            ["mode"] => Self::Array(model.bases.get("mode").map_or(0, Vec::len)),
-            ["state", "state"] => Self::Matrix {
-                column: "State",
-                alias: "StateJacobian",
-            },
-            ["state", "input"] => Self::Matrix {
-                column: "Input",
-                alias: "InputJacobian",
-            },
-            ["state", "noise"] => Self::Matrix {
-                column: "Noise",
-                alias: "Diffusion",
-            },
-            other => {
-                return Err(EmitError::Mismatch(format!(
-                    "model `{}` has an output over {other:?}, which the emitter has no form for",
-                    model.name
-                )));
-            }
-        })
-    }
-
-    fn result(&self) -> String {
-        match self {
-            Self::Scalar => "R".to_owned(),
-            Self::Array(length) => format!("[R; {length}]"),
-            Self::Vector => "State<R>".to_owned(),
-            Self::Matrix { alias, .. } => format!("{alias}<R>"),
-        }
-    }
-
-    fn value(
-        &self,
-        model: &ir::Model,
-        output: &ir::Output,
-        values: &[String],
-        zeros: &mut Vec<(String, &'static str)>,
-    ) -> String {
-        let at = |names: &[&str]| {
-            let position = output.entries.iter().position(|entry| entry.at == names);
-            position.map(|k| values[k].clone())
-        };
-        let rows = output
-            .basis
-            .first()
-            .and_then(|basis| model.bases.get(basis));
-        let rows = rows.map_or(&[] as &[Variable], Vec::as_slice);
-        match self {
-            Self::Scalar => values.first().cloned().unwrap_or_else(|| literal(0.0)),
-            Self::Array(_) => {
-                let entries = rows
-                    .iter()
-                    .map(|row| at(&[&row.name]).unwrap_or_else(|| literal(0.0)));
-                format!("[{}]", entries.collect::<Vec<_>>().join(", "))
-            }
-            Self::Vector => {
-                let fields = rows.iter().map(|row| field(&row.name, at(&[&row.name])));
-                format!("State {{ {} }}", fields.collect::<Vec<_>>().join(", "))
-            }
-            Self::Matrix { column, .. } => {
-                let zero = format!("no_{}", column.to_lowercase());
-                let columns = &model.bases[&output.basis[1]];
-                let mut any_zero = false;
-                let lines: Vec<String> = rows
-                    .iter()
-                    .map(|row| {
-                        let present: Vec<String> = columns
-                            .iter()
-                            .filter_map(|c| Some(field(&c.name, Some(at(&[&row.name, &c.name])?))))
-                            .collect();
-                        any_zero |= present.len() < columns.len();
-                        let value = match present.len() {
-                            0 => zero.clone(),
-                            n if n == columns.len() => {
-                                format!("{column} {{ {} }}", present.join(", "))
-                            }
-                            _ => format!("{column} {{ {}, ..{zero} }}", present.join(", ")),
-                        };
-                        format!("{}: {value}", row.name)
-                    })
-                    .collect();
-                if any_zero {
-                    zeros.push((zero, column));
-                }
-                format!("State {{ {} }}", lines.join(", "))
-            }
-        }
-    }
-}
-
-fn field(name: &str, value: Option<String>) -> String {
-    match value {
-        Some(value) if value == name => value,
-        Some(value) => format!("{name}: {value}"),
-        None => format!("{name}: {}", literal(0.0)),
     }
 }
 

@@ -9,7 +9,7 @@ const LONGEST: usize = 40;
 /// A name that describes a node, or `None` where it would be too long.
 pub(crate) fn describe(dag: &Dag, model: &ir::Model, id: Id) -> Option<String> {
     let name = spell(dag, model, id)?;
-    (name.len() <= LONGEST).then_some(name)
+    (dag.name(id).is_some() || name.len() <= LONGEST).then_some(name)
 }
 
 fn spell(dag: &Dag, model: &ir::Model, id: Id) -> Option<String> {

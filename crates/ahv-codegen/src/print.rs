@@ -116,6 +116,10 @@ fn spell(scope: &mut Scope<'_>, id: Id) -> (String, Binding) {
                 Kind::Input => "u",
                 Kind::Noise => "dw",
                 Kind::Parameter => "p",
+                Kind::Argument => {
+                    scope.arguments.insert(name.clone());
+                    return (name, Binding::Atom);
+                }
             };
             (format!("{argument}.{name}"), Binding::Atom)
         }

@@ -42,6 +42,10 @@ pub struct Args {
     #[arg(long, conflicts_with = "core_path")]
     pub core_workspace: bool,
 
+    /// Unit system of the models: ft-slug-s-rad or si [default: that of the tables]
+    #[arg(long, value_name = "SYSTEM", value_parser = ["ft-slug-s-rad", "si"])]
+    pub units: Option<String>,
+
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
@@ -77,6 +81,9 @@ impl Args {
         }
         if self.package != PACKAGE {
             flag("--package", &self.package);
+        }
+        if let Some(units) = &self.units {
+            flag("--units", units);
         }
         if self.core_workspace {
             command.push_str(" --core-workspace");

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use ahv_codegen::{Manifest, Table, Tree};
+use ahv_codegen::{AUDIT, Manifest, Table, Tree};
 use serde::Serialize;
 use similar::{ChangeTag, TextDiff};
 
@@ -125,6 +125,10 @@ pub(crate) fn checked_in_irs(
             OnDisk::NotText(_) => missing.push(Difference::without_text(path, Status::Differs)),
             OnDisk::Missing => missing.push(Difference::without_text(path, Status::Missing)),
         }
+    }
+    // Whether there must be an audit the emitter knows.
+    if let OnDisk::Text(text) = read(&out.join(ir_path(AUDIT)))? {
+        irs.insert(AUDIT.to_owned(), text);
     }
     Ok((irs, missing))
 }

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::ErrorKind;
 use std::process::Output;
+
+use ahv_codegen::AUDIT;
 
 use serde::Deserialize;
 
@@ -19,7 +22,7 @@ struct Diagnostics {
     diagnostics: Vec<Diagnostic>,
 }
 
-/// The IR of each table, by the table's name.
+/// The IR of each table, by the table's name; and the audit, where a table has the printed form.
 pub(crate) fn derive(
     python: &Generator,
     tables: &Tables,
@@ -49,6 +52,14 @@ pub(crate) fn derive(
             with_stderr(message, &output)
         })?;
         irs.insert(table.name.clone(), text.replace("\r\n", "\n"));
+    }
+    let audit = folder.path().join(format!("{AUDIT}.json"));
+    match fs::read_to_string(&audit) {
+        Ok(text) => {
+            irs.insert(AUDIT.to_owned(), text.replace("\r\n", "\n"));
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        Err(error) => return Err(Failure::file("read", &audit)(error)),
     }
     Ok(irs)
 }

@@ -145,6 +145,7 @@ fn emit(args: &Args, tables: &Tables, irs: &BTreeMap<String, String>) -> Result<
     let options = Options {
         package: args.package.clone(),
         core: args.core(),
+        units: args.units.clone(),
     };
     ahv_codegen::emit(&tables.parsed, irs, &options)
         .map_err(|error| Failure::new(error.to_string()))

@@ -7,7 +7,7 @@ use ahv_core::Real;
 
 /// Time derivative of the state, eq. (1).
 ///
-/// 75 operations: 25 additions, 45 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 103 operations: 38 additions, 60 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
@@ -25,11 +25,13 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
     let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -58,19 +60,43 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
         + p.c_m_0;
 
     // Forces and moment, (2)
-    let lift = reference_force * c_l; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
 
+    // Curve fits, (2)
+    let generalized_force_1 = p.n_1_alpha_2 * alpha_2
+        + p.n_1_alpha * x.alpha
+        + p.n_1_0; // (ft*slug)^0.5/s^2
+
+    // Flexible modes, (1)
+    let modal_load_1 = generalized_force_1
+        - p.damping_1 * x.eta_dot_1
+        - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
+
+    // Curve fits, (2)
+    let generalized_force_2 = p.n_2_alpha_2 * alpha_2
+        + p.n_2_alpha * x.alpha
+        + p.n_2_delta_e * u.delta_e
+        + p.n_2_0; // (ft*slug)^0.5/s^2
+
+    // Flexible modes, (1)
+    let modal_load_2 = generalized_force_2
+        - p.damping_2 * x.eta_dot_2
+        - p.stiffness_2 * x.eta_2; // (ft*slug)^0.5/s^2
+
     // Motion, (1)
+    let pitch_acceleration = (pitching_moment - p.psi_1 * modal_load_1
+        - p.psi_2 * modal_load_2) * p.inv_effective_inertia; // rad/s^2
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let normal_force = lift + thrust * sin_alpha; // lb/ft
+    let force_turn = turn_factor * c_l + thrust * sin_alpha * inverse_momentum; // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = normal_force * inverse_momentum
-        - apparent_gravity * inv_velocity * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
+    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
+
+    // Flexible modes, (1)
+    let eta_acceleration_1 = modal_load_1 - p.psi_1 * pitch_acceleration; // (ft*slug)^0.5/s^2
+    let eta_acceleration_2 = modal_load_2 - p.psi_2 * pitch_acceleration; // (ft*slug)^0.5/s^2
 
     State {
         velocity: velocity_rate,
@@ -78,5 +104,9 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
         gamma: gamma_rate,
         alpha: alpha_rate,
         pitch_rate: pitch_acceleration,
+        eta_1: x.eta_dot_1,
+        eta_dot_1: eta_acceleration_1,
+        eta_2: x.eta_dot_2,
+        eta_dot_2: eta_acceleration_2,
     }
 }

@@ -3,18 +3,83 @@
 //! Functions of COM. Units are foot, slug, second and radian.
 
 use super::{Input, InputJacobian, Prepared, State, StateJacobian};
-use ahv_core::{Real, Vector};
+use ahv_core::{Pattern, Real, Vector};
+
+/// Where the entries of the compressed [`StateJacobian`] stand.
+pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
+    [State::<u8>::LEN, State::<u8>::LEN],
+    &[
+        ahv_core::at!(State.velocity, State.velocity),
+        ahv_core::at!(State.velocity, State.altitude),
+        ahv_core::at!(State.velocity, State.gamma),
+        ahv_core::at!(State.velocity, State.alpha),
+        ahv_core::at!(State.altitude, State.velocity),
+        ahv_core::at!(State.altitude, State.gamma),
+        ahv_core::at!(State.gamma, State.velocity),
+        ahv_core::at!(State.gamma, State.altitude),
+        ahv_core::at!(State.gamma, State.gamma),
+        ahv_core::at!(State.gamma, State.alpha),
+        ahv_core::at!(State.alpha, State.velocity),
+        ahv_core::at!(State.alpha, State.altitude),
+        ahv_core::at!(State.alpha, State.gamma),
+        ahv_core::at!(State.alpha, State.alpha),
+        ahv_core::at!(State.alpha, State.pitch_rate),
+        ahv_core::at!(State.pitch_rate, State.velocity),
+        ahv_core::at!(State.pitch_rate, State.altitude),
+        ahv_core::at!(State.pitch_rate, State.alpha),
+        ahv_core::at!(State.pitch_rate, State.eta_1),
+        ahv_core::at!(State.pitch_rate, State.eta_dot_1),
+        ahv_core::at!(State.pitch_rate, State.eta_2),
+        ahv_core::at!(State.pitch_rate, State.eta_dot_2),
+        ahv_core::at!(State.eta_1, State.eta_dot_1),
+        ahv_core::at!(State.eta_dot_1, State.velocity),
+        ahv_core::at!(State.eta_dot_1, State.altitude),
+        ahv_core::at!(State.eta_dot_1, State.alpha),
+        ahv_core::at!(State.eta_dot_1, State.eta_1),
+        ahv_core::at!(State.eta_dot_1, State.eta_dot_1),
+        ahv_core::at!(State.eta_dot_1, State.eta_2),
+        ahv_core::at!(State.eta_dot_1, State.eta_dot_2),
+        ahv_core::at!(State.eta_2, State.eta_dot_2),
+        ahv_core::at!(State.eta_dot_2, State.velocity),
+        ahv_core::at!(State.eta_dot_2, State.altitude),
+        ahv_core::at!(State.eta_dot_2, State.alpha),
+        ahv_core::at!(State.eta_dot_2, State.eta_1),
+        ahv_core::at!(State.eta_dot_2, State.eta_dot_1),
+        ahv_core::at!(State.eta_dot_2, State.eta_2),
+        ahv_core::at!(State.eta_dot_2, State.eta_dot_2),
+    ],
+);
+
+/// Where the entries of the compressed [`InputJacobian`] stand.
+pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
+    [State::<u8>::LEN, Input::<u8>::LEN],
+    &[
+        ahv_core::at!(State.velocity, Input.phi),
+        ahv_core::at!(State.velocity, Input.delta_e),
+        ahv_core::at!(State.gamma, Input.phi),
+        ahv_core::at!(State.gamma, Input.delta_e),
+        ahv_core::at!(State.alpha, Input.phi),
+        ahv_core::at!(State.alpha, Input.delta_e),
+        ahv_core::at!(State.pitch_rate, Input.phi),
+        ahv_core::at!(State.pitch_rate, Input.delta_e),
+        ahv_core::at!(State.eta_dot_1, Input.phi),
+        ahv_core::at!(State.eta_dot_1, Input.delta_e),
+        ahv_core::at!(State.eta_dot_2, Input.phi),
+        ahv_core::at!(State.eta_dot_2, Input.delta_e),
+    ],
+);
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
-/// 150 operations: 39 additions, 106 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 171 operations: 46 additions, 120 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
-pub fn jacobians<R: Real>(
+pub fn jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-
-) -> (StateJacobian<R>, InputJacobian<R>) {
+) -> ([R; 38], [R; 12]) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
@@ -30,11 +95,13 @@ pub fn jacobians<R: Real>(
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
     let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -62,30 +129,25 @@ pub fn jacobians<R: Real>(
         + p.c_m_delta_e * u.delta_e
         + p.c_m_0;
 
-    // Forces and moment, (2)
-    let lift = reference_force * c_l; // lb/ft
-
-    // Motion, (1)
-    let normal_force = lift + thrust * sin_alpha; // lb/ft
-
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
-    let d_apparent_gravity_d_velocity = p.minus_two_earth_curvature * radius_ratio
-        * x.velocity; // 1/s
-    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
-    let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
-    let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma
-        * (apparent_gravity * inv_velocity_2
-            - inv_velocity * d_apparent_gravity_d_velocity)
-        + normal_force * d_inverse_momentum_d_velocity
-        + inverse_momentum * d_lift_d_velocity; // rad/ft
+    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
+        + p.earth_curvature * radius_ratio); // 1/ft
+    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
+    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
+    let d_force_turn_d_velocity = c_l * d_turn_factor_d_velocity
+        - thrust * sin_alpha * inverse_momentum_2 * p.m; // rad/ft
+    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
+        - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = c_m * p.c_bar * d_reference_force_d_velocity; // lb*s/ft
-    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity
+        * p.inv_effective_inertia; // rad/s/ft
+    let d_eta_acceleration_1_d_velocity = -p.psi_1 * d_pitch_acceleration_d_velocity; // slug^0.5/ft^0.5/s
+    let d_eta_acceleration_2_d_velocity = -p.psi_2 * d_pitch_acceleration_d_velocity; // slug^0.5/ft^0.5/s
 
     // Derivatives with respect to altitude
     let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
@@ -97,19 +159,23 @@ pub fn jacobians<R: Real>(
     let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
     let d_velocity_rate_d_altitude = -(sin_gamma * d_gravity_d_altitude
         + d_drag_d_altitude * p.inv_m); // 1/s^2
-    let d_apparent_gravity_d_altitude = d_gravity_d_altitude
-        - velocity_2 * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s^2
-    let d_lift_d_altitude = c_l * d_reference_force_d_altitude; // lb/ft^2
-    let d_gamma_rate_d_altitude = inverse_momentum * d_lift_d_altitude
-        - cos_gamma * inv_velocity * d_apparent_gravity_d_altitude; // rad/s/ft
+    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
+        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
+    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
+    let d_force_turn_d_altitude = c_l * d_turn_factor_d_altitude; // rad/s/ft
+    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
+        - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = c_m * p.c_bar * d_reference_force_d_altitude; // lb/ft
-    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude
+        * p.inv_effective_inertia; // rad/s^2/ft
+    let d_eta_acceleration_1_d_altitude = -p.psi_1 * d_pitch_acceleration_d_altitude; // slug^0.5/ft^0.5/s^2
+    let d_eta_acceleration_2_d_altitude = -p.psi_2 * d_pitch_acceleration_d_altitude; // slug^0.5/ft^0.5/s^2
 
     // Derivatives with respect to gamma
     let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -126,85 +192,259 @@ pub fn jacobians<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_normal_force_d_alpha = thrust * cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + reference_force * p.c_l_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_force_turn_d_alpha = inverse_momentum
+        * (thrust * cos_alpha + sin_alpha * d_thrust_d_alpha)
+        + turn_factor * p.c_l_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.z_t * d_thrust_d_alpha
         + reference_force * p.c_bar * d_c_m_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
+    let d_generalized_force_1_d_alpha = p.two_n_1_alpha_2 * x.alpha + p.n_1_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_alpha = p.two_n_2_alpha_2 * x.alpha + p.n_2_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_pitch_acceleration_d_alpha = p.inv_effective_inertia
+        * (d_pitching_moment_d_alpha - p.psi_1 * d_generalized_force_1_d_alpha
+            - p.psi_2 * d_generalized_force_2_d_alpha); // 1/s^2
+    let d_eta_acceleration_1_d_alpha = d_generalized_force_1_d_alpha
+        - p.psi_1 * d_pitch_acceleration_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_acceleration_2_d_alpha = d_generalized_force_2_d_alpha
+        - p.psi_2 * d_pitch_acceleration_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to phi
     let d_path_force_d_phi = cos_alpha * thrust_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_normal_force_d_phi = sin_alpha * thrust_phi; // lb/ft
-    let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
-    let d_pitch_acceleration_d_phi = p.z_t_over_i_yy * thrust_phi; // rad/s^2
+    let d_force_turn_d_phi = inverse_momentum * sin_alpha * thrust_phi; // rad/s
+    let d_pitch_acceleration_d_phi = p.z_t_over_effective_inertia * thrust_phi; // rad/s^2
+    let d_eta_acceleration_1_d_phi = -p.psi_1 * d_pitch_acceleration_d_phi; // ft^0.5*slug^0.5/s^2
+    let d_eta_acceleration_2_d_phi = -p.psi_2 * d_pitch_acceleration_d_phi; // ft^0.5*slug^0.5/s^2
 
     // Derivatives with respect to delta_e
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_gamma_rate_d_delta_e = inverse_momentum * reference_force * p.c_l_delta_e; // 1/s
+    let d_alpha_rate_d_delta_e = -turn_factor * p.c_l_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = reference_force * p.c_bar_c_m_delta_e; // lb/rad
-    let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
+    let d_pitch_acceleration_d_delta_e = p.inv_effective_inertia
+        * (d_pitching_moment_d_delta_e - p.psi_2_n_2_delta_e); // 1/s^2
+    let d_eta_acceleration_1_d_delta_e = -p.psi_1 * d_pitch_acceleration_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_acceleration_2_d_delta_e = p.n_2_delta_e
+        - p.psi_2 * d_pitch_acceleration_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+
+    // Result
+    let state = [
+        d_velocity_rate_d_velocity,
+        d_velocity_rate_d_altitude,
+        d_velocity_rate_d_gamma,
+        d_velocity_rate_d_alpha,
+        sin_gamma,
+        d_altitude_rate_d_gamma,
+        d_gamma_rate_d_velocity,
+        d_gamma_rate_d_altitude,
+        d_gamma_rate_d_gamma,
+        d_force_turn_d_alpha,
+        -d_gamma_rate_d_velocity,
+        -d_gamma_rate_d_altitude,
+        -d_gamma_rate_d_gamma,
+        -d_force_turn_d_alpha,
+        R::ONE,
+        d_pitch_acceleration_d_velocity,
+        d_pitch_acceleration_d_altitude,
+        d_pitch_acceleration_d_alpha,
+        p.d_pitch_acceleration_d_eta_1,
+        p.d_pitch_acceleration_d_eta_dot_1,
+        p.d_pitch_acceleration_d_eta_2,
+        p.d_pitch_acceleration_d_eta_dot_2,
+        R::ONE,
+        d_eta_acceleration_1_d_velocity,
+        d_eta_acceleration_1_d_altitude,
+        d_eta_acceleration_1_d_alpha,
+        p.d_eta_acceleration_1_d_eta_1,
+        p.d_eta_acceleration_1_d_eta_dot_1,
+        p.d_eta_acceleration_1_d_eta_2,
+        p.d_eta_acceleration_1_d_eta_dot_2,
+        R::ONE,
+        d_eta_acceleration_2_d_velocity,
+        d_eta_acceleration_2_d_altitude,
+        d_eta_acceleration_2_d_alpha,
+        p.d_eta_acceleration_2_d_eta_1,
+        p.d_eta_acceleration_2_d_eta_dot_1,
+        p.d_eta_acceleration_2_d_eta_2,
+        p.d_eta_acceleration_2_d_eta_dot_2,
+    ];
+    let input = [
+        d_velocity_rate_d_phi,
+        d_velocity_rate_d_delta_e,
+        d_force_turn_d_phi,
+        turn_factor * p.c_l_delta_e,
+        -d_force_turn_d_phi,
+        d_alpha_rate_d_delta_e,
+        d_pitch_acceleration_d_phi,
+        d_pitch_acceleration_d_delta_e,
+        d_eta_acceleration_1_d_phi,
+        d_eta_acceleration_1_d_delta_e,
+        d_eta_acceleration_2_d_phi,
+        d_eta_acceleration_2_d_delta_e,
+    ];
+    (state, input)
+}
+
+/// Derivatives of the drift with respect to the state and to the input, eq. (1).
+#[inline]
+pub fn jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (StateJacobian<R>, InputJacobian<R>) {
+    let (
+        [velocity_by_velocity,
+        velocity_by_altitude,
+        velocity_by_gamma,
+        velocity_by_alpha,
+        altitude_by_velocity,
+        altitude_by_gamma,
+        gamma_by_velocity,
+        gamma_by_altitude,
+        gamma_by_gamma,
+        gamma_by_alpha,
+        alpha_by_velocity,
+        alpha_by_altitude,
+        alpha_by_gamma,
+        alpha_by_alpha,
+        alpha_by_pitch_rate,
+        pitch_rate_by_velocity,
+        pitch_rate_by_altitude,
+        pitch_rate_by_alpha,
+        pitch_rate_by_eta_1,
+        pitch_rate_by_eta_dot_1,
+        pitch_rate_by_eta_2,
+        pitch_rate_by_eta_dot_2,
+        eta_1_by_eta_dot_1,
+        eta_dot_1_by_velocity,
+        eta_dot_1_by_altitude,
+        eta_dot_1_by_alpha,
+        eta_dot_1_by_eta_1,
+        eta_dot_1_by_eta_dot_1,
+        eta_dot_1_by_eta_2,
+        eta_dot_1_by_eta_dot_2,
+        eta_2_by_eta_dot_2,
+        eta_dot_2_by_velocity,
+        eta_dot_2_by_altitude,
+        eta_dot_2_by_alpha,
+        eta_dot_2_by_eta_1,
+        eta_dot_2_by_eta_dot_1,
+        eta_dot_2_by_eta_2,
+        eta_dot_2_by_eta_dot_2,
+        ],
+        [velocity_by_phi,
+        velocity_by_delta_e,
+        gamma_by_phi,
+        gamma_by_delta_e,
+        alpha_by_phi,
+        alpha_by_delta_e,
+        pitch_rate_by_phi,
+        pitch_rate_by_delta_e,
+        eta_dot_1_by_phi,
+        eta_dot_1_by_delta_e,
+        eta_dot_2_by_phi,
+        eta_dot_2_by_delta_e,
+        ],
+    ) = jacobians_values(x, u, p);
 
     // Result
     let no_state = State::splat(R::ZERO);
     let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
     let state = State {
         velocity: State {
-            velocity: d_velocity_rate_d_velocity,
-            altitude: d_velocity_rate_d_altitude,
-            gamma: d_velocity_rate_d_gamma,
-            alpha: d_velocity_rate_d_alpha,
+            velocity: velocity_by_velocity,
+            altitude: velocity_by_altitude,
+            gamma: velocity_by_gamma,
+            alpha: velocity_by_alpha,
             ..no_state
         },
         altitude: State {
-            velocity: sin_gamma,
-            gamma: d_altitude_rate_d_gamma,
+            velocity: altitude_by_velocity,
+            gamma: altitude_by_gamma,
             ..no_state
         },
         gamma: State {
-            velocity: d_gamma_rate_d_velocity,
-            altitude: d_gamma_rate_d_altitude,
-            gamma: d_gamma_rate_d_gamma,
-            alpha: d_gamma_rate_d_alpha,
+            velocity: gamma_by_velocity,
+            altitude: gamma_by_altitude,
+            gamma: gamma_by_gamma,
+            alpha: gamma_by_alpha,
             ..no_state
         },
         alpha: State {
-            velocity: -d_gamma_rate_d_velocity,
-            altitude: -d_gamma_rate_d_altitude,
-            gamma: -d_gamma_rate_d_gamma,
-            alpha: -d_gamma_rate_d_alpha,
-            pitch_rate: R::ONE,
+            velocity: alpha_by_velocity,
+            altitude: alpha_by_altitude,
+            gamma: alpha_by_gamma,
+            alpha: alpha_by_alpha,
+            pitch_rate: alpha_by_pitch_rate,
+            ..no_state
         },
         pitch_rate: State {
-            velocity: d_pitch_acceleration_d_velocity,
-            altitude: d_pitch_acceleration_d_altitude,
-            alpha: d_pitch_acceleration_d_alpha,
+            velocity: pitch_rate_by_velocity,
+            altitude: pitch_rate_by_altitude,
+            alpha: pitch_rate_by_alpha,
+            eta_1: pitch_rate_by_eta_1,
+            eta_dot_1: pitch_rate_by_eta_dot_1,
+            eta_2: pitch_rate_by_eta_2,
+            eta_dot_2: pitch_rate_by_eta_dot_2,
+            ..no_state
+        },
+        eta_1: State {
+            eta_dot_1: eta_1_by_eta_dot_1,
+            ..no_state
+        },
+        eta_dot_1: State {
+            velocity: eta_dot_1_by_velocity,
+            altitude: eta_dot_1_by_altitude,
+            alpha: eta_dot_1_by_alpha,
+            eta_1: eta_dot_1_by_eta_1,
+            eta_dot_1: eta_dot_1_by_eta_dot_1,
+            eta_2: eta_dot_1_by_eta_2,
+            eta_dot_2: eta_dot_1_by_eta_dot_2,
+            ..no_state
+        },
+        eta_2: State {
+            eta_dot_2: eta_2_by_eta_dot_2,
+            ..no_state
+        },
+        eta_dot_2: State {
+            velocity: eta_dot_2_by_velocity,
+            altitude: eta_dot_2_by_altitude,
+            alpha: eta_dot_2_by_alpha,
+            eta_1: eta_dot_2_by_eta_1,
+            eta_dot_1: eta_dot_2_by_eta_dot_1,
+            eta_2: eta_dot_2_by_eta_2,
+            eta_dot_2: eta_dot_2_by_eta_dot_2,
             ..no_state
         },
     };
     let input = State {
         velocity: Input {
-            phi: d_velocity_rate_d_phi,
-            delta_e: d_velocity_rate_d_delta_e,
+            phi: velocity_by_phi,
+            delta_e: velocity_by_delta_e,
         },
-        altitude: no_input,
         gamma: Input {
-            phi: d_gamma_rate_d_phi,
-            delta_e: d_gamma_rate_d_delta_e,
+            phi: gamma_by_phi,
+            delta_e: gamma_by_delta_e,
         },
         alpha: Input {
-            phi: -d_gamma_rate_d_phi,
-            delta_e: -d_gamma_rate_d_delta_e,
+            phi: alpha_by_phi,
+            delta_e: alpha_by_delta_e,
         },
         pitch_rate: Input {
-            phi: d_pitch_acceleration_d_phi,
-            delta_e: d_pitch_acceleration_d_delta_e,
+            phi: pitch_rate_by_phi,
+            delta_e: pitch_rate_by_delta_e,
         },
+        eta_dot_1: Input {
+            phi: eta_dot_1_by_phi,
+            delta_e: eta_dot_1_by_delta_e,
+        },
+        eta_dot_2: Input {
+            phi: eta_dot_2_by_phi,
+            delta_e: eta_dot_2_by_delta_e,
+        },
+        ..no_state_input
     };
     (state, input)
 }
@@ -212,13 +452,12 @@ pub fn jacobians<R: Real>(
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (1).
 ///
-/// 166 operations: 44 additions, 117 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 215 operations: 65 additions, 145 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift_and_jacobians<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -235,11 +474,13 @@ pub fn drift_and_jacobians<R: Real>(
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
     let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -268,39 +509,64 @@ pub fn drift_and_jacobians<R: Real>(
         + p.c_m_0;
 
     // Forces and moment, (2)
-    let lift = reference_force * c_l; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
 
+    // Curve fits, (2)
+    let generalized_force_1 = p.n_1_alpha_2 * alpha_2
+        + p.n_1_alpha * x.alpha
+        + p.n_1_0; // (ft*slug)^0.5/s^2
+
+    // Flexible modes, (1)
+    let modal_load_1 = generalized_force_1
+        - p.damping_1 * x.eta_dot_1
+        - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
+
+    // Curve fits, (2)
+    let generalized_force_2 = p.n_2_alpha_2 * alpha_2
+        + p.n_2_alpha * x.alpha
+        + p.n_2_delta_e * u.delta_e
+        + p.n_2_0; // (ft*slug)^0.5/s^2
+
+    // Flexible modes, (1)
+    let modal_load_2 = generalized_force_2
+        - p.damping_2 * x.eta_dot_2
+        - p.stiffness_2 * x.eta_2; // (ft*slug)^0.5/s^2
+
     // Motion, (1)
+    let pitch_acceleration = (pitching_moment - p.psi_1 * modal_load_1
+        - p.psi_2 * modal_load_2) * p.inv_effective_inertia; // rad/s^2
     let thrust_cos_alpha = thrust * cos_alpha;
     let path_force = thrust_cos_alpha - drag; // lb/ft
-    let normal_force = lift + thrust * sin_alpha; // lb/ft
+    let force_turn = turn_factor * c_l + thrust * sin_alpha * inverse_momentum; // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = normal_force * inverse_momentum
-        - apparent_gravity * inv_velocity * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
+    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
+
+    // Flexible modes, (1)
+    let eta_acceleration_1 = modal_load_1 - p.psi_1 * pitch_acceleration; // (ft*slug)^0.5/s^2
+    let eta_acceleration_2 = modal_load_2 - p.psi_2 * pitch_acceleration; // (ft*slug)^0.5/s^2
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
-    let d_apparent_gravity_d_velocity = p.minus_two_earth_curvature * radius_ratio
-        * x.velocity; // 1/s
-    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
-    let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
-    let d_lift_d_velocity = c_l * d_reference_force_d_velocity; // lb*s/ft^2
     let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma
-        * (apparent_gravity * inv_velocity_2
-            - inv_velocity * d_apparent_gravity_d_velocity)
-        + normal_force * d_inverse_momentum_d_velocity
-        + inverse_momentum * d_lift_d_velocity; // rad/ft
+    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
+        + p.earth_curvature * radius_ratio); // 1/ft
+    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
+    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
+    let d_force_turn_d_velocity = c_l * d_turn_factor_d_velocity
+        - thrust * sin_alpha * inverse_momentum_2 * p.m; // rad/ft
+    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
+        - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = c_m * p.c_bar * d_reference_force_d_velocity; // lb*s/ft
-    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity
+        * p.inv_effective_inertia; // rad/s/ft
+    let d_eta_acceleration_1_d_velocity = -p.psi_1 * d_pitch_acceleration_d_velocity; // slug^0.5/ft^0.5/s
+    let d_eta_acceleration_2_d_velocity = -p.psi_2 * d_pitch_acceleration_d_velocity; // slug^0.5/ft^0.5/s
 
     // Derivatives with respect to altitude
     let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
@@ -312,19 +578,23 @@ pub fn drift_and_jacobians<R: Real>(
     let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
     let d_velocity_rate_d_altitude = -(sin_gamma * d_gravity_d_altitude
         + d_drag_d_altitude * p.inv_m); // 1/s^2
-    let d_apparent_gravity_d_altitude = d_gravity_d_altitude
-        - velocity_2 * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s^2
-    let d_lift_d_altitude = c_l * d_reference_force_d_altitude; // lb/ft^2
-    let d_gamma_rate_d_altitude = inverse_momentum * d_lift_d_altitude
-        - cos_gamma * inv_velocity * d_apparent_gravity_d_altitude; // rad/s/ft
+    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
+        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
+    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
+    let d_force_turn_d_altitude = c_l * d_turn_factor_d_altitude; // rad/s/ft
+    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
+        - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = c_m * p.c_bar * d_reference_force_d_altitude; // lb/ft
-    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude
+        * p.inv_effective_inertia; // rad/s^2/ft
+    let d_eta_acceleration_1_d_altitude = -p.psi_1 * d_pitch_acceleration_d_altitude; // slug^0.5/ft^0.5/s^2
+    let d_eta_acceleration_2_d_altitude = -p.psi_2 * d_pitch_acceleration_d_altitude; // slug^0.5/ft^0.5/s^2
 
     // Derivatives with respect to gamma
     let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -341,39 +611,55 @@ pub fn drift_and_jacobians<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_normal_force_d_alpha = thrust_cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + reference_force * p.c_l_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_force_turn_d_alpha = inverse_momentum
+        * (thrust_cos_alpha + sin_alpha * d_thrust_d_alpha) + turn_factor * p.c_l_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.z_t * d_thrust_d_alpha
         + reference_force * p.c_bar * d_c_m_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
+    let d_generalized_force_1_d_alpha = p.two_n_1_alpha_2 * x.alpha + p.n_1_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_alpha = p.two_n_2_alpha_2 * x.alpha + p.n_2_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_pitch_acceleration_d_alpha = p.inv_effective_inertia
+        * (d_pitching_moment_d_alpha - p.psi_1 * d_generalized_force_1_d_alpha
+            - p.psi_2 * d_generalized_force_2_d_alpha); // 1/s^2
+    let d_eta_acceleration_1_d_alpha = d_generalized_force_1_d_alpha
+        - p.psi_1 * d_pitch_acceleration_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_acceleration_2_d_alpha = d_generalized_force_2_d_alpha
+        - p.psi_2 * d_pitch_acceleration_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to phi
     let d_path_force_d_phi = cos_alpha * thrust_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_normal_force_d_phi = sin_alpha * thrust_phi; // lb/ft
-    let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
-    let d_pitch_acceleration_d_phi = p.z_t_over_i_yy * thrust_phi; // rad/s^2
+    let d_force_turn_d_phi = inverse_momentum * sin_alpha * thrust_phi; // rad/s
+    let d_pitch_acceleration_d_phi = p.z_t_over_effective_inertia * thrust_phi; // rad/s^2
+    let d_eta_acceleration_1_d_phi = -p.psi_1 * d_pitch_acceleration_d_phi; // ft^0.5*slug^0.5/s^2
+    let d_eta_acceleration_2_d_phi = -p.psi_2 * d_pitch_acceleration_d_phi; // ft^0.5*slug^0.5/s^2
 
     // Derivatives with respect to delta_e
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_gamma_rate_d_delta_e = inverse_momentum * reference_force * p.c_l_delta_e; // 1/s
+    let d_alpha_rate_d_delta_e = -turn_factor * p.c_l_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = reference_force * p.c_bar_c_m_delta_e; // lb/rad
-    let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
+    let d_pitch_acceleration_d_delta_e = p.inv_effective_inertia
+        * (d_pitching_moment_d_delta_e - p.psi_2_n_2_delta_e); // 1/s^2
+    let d_eta_acceleration_1_d_delta_e = -p.psi_1 * d_pitch_acceleration_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_acceleration_2_d_delta_e = p.n_2_delta_e
+        - p.psi_2 * d_pitch_acceleration_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
 
     // Result
     let no_state = State::splat(R::ZERO);
     let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
     let drift = State {
         velocity: velocity_rate,
         altitude: altitude_rate,
         gamma: gamma_rate,
         alpha: alpha_rate,
         pitch_rate: pitch_acceleration,
+        eta_1: x.eta_dot_1,
+        eta_dot_1: eta_acceleration_1,
+        eta_2: x.eta_dot_2,
+        eta_dot_2: eta_acceleration_2,
     };
     let state = State {
         velocity: State {
@@ -392,20 +678,53 @@ pub fn drift_and_jacobians<R: Real>(
             velocity: d_gamma_rate_d_velocity,
             altitude: d_gamma_rate_d_altitude,
             gamma: d_gamma_rate_d_gamma,
-            alpha: d_gamma_rate_d_alpha,
+            alpha: d_force_turn_d_alpha,
             ..no_state
         },
         alpha: State {
             velocity: -d_gamma_rate_d_velocity,
             altitude: -d_gamma_rate_d_altitude,
             gamma: -d_gamma_rate_d_gamma,
-            alpha: -d_gamma_rate_d_alpha,
+            alpha: -d_force_turn_d_alpha,
             pitch_rate: R::ONE,
+            ..no_state
         },
         pitch_rate: State {
             velocity: d_pitch_acceleration_d_velocity,
             altitude: d_pitch_acceleration_d_altitude,
             alpha: d_pitch_acceleration_d_alpha,
+            eta_1: p.d_pitch_acceleration_d_eta_1,
+            eta_dot_1: p.d_pitch_acceleration_d_eta_dot_1,
+            eta_2: p.d_pitch_acceleration_d_eta_2,
+            eta_dot_2: p.d_pitch_acceleration_d_eta_dot_2,
+            ..no_state
+        },
+        eta_1: State {
+            eta_dot_1: R::ONE,
+            ..no_state
+        },
+        eta_dot_1: State {
+            velocity: d_eta_acceleration_1_d_velocity,
+            altitude: d_eta_acceleration_1_d_altitude,
+            alpha: d_eta_acceleration_1_d_alpha,
+            eta_1: p.d_eta_acceleration_1_d_eta_1,
+            eta_dot_1: p.d_eta_acceleration_1_d_eta_dot_1,
+            eta_2: p.d_eta_acceleration_1_d_eta_2,
+            eta_dot_2: p.d_eta_acceleration_1_d_eta_dot_2,
+            ..no_state
+        },
+        eta_2: State {
+            eta_dot_2: R::ONE,
+            ..no_state
+        },
+        eta_dot_2: State {
+            velocity: d_eta_acceleration_2_d_velocity,
+            altitude: d_eta_acceleration_2_d_altitude,
+            alpha: d_eta_acceleration_2_d_alpha,
+            eta_1: p.d_eta_acceleration_2_d_eta_1,
+            eta_dot_1: p.d_eta_acceleration_2_d_eta_dot_1,
+            eta_2: p.d_eta_acceleration_2_d_eta_2,
+            eta_dot_2: p.d_eta_acceleration_2_d_eta_dot_2,
             ..no_state
         },
     };
@@ -414,19 +733,27 @@ pub fn drift_and_jacobians<R: Real>(
             phi: d_velocity_rate_d_phi,
             delta_e: d_velocity_rate_d_delta_e,
         },
-        altitude: no_input,
         gamma: Input {
-            phi: d_gamma_rate_d_phi,
-            delta_e: d_gamma_rate_d_delta_e,
+            phi: d_force_turn_d_phi,
+            delta_e: turn_factor * p.c_l_delta_e,
         },
         alpha: Input {
-            phi: -d_gamma_rate_d_phi,
-            delta_e: -d_gamma_rate_d_delta_e,
+            phi: -d_force_turn_d_phi,
+            delta_e: d_alpha_rate_d_delta_e,
         },
         pitch_rate: Input {
             phi: d_pitch_acceleration_d_phi,
             delta_e: d_pitch_acceleration_d_delta_e,
         },
+        eta_dot_1: Input {
+            phi: d_eta_acceleration_1_d_phi,
+            delta_e: d_eta_acceleration_1_d_delta_e,
+        },
+        eta_dot_2: Input {
+            phi: d_eta_acceleration_2_d_phi,
+            delta_e: d_eta_acceleration_2_d_delta_e,
+        },
+        ..no_state_input
     };
     (drift, state, input)
 }

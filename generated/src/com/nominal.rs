@@ -5,7 +5,10 @@
 use super::{Parameters, Validity};
 use ahv_core::Bounds;
 
-/// Nominal values of the parameters.
+/// The unit system: `ft-slug-s-rad` or `si`.
+pub const UNIT_SYSTEM: &str = "ft-slug-s-rad";
+
+/// Values of the parameters in the table, the set `section5.1`.
 pub const NOMINAL: Parameters<f64> = Parameters {
     m: 300.0,
     i_yy: 500000.0,
@@ -17,6 +20,12 @@ pub const NOMINAL: Parameters<f64> = Parameters {
     h_s: 21358.0,
     g: 32.17405,
     r_e: 20902231.0,
+    omega_1: 16.2,
+    omega_2: 19.6,
+    zeta_1: 0.02,
+    zeta_2: 0.02,
+    psi_1: 401.86,
+    psi_2: -297.41,
     spherical_earth: 0.0,
     t_phi_alpha_3: -376930.0,
     t_phi_alpha_2: 26814.0,
@@ -38,7 +47,23 @@ pub const NOMINAL: Parameters<f64> = Parameters {
     c_m_alpha: 2.1335,
     c_m_delta_e: -1.2897,
     c_m_0: 0.18979,
+    n_1_alpha_2: 1401.3,
+    n_1_alpha: 4573.7,
+    n_1_0: 117.52,
+    n_2_alpha_2: -5022.7,
+    n_2_alpha: 2863.3,
+    n_2_delta_e: 1246.5,
+    n_2_0: -44.201,
 };
+
+/// The set `section5.3`.
+pub const SECTION5_3: Parameters<f64> = Parameters { ..NOMINAL };
+
+/// Sets of parameters by name.
+pub const SETS: [(&str, Parameters<f64>); 2] = [
+    ("section5.1", NOMINAL),
+    ("section5.3", SECTION5_3),
+];
 
 /// The box in which the curve fits are meant to be used.
 pub const VALIDITY: Validity = Validity {
@@ -47,6 +72,8 @@ pub const VALIDITY: Validity = Validity {
     gamma: Bounds::new(-0.08726646259971647, 0.08726646259971647),
     alpha: Bounds::new(-0.08726646259971647, 0.17453292519943295),
     pitch_rate: Bounds::new(-0.17453292519943295, 0.17453292519943295),
+    eta: Bounds::new(-2.0, 2.0),
+    eta_dot: Bounds::new(-50.0, 50.0),
     phi: Bounds::new(0.05, 1.2),
     delta_e: Bounds::new(-0.3490658503988659, 0.3490658503988659),
 };

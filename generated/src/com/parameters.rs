@@ -28,6 +28,18 @@ pub struct Parameters<T> {
     pub g: T,
     /// Radius of the Earth, ft.
     pub r_e: T,
+    /// Natural frequency of mode 1, rad/s.
+    pub omega_1: T,
+    /// Natural frequency of mode 2, rad/s.
+    pub omega_2: T,
+    /// Damping ratio of mode 1, dimensionless.
+    pub zeta_1: T,
+    /// Damping ratio of mode 2, dimensionless.
+    pub zeta_2: T,
+    /// Inertial coupling of mode 1 with the pitch rate, (ft*slug)^0.5.
+    pub psi_1: T,
+    /// Inertial coupling of mode 2 with the pitch rate, (ft*slug)^0.5.
+    pub psi_2: T,
     /// Share of the Earth's curvature in the motion: 1 spherical, 0 flat, dimensionless.
     pub spherical_earth: T,
     /// Coefficient of phi*alpha^3 in T, lb/ft/rad^3.
@@ -70,161 +82,70 @@ pub struct Parameters<T> {
     pub c_m_delta_e: T,
     /// Constant part of C_M, dimensionless.
     pub c_m_0: T,
+    /// Coefficient of alpha^2 in N_1, (ft*slug)^0.5/s^2/rad^2.
+    pub n_1_alpha_2: T,
+    /// Coefficient of alpha in N_1, (ft*slug)^0.5/s^2/rad.
+    pub n_1_alpha: T,
+    /// Constant part of N_1, (ft*slug)^0.5/s^2.
+    pub n_1_0: T,
+    /// Coefficient of alpha^2 in N_2, (ft*slug)^0.5/s^2/rad^2.
+    pub n_2_alpha_2: T,
+    /// Coefficient of alpha in N_2, (ft*slug)^0.5/s^2/rad.
+    pub n_2_alpha: T,
+    /// Coefficient of delta_e in N_2, (ft*slug)^0.5/s^2/rad.
+    pub n_2_delta_e: T,
+    /// Constant part of N_2, (ft*slug)^0.5/s^2.
+    pub n_2_0: T,
 }
 
-impl<T> Parameters<T> {
-    /// Names of the parameters.
-    pub const NAMES: [&'static str; 31] = [
-        "m",
-        "i_yy",
-        "s",
-        "c_bar",
-        "z_t",
-        "rho_0",
-        "h_0",
-        "h_s",
-        "g",
-        "r_e",
-        "spherical_earth",
-        "t_phi_alpha_3",
-        "t_phi_alpha_2",
-        "t_phi_alpha",
-        "t_phi",
-        "t_alpha_3",
-        "t_alpha_2",
-        "t_alpha",
-        "t_0",
-        "c_l_alpha",
-        "c_l_delta_e",
-        "c_l_0",
-        "c_d_alpha_2",
-        "c_d_alpha",
-        "c_d_delta_e_2",
-        "c_d_delta_e",
-        "c_d_0",
-        "c_m_alpha_2",
-        "c_m_alpha",
-        "c_m_delta_e",
-        "c_m_0",
-    ];
-
-    /// Units of the parameters.
-    pub const UNITS: [&'static str; 31] = [
-        "slug/ft",
-        "slug*ft",
-        "ft",
-        "ft",
-        "ft",
-        "slug/ft^3",
-        "ft",
-        "ft",
-        "ft/s^2",
-        "ft",
-        "1",
-        "lb/ft/rad^3",
-        "lb/ft/rad^2",
-        "lb/ft/rad",
-        "lb/ft",
-        "lb/ft/rad^3",
-        "lb/ft/rad^2",
-        "lb/ft/rad",
-        "lb/ft",
-        "1/rad",
-        "1/rad",
-        "1",
-        "1/rad^2",
-        "1/rad",
-        "1/rad^2",
-        "1/rad",
-        "1",
-        "1/rad^2",
-        "1/rad",
-        "1/rad",
-        "1",
-    ];
-
-    /// The parameters in the order of the table.
-    #[inline]
-    pub fn to_array(self) -> [T; 31] {
-        [
-            self.m,
-            self.i_yy,
-            self.s,
-            self.c_bar,
-            self.z_t,
-            self.rho_0,
-            self.h_0,
-            self.h_s,
-            self.g,
-            self.r_e,
-            self.spherical_earth,
-            self.t_phi_alpha_3,
-            self.t_phi_alpha_2,
-            self.t_phi_alpha,
-            self.t_phi,
-            self.t_alpha_3,
-            self.t_alpha_2,
-            self.t_alpha,
-            self.t_0,
-            self.c_l_alpha,
-            self.c_l_delta_e,
-            self.c_l_0,
-            self.c_d_alpha_2,
-            self.c_d_alpha,
-            self.c_d_delta_e_2,
-            self.c_d_delta_e,
-            self.c_d_0,
-            self.c_m_alpha_2,
-            self.c_m_alpha,
-            self.c_m_delta_e,
-            self.c_m_0,
-        ]
-    }
-
-    /// The parameters from an array in the order of the table.
-    #[inline]
-    pub fn from_array(values: [T; 31]) -> Self {
-        let [m, i_yy, s, c_bar, z_t, rho_0, h_0, h_s, g, r_e, spherical_earth,
-        t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha,
-        t_0, c_l_alpha, c_l_delta_e, c_l_0, c_d_alpha_2, c_d_alpha, c_d_delta_e_2,
-        c_d_delta_e, c_d_0, c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_0] = values;
-        Self {
-            m,
-            i_yy,
-            s,
-            c_bar,
-            z_t,
-            rho_0,
-            h_0,
-            h_s,
-            g,
-            r_e,
-            spherical_earth,
-            t_phi_alpha_3,
-            t_phi_alpha_2,
-            t_phi_alpha,
-            t_phi,
-            t_alpha_3,
-            t_alpha_2,
-            t_alpha,
-            t_0,
-            c_l_alpha,
-            c_l_delta_e,
-            c_l_0,
-            c_d_alpha_2,
-            c_d_alpha,
-            c_d_delta_e_2,
-            c_d_delta_e,
-            c_d_0,
-            c_m_alpha_2,
-            c_m_alpha,
-            c_m_delta_e,
-            c_m_0,
-        }
+ahv_core::impl_vector! {
+    Parameters {
+        m: ["slug/ft", "kg/m", 47.880258980335846],
+        i_yy: ["slug*ft", "kg*m", 4.4482216152605],
+        s: ["ft", "m", 0.3048],
+        c_bar: ["ft", "m", 0.3048],
+        z_t: ["ft", "m", 0.3048],
+        rho_0: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        h_0: ["ft", "m", 0.3048],
+        h_s: ["ft", "m", 0.3048],
+        g: ["ft/s^2", "m/s^2", 0.3048],
+        r_e: ["ft", "m", 0.3048],
+        omega_1: ["rad/s", "rad/s", 1.0],
+        omega_2: ["rad/s", "rad/s", 1.0],
+        zeta_1: ["1", "1", 1.0],
+        zeta_2: ["1", "1", 1.0],
+        psi_1: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        psi_2: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        spherical_earth: ["1", "1", 1.0],
+        t_phi_alpha_3: ["lb/ft/rad^3", "N/m/rad^3", 14.593902937206364],
+        t_phi_alpha_2: ["lb/ft/rad^2", "N/m/rad^2", 14.593902937206364],
+        t_phi_alpha: ["lb/ft/rad", "N/m/rad", 14.593902937206364],
+        t_phi: ["lb/ft", "N/m", 14.593902937206364],
+        t_alpha_3: ["lb/ft/rad^3", "N/m/rad^3", 14.593902937206364],
+        t_alpha_2: ["lb/ft/rad^2", "N/m/rad^2", 14.593902937206364],
+        t_alpha: ["lb/ft/rad", "N/m/rad", 14.593902937206364],
+        t_0: ["lb/ft", "N/m", 14.593902937206364],
+        c_l_alpha: ["1/rad", "1/rad", 1.0],
+        c_l_delta_e: ["1/rad", "1/rad", 1.0],
+        c_l_0: ["1", "1", 1.0],
+        c_d_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        c_d_alpha: ["1/rad", "1/rad", 1.0],
+        c_d_delta_e_2: ["1/rad^2", "1/rad^2", 1.0],
+        c_d_delta_e: ["1/rad", "1/rad", 1.0],
+        c_d_0: ["1", "1", 1.0],
+        c_m_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        c_m_alpha: ["1/rad", "1/rad", 1.0],
+        c_m_delta_e: ["1/rad", "1/rad", 1.0],
+        c_m_0: ["1", "1", 1.0],
+        n_1_alpha_2: ["(ft*slug)^0.5/s^2/rad^2", "(m*kg)^0.5/s^2/rad^2", 2.1090807512422325],
+        n_1_alpha: ["(ft*slug)^0.5/s^2/rad", "(m*kg)^0.5/s^2/rad", 2.1090807512422325],
+        n_1_0: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        n_2_alpha_2: ["(ft*slug)^0.5/s^2/rad^2", "(m*kg)^0.5/s^2/rad^2", 2.1090807512422325],
+        n_2_alpha: ["(ft*slug)^0.5/s^2/rad", "(m*kg)^0.5/s^2/rad", 2.1090807512422325],
+        n_2_delta_e: ["(ft*slug)^0.5/s^2/rad", "(m*kg)^0.5/s^2/rad", 2.1090807512422325],
+        n_2_0: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
     }
 }
-
-ahv_core::impl_vector!(Parameters, 31);
 
 /// The box in which the curve fits are meant to be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -239,6 +160,10 @@ pub struct Validity {
     pub alpha: Bounds,
     /// Pitch rate, rad/s.
     pub pitch_rate: Bounds,
+    /// Flexible generalized coordinate, (ft*slug)^0.5.
+    pub eta: Bounds,
+    /// Rate of the flexible generalized coordinate, (ft*slug)^0.5/s.
+    pub eta_dot: Bounds,
     /// Fuel equivalence ratio, dimensionless.
     pub phi: Bounds,
     /// Elevator deflection, rad.

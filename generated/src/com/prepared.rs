@@ -8,6 +8,20 @@ use ahv_core::Real;
 /// Parameters as the functions of this model use them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared<R> {
+    /// Coefficient of alpha^2 in N_1, (ft*slug)^0.5/s^2/rad^2.
+    pub n_1_alpha_2: R,
+    /// Coefficient of alpha in N_1, (ft*slug)^0.5/s^2/rad.
+    pub n_1_alpha: R,
+    /// Constant part of N_1, (ft*slug)^0.5/s^2.
+    pub n_1_0: R,
+    /// Coefficient of alpha^2 in N_2, (ft*slug)^0.5/s^2/rad^2.
+    pub n_2_alpha_2: R,
+    /// Coefficient of alpha in N_2, (ft*slug)^0.5/s^2/rad.
+    pub n_2_alpha: R,
+    /// Coefficient of delta_e in N_2, (ft*slug)^0.5/s^2/rad.
+    pub n_2_delta_e: R,
+    /// Constant part of N_2, (ft*slug)^0.5/s^2.
+    pub n_2_0: R,
     /// Coefficient of phi*alpha^3 in T, lb/ft/rad^3.
     pub t_phi_alpha_3: R,
     /// Coefficient of phi*alpha^2 in T, lb/ft/rad^2.
@@ -48,6 +62,8 @@ pub struct Prepared<R> {
     pub g: R,
     /// Curvature of the Earth, 0 where it is flat, 1/ft.
     pub earth_curvature: R,
+    /// `R::HALF * s * inv_m`.
+    pub half_s_over_m: R,
     /// Coefficient of alpha in C_L, 1/rad.
     pub c_l_alpha: R,
     /// Coefficient of delta_e in C_L, 1/rad.
@@ -66,8 +82,20 @@ pub struct Prepared<R> {
     pub c_m_delta_e: R,
     /// Constant part of C_M, dimensionless.
     pub c_m_0: R,
-    /// `1 / i_yy`.
-    pub inv_i_yy: R,
+    /// Inertial coupling of mode 1 with the pitch rate, (ft*slug)^0.5.
+    pub psi_1: R,
+    /// Damping of mode 1, rad/s.
+    pub damping_1: R,
+    /// Stiffness of mode 1, rad^2/s^2.
+    pub stiffness_1: R,
+    /// Inertial coupling of mode 2 with the pitch rate, (ft*slug)^0.5.
+    pub psi_2: R,
+    /// Damping of mode 2, rad/s.
+    pub damping_2: R,
+    /// Stiffness of mode 2, rad^2/s^2.
+    pub stiffness_2: R,
+    /// `1 / effective_inertia`.
+    pub inv_effective_inertia: R,
     /// `2 * g`.
     pub two_g: R,
     /// `3 * t_alpha_3`.
@@ -80,32 +108,210 @@ pub struct Prepared<R> {
     pub two_t_phi_alpha_2: R,
     /// `2 * c_d_alpha_2`.
     pub two_c_d_alpha_2: R,
-    /// `R::from_f64(-2.0) * earth_curvature`.
-    pub minus_two_earth_curvature: R,
     /// Vehicle mass, slug/ft.
     pub m: R,
     /// `2 * c_m_alpha_2`.
     pub two_c_m_alpha_2: R,
+    /// `2 * n_1_alpha_2`.
+    pub two_n_1_alpha_2: R,
+    /// `2 * n_2_alpha_2`.
+    pub two_n_2_alpha_2: R,
+    /// Derivative of pitch acceleration with respect to eta_1, rad/s^2/ft^0.5/slug^0.5.
+    pub d_pitch_acceleration_d_eta_1: R,
+    /// Derivative of pitch acceleration with respect to eta_dot_1, rad/s/ft^0.5/slug^0.5.
+    pub d_pitch_acceleration_d_eta_dot_1: R,
+    /// Derivative of pitch acceleration with respect to eta_2, rad/s^2/ft^0.5/slug^0.5.
+    pub d_pitch_acceleration_d_eta_2: R,
+    /// Derivative of pitch acceleration with respect to eta_dot_2, rad/s/ft^0.5/slug^0.5.
+    pub d_pitch_acceleration_d_eta_dot_2: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_1, 1/s^2.
+    pub d_eta_acceleration_1_d_eta_1: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_dot_1, 1/s.
+    pub d_eta_acceleration_1_d_eta_dot_1: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_2, 1/s^2.
+    pub d_eta_acceleration_1_d_eta_2: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_dot_2, 1/s.
+    pub d_eta_acceleration_1_d_eta_dot_2: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_1, 1/s^2.
+    pub d_eta_acceleration_2_d_eta_1: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_dot_1, 1/s.
+    pub d_eta_acceleration_2_d_eta_dot_1: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_2, 1/s^2.
+    pub d_eta_acceleration_2_d_eta_2: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_dot_2, 1/s.
+    pub d_eta_acceleration_2_d_eta_dot_2: R,
     /// `2 * c_d_delta_e_2`.
     pub two_c_d_delta_e_2: R,
-    /// `z_t * inv_i_yy`.
-    pub z_t_over_i_yy: R,
+    /// `z_t * inv_effective_inertia`.
+    pub z_t_over_effective_inertia: R,
     /// `c_bar * c_m_delta_e`.
     pub c_bar_c_m_delta_e: R,
+    /// `psi_2 * n_2_delta_e`.
+    pub psi_2_n_2_delta_e: R,
+    /// `inv_m * inv_m`.
+    pub inv_m_2: R,
+    /// `R::from_f64(-0.5) * s * inv_m`.
+    pub minus_half_s_over_m: R,
+    /// `inv_h_s * inv_h_s`.
+    pub inv_h_s_2: R,
+    /// `earth_curvature * inv_r_e`.
+    pub earth_curvature_over_r_e: R,
+    /// `1 / r_e`.
+    pub inv_r_e: R,
+    /// `R::HALF * inv_m_2`.
+    pub half_inv_m_2: R,
+    /// `R::HALF * inv_m`.
+    pub half_over_m: R,
+    /// `R::from_f64(-0.5) * inv_m`.
+    pub minus_half_over_m: R,
+    /// `c_bar * inv_effective_inertia`.
+    pub c_bar_over_effective_inertia: R,
+    /// `R::HALF * c_bar * s * inv_effective_inertia`.
+    pub half_c_bar_s_over_effective_inertia: R,
+    /// `psi_1 * inv_effective_inertia`.
+    pub psi_1_over_effective_inertia: R,
+    /// `2 * zeta_1`.
+    pub two_zeta_1: R,
+    /// `2 * omega_1`.
+    pub two_omega_1: R,
+    /// `psi_2 * inv_effective_inertia`.
+    pub psi_2_over_effective_inertia: R,
+    /// `2 * zeta_2`.
+    pub two_zeta_2: R,
+    /// `2 * omega_2`.
+    pub two_omega_2: R,
+    /// `2 * psi_1 * inv_effective_inertia * omega_1`.
+    pub two_psi_1_omega_1_over_effective_inertia: R,
+    /// `2 * psi_2 * inv_effective_inertia * omega_2`.
+    pub two_psi_2_omega_2_over_effective_inertia: R,
+    /// `2 * psi_1`.
+    pub two_psi_1: R,
+    /// `2 * psi_2`.
+    pub two_psi_2: R,
+    /// `-psi_1 * inv_effective_inertia`.
+    pub minus_psi_1_over_effective_inertia: R,
+    /// `-psi_2 * inv_effective_inertia`.
+    pub minus_psi_2_over_effective_inertia: R,
+    /// `psi_1 * c_bar * inv_effective_inertia`.
+    pub psi_1_c_bar_over_effective_inertia: R,
+    /// `R::from_f64(-0.5) * psi_1 * c_bar * s * inv_effective_inertia`.
+    pub parameter_jacobian_constant_1: R,
+    /// Natural frequency of mode 1, rad/s.
+    pub omega_1: R,
+    /// `2 * psi_1_2 * inv_effective_inertia`.
+    pub two_psi_1_2_over_effective_inertia: R,
+    /// `R::from_f64(-2.0) * psi_1 * psi_2 * inv_effective_inertia * omega_2`.
+    pub parameter_jacobian_constant_2: R,
+    /// `psi_1 * z_t * inv_effective_inertia`.
+    pub psi_1_z_t_over_effective_inertia: R,
+    /// `-psi_1 * z_t * inv_effective_inertia`.
+    pub minus_psi_1_z_t_over_effective_inertia: R,
+    /// `psi_1_2 * inv_effective_inertia`.
+    pub psi_1_2_over_effective_inertia: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to n_1_0,
+    /// dimensionless.
+    pub d_eta_acceleration_1_d_n_1_0: R,
+    /// `psi_1 * psi_2 * inv_effective_inertia`.
+    pub psi_1_psi_2_over_effective_inertia: R,
+    /// `psi_2 * c_bar * inv_effective_inertia`.
+    pub psi_2_c_bar_over_effective_inertia: R,
+    /// `R::from_f64(-0.5) * psi_2 * c_bar * s * inv_effective_inertia`.
+    pub parameter_jacobian_constant_3: R,
+    /// `R::from_f64(-2.0) * psi_2 * psi_1 * inv_effective_inertia * omega_1`.
+    pub parameter_jacobian_constant_4: R,
+    /// Natural frequency of mode 2, rad/s.
+    pub omega_2: R,
+    /// `2 * psi_2_2 * inv_effective_inertia`.
+    pub two_psi_2_2_over_effective_inertia: R,
+    /// `psi_2 * z_t * inv_effective_inertia`.
+    pub psi_2_z_t_over_effective_inertia: R,
+    /// `-psi_2 * z_t * inv_effective_inertia`.
+    pub minus_psi_2_z_t_over_effective_inertia: R,
+    /// `psi_2_2 * inv_effective_inertia`.
+    pub psi_2_2_over_effective_inertia: R,
+    /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to n_2_0,
+    /// dimensionless.
+    pub d_eta_acceleration_2_d_n_2_0: R,
+    /// `2 * earth_curvature_2`.
+    pub two_earth_curvature_2: R,
+    /// `R::from_f64(6.0) * t_alpha_3`.
+    pub six_t_alpha_3: R,
+    /// `R::from_f64(6.0) * t_phi_alpha_3`.
+    pub six_t_phi_alpha_3: R,
+    /// `2 * m_2`.
+    pub two_m_2: R,
+    /// `c_bar * s`.
+    pub c_bar_s: R,
+    /// `2 * c_bar * c_m_alpha_2`.
+    pub two_c_bar_c_m_alpha_2: R,
+    /// `-2 * psi_1 * n_1_alpha_2 - 2 * psi_2 * n_2_alpha_2`.
+    pub d2_pitch_acceleration_d_alpha_d_alpha_constant_1: R,
 }
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 16 operations: 12 multiplications, 4 divisions.
+/// 130 operations: 9 additions, 117 multiplications, 4 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
     let earth_curvature = p.spherical_earth * inv_r_e; // 1/ft
+
+    // Flexible modes, (1)
+    let damping_1 = R::TWO * p.zeta_1 * p.omega_1; // rad/s
+    let stiffness_1 = p.omega_1 * p.omega_1; // rad^2/s^2
+    let damping_2 = R::TWO * p.zeta_2 * p.omega_2; // rad/s
+    let stiffness_2 = p.omega_2 * p.omega_2; // rad^2/s^2
+    let psi_1_2 = p.psi_1 * p.psi_1;
+    let psi_2_2 = p.psi_2 * p.psi_2;
+    let effective_inertia = p.i_yy
+        - psi_1_2
+        - psi_2_2; // slug*ft
+
+    // Derivatives with respect to eta_1
+    let inv_effective_inertia = effective_inertia.recip();
+    let d_pitch_acceleration_d_eta_1 = p.psi_1 * inv_effective_inertia * stiffness_1; // rad/s^2/ft^0.5/slug^0.5
+    let d_eta_acceleration_1_d_eta_1 = -(stiffness_1
+        + p.psi_1 * d_pitch_acceleration_d_eta_1); // 1/s^2
+    let d_eta_acceleration_2_d_eta_1 = -p.psi_2 * d_pitch_acceleration_d_eta_1; // 1/s^2
+
+    // Derivatives with respect to eta_dot_1
+    let d_pitch_acceleration_d_eta_dot_1 = p.psi_1 * inv_effective_inertia * damping_1; // rad/s/ft^0.5/slug^0.5
+    let d_eta_acceleration_1_d_eta_dot_1 = -(damping_1
+        + p.psi_1 * d_pitch_acceleration_d_eta_dot_1); // 1/s
+    let d_eta_acceleration_2_d_eta_dot_1 = -p.psi_2 * d_pitch_acceleration_d_eta_dot_1; // 1/s
+
+    // Derivatives with respect to eta_2
+    let d_pitch_acceleration_d_eta_2 = p.psi_2 * inv_effective_inertia * stiffness_2; // rad/s^2/ft^0.5/slug^0.5
+    let d_eta_acceleration_1_d_eta_2 = -p.psi_1 * d_pitch_acceleration_d_eta_2; // 1/s^2
+    let d_eta_acceleration_2_d_eta_2 = -(stiffness_2
+        + p.psi_2 * d_pitch_acceleration_d_eta_2); // 1/s^2
+
+    // Derivatives with respect to eta_dot_2
+    let d_pitch_acceleration_d_eta_dot_2 = p.psi_2 * inv_effective_inertia * damping_2; // rad/s/ft^0.5/slug^0.5
+    let d_eta_acceleration_1_d_eta_dot_2 = -p.psi_1 * d_pitch_acceleration_d_eta_dot_2; // 1/s
+    let d_eta_acceleration_2_d_eta_dot_2 = -(damping_2
+        + p.psi_2 * d_pitch_acceleration_d_eta_dot_2); // 1/s
+
+    // Derivatives with respect to parameters
+    let psi_1_2_over_effective_inertia = psi_1_2 * inv_effective_inertia;
+    let d_eta_acceleration_1_d_n_1_0 = R::ONE + psi_1_2_over_effective_inertia;
+    let psi_2_2_over_effective_inertia = psi_2_2 * inv_effective_inertia;
+    let d_eta_acceleration_2_d_n_2_0 = R::ONE + psi_2_2_over_effective_inertia;
     let inv_h_s = p.h_s.recip();
     let inv_m = p.m.recip();
-    let inv_i_yy = p.i_yy.recip();
+    let inv_m_2 = inv_m * inv_m;
+    let inv_h_s_2 = inv_h_s * inv_h_s;
+    let earth_curvature_2 = earth_curvature * earth_curvature;
+    let m_2 = p.m * p.m;
 
     Prepared {
+        n_1_alpha_2: p.n_1_alpha_2,
+        n_1_alpha: p.n_1_alpha,
+        n_1_0: p.n_1_0,
+        n_2_alpha_2: p.n_2_alpha_2,
+        n_2_alpha: p.n_2_alpha,
+        n_2_delta_e: p.n_2_delta_e,
+        n_2_0: p.n_2_0,
         t_phi_alpha_3: p.t_phi_alpha_3,
         t_phi_alpha_2: p.t_phi_alpha_2,
         t_phi_alpha: p.t_phi_alpha,
@@ -126,6 +332,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         inv_m,
         g: p.g,
         earth_curvature,
+        half_s_over_m: R::HALF * p.s * inv_m,
         c_l_alpha: p.c_l_alpha,
         c_l_delta_e: p.c_l_delta_e,
         c_l_0: p.c_l_0,
@@ -135,18 +342,94 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_m_alpha: p.c_m_alpha,
         c_m_delta_e: p.c_m_delta_e,
         c_m_0: p.c_m_0,
-        inv_i_yy,
+        psi_1: p.psi_1,
+        damping_1,
+        stiffness_1,
+        psi_2: p.psi_2,
+        damping_2,
+        stiffness_2,
+        inv_effective_inertia,
         two_g: R::TWO * p.g,
         three_t_alpha_3: R::from_f64(3.0) * p.t_alpha_3,
         two_t_alpha_2: R::TWO * p.t_alpha_2,
         three_t_phi_alpha_3: R::from_f64(3.0) * p.t_phi_alpha_3,
         two_t_phi_alpha_2: R::TWO * p.t_phi_alpha_2,
         two_c_d_alpha_2: R::TWO * p.c_d_alpha_2,
-        minus_two_earth_curvature: R::from_f64(-2.0) * earth_curvature,
         m: p.m,
         two_c_m_alpha_2: R::TWO * p.c_m_alpha_2,
+        two_n_1_alpha_2: R::TWO * p.n_1_alpha_2,
+        two_n_2_alpha_2: R::TWO * p.n_2_alpha_2,
+        d_pitch_acceleration_d_eta_1,
+        d_pitch_acceleration_d_eta_dot_1,
+        d_pitch_acceleration_d_eta_2,
+        d_pitch_acceleration_d_eta_dot_2,
+        d_eta_acceleration_1_d_eta_1,
+        d_eta_acceleration_1_d_eta_dot_1,
+        d_eta_acceleration_1_d_eta_2,
+        d_eta_acceleration_1_d_eta_dot_2,
+        d_eta_acceleration_2_d_eta_1,
+        d_eta_acceleration_2_d_eta_dot_1,
+        d_eta_acceleration_2_d_eta_2,
+        d_eta_acceleration_2_d_eta_dot_2,
         two_c_d_delta_e_2: R::TWO * p.c_d_delta_e_2,
-        z_t_over_i_yy: p.z_t * inv_i_yy,
+        z_t_over_effective_inertia: p.z_t * inv_effective_inertia,
         c_bar_c_m_delta_e: p.c_bar * p.c_m_delta_e,
+        psi_2_n_2_delta_e: p.psi_2 * p.n_2_delta_e,
+        inv_m_2,
+        minus_half_s_over_m: R::from_f64(-0.5) * p.s * inv_m,
+        inv_h_s_2,
+        earth_curvature_over_r_e: earth_curvature * inv_r_e,
+        inv_r_e,
+        half_inv_m_2: R::HALF * inv_m_2,
+        half_over_m: R::HALF * inv_m,
+        minus_half_over_m: R::from_f64(-0.5) * inv_m,
+        c_bar_over_effective_inertia: p.c_bar * inv_effective_inertia,
+        half_c_bar_s_over_effective_inertia: R::HALF * p.c_bar * p.s
+            * inv_effective_inertia,
+        psi_1_over_effective_inertia: p.psi_1 * inv_effective_inertia,
+        two_zeta_1: R::TWO * p.zeta_1,
+        two_omega_1: R::TWO * p.omega_1,
+        psi_2_over_effective_inertia: p.psi_2 * inv_effective_inertia,
+        two_zeta_2: R::TWO * p.zeta_2,
+        two_omega_2: R::TWO * p.omega_2,
+        two_psi_1_omega_1_over_effective_inertia: R::TWO * p.psi_1
+            * inv_effective_inertia * p.omega_1,
+        two_psi_2_omega_2_over_effective_inertia: R::TWO * p.psi_2
+            * inv_effective_inertia * p.omega_2,
+        two_psi_1: R::TWO * p.psi_1,
+        two_psi_2: R::TWO * p.psi_2,
+        minus_psi_1_over_effective_inertia: -p.psi_1 * inv_effective_inertia,
+        minus_psi_2_over_effective_inertia: -p.psi_2 * inv_effective_inertia,
+        psi_1_c_bar_over_effective_inertia: p.psi_1 * p.c_bar * inv_effective_inertia,
+        parameter_jacobian_constant_1: R::from_f64(-0.5) * p.psi_1 * p.c_bar * p.s
+            * inv_effective_inertia,
+        omega_1: p.omega_1,
+        two_psi_1_2_over_effective_inertia: R::TWO * psi_1_2 * inv_effective_inertia,
+        parameter_jacobian_constant_2: R::from_f64(-2.0) * p.psi_1 * p.psi_2
+            * inv_effective_inertia * p.omega_2,
+        psi_1_z_t_over_effective_inertia: p.psi_1 * p.z_t * inv_effective_inertia,
+        minus_psi_1_z_t_over_effective_inertia: -p.psi_1 * p.z_t * inv_effective_inertia,
+        psi_1_2_over_effective_inertia,
+        d_eta_acceleration_1_d_n_1_0,
+        psi_1_psi_2_over_effective_inertia: p.psi_1 * p.psi_2 * inv_effective_inertia,
+        psi_2_c_bar_over_effective_inertia: p.psi_2 * p.c_bar * inv_effective_inertia,
+        parameter_jacobian_constant_3: R::from_f64(-0.5) * p.psi_2 * p.c_bar * p.s
+            * inv_effective_inertia,
+        parameter_jacobian_constant_4: R::from_f64(-2.0) * p.psi_2 * p.psi_1
+            * inv_effective_inertia * p.omega_1,
+        omega_2: p.omega_2,
+        two_psi_2_2_over_effective_inertia: R::TWO * psi_2_2 * inv_effective_inertia,
+        psi_2_z_t_over_effective_inertia: p.psi_2 * p.z_t * inv_effective_inertia,
+        minus_psi_2_z_t_over_effective_inertia: -p.psi_2 * p.z_t * inv_effective_inertia,
+        psi_2_2_over_effective_inertia,
+        d_eta_acceleration_2_d_n_2_0,
+        two_earth_curvature_2: R::TWO * earth_curvature_2,
+        six_t_alpha_3: R::from_f64(6.0) * p.t_alpha_3,
+        six_t_phi_alpha_3: R::from_f64(6.0) * p.t_phi_alpha_3,
+        two_m_2: R::TWO * m_2,
+        c_bar_s: p.c_bar * p.s,
+        two_c_bar_c_m_alpha_2: R::TWO * p.c_bar * p.c_m_alpha_2,
+        d2_pitch_acceleration_d_alpha_d_alpha_constant_1: -R::TWO * p.psi_1
+            * p.n_1_alpha_2 - R::TWO * p.psi_2 * p.n_2_alpha_2,
     }
 }

@@ -17,7 +17,13 @@ pub const PROVENANCE: Parameters<Provenance> = Parameters {
     h_s: Provenance::new("parker2007", Status::Published, 0.0),
     g: Provenance::new("standard-gravity", Status::Published, 0.0),
     r_e: Provenance::new("mean-earth-radius", Status::Derived, 0.0),
-    spherical_earth: Provenance::new("assumed", Status::Assumed, 0.0),
+    omega_1: Provenance::new("table-3", Status::Unverified, 0.4),
+    omega_2: Provenance::new("table-3", Status::Unverified, 0.4),
+    zeta_1: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    zeta_2: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    psi_1: Provenance::new("cantilevers", Status::Derived, 0.4),
+    psi_2: Provenance::new("cantilevers", Status::Derived, 0.4),
+    spherical_earth: Provenance::new("choices", Status::Assumed, 0.0),
     t_phi_alpha_3: Provenance::new("parker2007", Status::Published, 0.4),
     t_phi_alpha_2: Provenance::new("parker2007", Status::Published, 0.4),
     t_phi_alpha: Provenance::new("parker2007", Status::Published, 0.4),
@@ -38,4 +44,14 @@ pub const PROVENANCE: Parameters<Provenance> = Parameters {
     c_m_alpha: Provenance::new("parker2007", Status::Published, 0.4),
     c_m_delta_e: Provenance::new("parker2007", Status::Published, 0.4),
     c_m_0: Provenance::new("parker2007", Status::Published, 0.4),
+    n_1_alpha_2: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    n_1_alpha: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    n_1_0: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    n_2_alpha_2: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    n_2_alpha: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    n_2_delta_e: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    n_2_0: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
 };
+
+/// Source, status and relative uncertainty of each parameter of the set `section5.3`.
+pub const SECTION5_3_PROVENANCE: Parameters<Provenance> = Parameters { ..PROVENANCE };

@@ -7,7 +7,7 @@ use ahv_core::Real;
 
 /// Time derivative of the state, eq. (1).
 ///
-/// 150 operations: 60 additions, 85 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 151 operations: 60 additions, 86 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
@@ -25,14 +25,16 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -50,8 +52,8 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
     let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_delta_c * canard_deflection
+        + p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * canard_commanded
         + p.c_l_0
         + p.c_l_eta_1 * x.eta_1
         + p.c_l_eta_2 * x.eta_2
@@ -79,7 +81,6 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
 
     // Forces and moment, (2)
     let thrust = reference_force * c_t; // lb/ft
-    let lift = reference_force * c_l; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
 
@@ -107,11 +108,10 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let normal_force = lift + thrust * sin_alpha; // lb/ft
+    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = normal_force * inverse_momentum
-        - apparent_gravity * inv_velocity * cos_gamma; // rad/s
+    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
     let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 

@@ -31,16 +31,16 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -
 
 /// Lift coefficient, eq. (3). Unit: 1.
 ///
-/// 14 operations: 7 additions, 7 multiplications.
+/// 13 operations: 6 additions, 7 multiplications.
 #[inline]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
 
     // Curve fits, (3)
     p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_delta_c * canard_deflection
+        + p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * canard_commanded
         + p.c_l_0
         + p.c_l_eta_1 * x.eta_1
         + p.c_l_eta_2 * x.eta_2
@@ -49,11 +49,12 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Drag coefficient, eq. (3). Unit: 1.
 ///
-/// 23 operations: 10 additions, 13 multiplications.
+/// 24 operations: 10 additions, 14 multiplications.
 #[inline]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -74,11 +75,12 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
 ///
-/// 17 operations: 8 additions, 9 multiplications.
+/// 18 operations: 8 additions, 10 multiplications.
 #[inline]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -150,7 +152,7 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Lift, eq. (2). Unit: lb/ft.
 ///
-/// 23 operations: 8 additions, 14 multiplications, 1 exp.
+/// 22 operations: 7 additions, 14 multiplications, 1 exp.
 #[inline]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -161,12 +163,12 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
 
     // Curve fits, (3)
     let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_delta_c * canard_deflection
+        + p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * canard_commanded
         + p.c_l_0
         + p.c_l_eta_1 * x.eta_1
         + p.c_l_eta_2 * x.eta_2
@@ -178,7 +180,7 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Drag, eq. (2). Unit: lb/ft.
 ///
-/// 32 operations: 11 additions, 20 multiplications, 1 exp.
+/// 33 operations: 11 additions, 21 multiplications, 1 exp.
 #[inline]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -189,7 +191,8 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -212,7 +215,7 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Pitching moment, eq. (2). Unit: lb.
 ///
-/// 51 operations: 20 additions, 30 multiplications, 1 exp.
+/// 52 operations: 20 additions, 31 multiplications, 1 exp.
 #[inline]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -223,7 +226,8 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -257,11 +261,12 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
 
 /// Generalized-force coefficient of mode 1, eq. (3). Unit: (ft/slug)^0.5.
 ///
-/// 11 operations: 5 additions, 6 multiplications.
+/// 12 operations: 5 additions, 7 multiplications.
 #[inline]
 pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -275,7 +280,7 @@ pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
-/// 20 operations: 6 additions, 13 multiplications, 1 exp.
+/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -286,7 +291,8 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -302,11 +308,12 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 
 /// Generalized-force coefficient of mode 2, eq. (3). Unit: (ft/slug)^0.5.
 ///
-/// 11 operations: 5 additions, 6 multiplications.
+/// 12 operations: 5 additions, 7 multiplications.
 #[inline]
 pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -320,7 +327,7 @@ pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
-/// 20 operations: 6 additions, 13 multiplications, 1 exp.
+/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -331,7 +338,8 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -347,11 +355,12 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 
 /// Generalized-force coefficient of mode 3, eq. (3). Unit: (ft/slug)^0.5.
 ///
-/// 11 operations: 5 additions, 6 multiplications.
+/// 12 operations: 5 additions, 7 multiplications.
 #[inline]
 pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -365,7 +374,7 @@ pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
-/// 20 operations: 6 additions, 13 multiplications, 1 exp.
+/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline]
 pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -376,7 +385,8 @@ pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;

@@ -2,23 +2,35 @@
 
 //! DCOM: decoupled control-oriented model, eq. (1)-(4).
 
+mod choices;
+mod diffusion;
 mod drift;
 mod evaluations;
+mod hessian;
 mod jacobians;
+mod lie_derivatives;
+mod noise_derivatives;
 mod nominal;
+mod parameter_jacobian;
 mod parameters;
 mod prepared;
 mod provenance;
 
+pub use diffusion::*;
 pub use drift::*;
 pub use evaluations::*;
+pub use hessian::*;
 pub use jacobians::*;
-pub use nominal::{NOMINAL, VALIDITY};
+pub use lie_derivatives::*;
+pub use noise_derivatives::*;
+pub use parameter_jacobian::*;
+pub use choices::*;
+pub use nominal::*;
 pub use parameters::{Parameters, Validity};
-pub use provenance::PROVENANCE;
+pub use provenance::*;
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, Real};
+use ahv_core::{Bounds, NoiseClass, Real};
 
 /// State of DCOM.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,83 +60,27 @@ pub struct State<T> {
     pub eta_dot_3: T,
 }
 
-impl<T> State<T> {
-    /// Names of the components.
-    pub const NAMES: [&'static str; 11] = [
-        "velocity",
-        "altitude",
-        "gamma",
-        "alpha",
-        "pitch_rate",
-        "eta_1",
-        "eta_dot_1",
-        "eta_2",
-        "eta_dot_2",
-        "eta_3",
-        "eta_dot_3",
-    ];
-
-    /// Units of the components.
-    pub const UNITS: [&'static str; 11] = [
-        "ft/s",
-        "ft",
-        "rad",
-        "rad",
-        "rad/s",
-        "(ft*slug)^0.5",
-        "(ft*slug)^0.5/s",
-        "(ft*slug)^0.5",
-        "(ft*slug)^0.5/s",
-        "(ft*slug)^0.5",
-        "(ft*slug)^0.5/s",
-    ];
-
-    /// The components in order.
-    #[inline]
-    pub fn to_array(self) -> [T; 11] {
-        [
-            self.velocity,
-            self.altitude,
-            self.gamma,
-            self.alpha,
-            self.pitch_rate,
-            self.eta_1,
-            self.eta_dot_1,
-            self.eta_2,
-            self.eta_dot_2,
-            self.eta_3,
-            self.eta_dot_3,
-        ]
-    }
-
-    /// A vector from its components in order.
-    #[inline]
-    pub fn from_array(values: [T; 11]) -> Self {
-        let [velocity, altitude, gamma, alpha, pitch_rate, eta_1, eta_dot_1, eta_2,
-        eta_dot_2, eta_3, eta_dot_3] = values;
-        Self {
-            velocity,
-            altitude,
-            gamma,
-            alpha,
-            pitch_rate,
-            eta_1,
-            eta_dot_1,
-            eta_2,
-            eta_dot_2,
-            eta_3,
-            eta_dot_3,
-        }
+ahv_core::impl_vector! {
+    State {
+        velocity: ["ft/s", "m/s", 0.3048],
+        altitude: ["ft", "m", 0.3048],
+        gamma: ["rad", "rad", 1.0],
+        alpha: ["rad", "rad", 1.0],
+        pitch_rate: ["rad/s", "rad/s", 1.0],
+        eta_1: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        eta_dot_1: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
+        eta_2: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        eta_dot_2: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
+        eta_3: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        eta_dot_3: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
     }
 }
 
-ahv_core::impl_vector!(State, 11);
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(State);
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(State, 11);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, 11, State, 11);
+ahv_core::impl_nalgebra_matrix!(State, State);
 
 /// Where the curve fits are meant to be used.
 pub const STATE_BOUNDS: State<Bounds> = State {
@@ -153,34 +109,19 @@ pub struct Input<T> {
     pub delta_c: T,
 }
 
-impl<T> Input<T> {
-    /// Names of the components.
-    pub const NAMES: [&'static str; 3] = ["phi", "delta_e", "delta_c"];
-
-    /// Units of the components.
-    pub const UNITS: [&'static str; 3] = ["1", "rad", "rad"];
-
-    /// The components in order.
-    #[inline]
-    pub fn to_array(self) -> [T; 3] {
-        [self.phi, self.delta_e, self.delta_c]
-    }
-
-    /// A vector from its components in order.
-    #[inline]
-    pub fn from_array(values: [T; 3]) -> Self {
-        let [phi, delta_e, delta_c] = values;
-        Self { phi, delta_e, delta_c }
+ahv_core::impl_vector! {
+    Input {
+        phi: ["1", "1", 1.0],
+        delta_e: ["rad", "rad", 1.0],
+        delta_c: ["rad", "rad", 1.0],
     }
 }
 
-ahv_core::impl_vector!(Input, 3);
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Input);
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Input, 3);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, 11, Input, 3);
+ahv_core::impl_nalgebra_matrix!(State, Input);
 
 /// Where the curve fits are meant to be used.
 pub const INPUT_BOUNDS: Input<Bounds> = Input {
@@ -189,11 +130,120 @@ pub const INPUT_BOUNDS: Input<Bounds> = Input {
     delta_c: VALIDITY.delta_c,
 };
 
-/// ∂f/∂x: `jacobian.velocity.alpha` is the derivative of the velocity's rate with respect to the angle of attack.
+/// One value for each independent Wiener process of DCOM.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Noise<T> {
+    /// Wiener increment that perturbs the flight-path angle, s^0.5.
+    pub w_gamma: T,
+    /// Wiener increment that perturbs the angle of attack, s^0.5.
+    pub w_alpha: T,
+    /// Wiener increment that perturbs the pitch rate, s^0.5.
+    pub w_q: T,
+    /// Wiener increment that drives flexible mode 1, s^0.5.
+    pub xi_1: T,
+    /// Wiener increment that drives flexible mode 2, s^0.5.
+    pub xi_2: T,
+    /// Wiener increment that drives flexible mode 3, s^0.5.
+    pub xi_3: T,
+}
+
+ahv_core::impl_vector! {
+    Noise {
+        w_gamma: ["s^0.5", "s^0.5", 1.0],
+        w_alpha: ["s^0.5", "s^0.5", 1.0],
+        w_q: ["s^0.5", "s^0.5", 1.0],
+        xi_1: ["s^0.5", "s^0.5", 1.0],
+        xi_2: ["s^0.5", "s^0.5", 1.0],
+        xi_3: ["s^0.5", "s^0.5", 1.0],
+    }
+}
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Noise);
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra_matrix!(State, Noise);
+
+/// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
 
 /// ∂f/∂u, by rows of the state.
 pub type InputJacobian<T> = State<Input<T>>;
+
+/// ∂f/∂p, by rows of the state.
+pub type ParameterJacobian<T> = State<Parameters<T>>;
+
+/// ∂²f/∂x², by rows of the state.
+pub type Hessian<T> = State<State<State<T>>>;
+
+/// G, by rows of the state.
+pub type Diffusion<T> = State<Noise<T>>;
+
+/// L^j b^k, by rows of the state, j and k.
+pub type NoiseDerivatives<T> = State<Noise<Noise<T>>>;
+
+/// How each column of the diffusion depends on the state.
+pub const NOISE_CLASS: Noise<NoiseClass> = Noise {
+    w_gamma: NoiseClass::General,
+    w_alpha: NoiseClass::General,
+    w_q: NoiseClass::Constant,
+    xi_1: NoiseClass::Constant,
+    xi_2: NoiseClass::Constant,
+    xi_3: NoiseClass::Constant,
+};
+
+/// Whether two columns of the diffusion commute: L^j b^k = L^k b^j.
+pub const NOISE_COMMUTES: Noise<Noise<bool>> = Noise {
+    w_gamma: Noise {
+        w_gamma: true,
+        w_alpha: false,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    w_alpha: Noise {
+        w_gamma: false,
+        w_alpha: true,
+        w_q: false,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    w_q: Noise {
+        w_gamma: true,
+        w_alpha: false,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    xi_1: Noise {
+        w_gamma: true,
+        w_alpha: true,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    xi_2: Noise {
+        w_gamma: true,
+        w_alpha: true,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    xi_3: Noise {
+        w_gamma: true,
+        w_alpha: true,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+};
 
 /// DCOM with its parameters prepared.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,5 +292,14 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
         u: &Input<R>,
     ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
         drift_and_jacobians(x, u, &self.prepared)
+    }
+}
+
+impl<R: Real> ahv_core::StochasticModel for Model<R> {
+    type Noise = Noise<R>;
+
+    #[inline]
+    fn noise_increment(&self, x: &State<R>, u: &Input<R>, dw: &Noise<R>) -> State<R> {
+        noise_increment(x, u, &self.prepared, dw)
     }
 }

@@ -5,20 +5,21 @@
 use super::{Parameters, Validity};
 use ahv_core::Bounds;
 
-/// Nominal values of the parameters.
+/// The unit system: `ft-slug-s-rad` or `si`.
+pub const UNIT_SYSTEM: &str = "ft-slug-s-rad";
+
+/// Values of the parameters in the table, the set `section5.1`.
 pub const NOMINAL: Parameters<f64> = Parameters {
     m: 300.0,
     i_yy: 500000.0,
     s: 17.0,
     c_bar: 17.0,
     z_t: 8.36,
-    canard_slaving: 0.0,
     rho_0: 6.7429e-5,
     h_0: 85000.0,
     h_s: 21358.0,
     g: 32.17405,
     r_e: 20902231.0,
-    spherical_earth: 0.0,
     omega_1: 19.7437,
     omega_2: 47.7851,
     omega_3: 94.8203,
@@ -31,6 +32,14 @@ pub const NOMINAL: Parameters<f64> = Parameters {
     w_gamma: 0.00078,
     w_alpha: 0.00078,
     w_q: 0.00078,
+    gust_rms: 0.0017453293,
+    gust_time: 0.1,
+    canard_command: 0.0,
+    canard_slaving: 0.0,
+    spherical_earth: 0.0,
+    shared_noise: 0.0,
+    variance_matching: 0.0,
+    moment_matching: 0.0,
     c_t_phi_alpha_3: -11.086121,
     c_t_phi_alpha_2: 0.78864312,
     c_t_phi_alpha: 1.0453477,
@@ -84,6 +93,25 @@ pub const NOMINAL: Parameters<f64> = Parameters {
     c_n_3_0: -0.0011694,
 };
 
+/// The set `section5.3`.
+pub const SECTION5_3: Parameters<f64> = Parameters {
+    m: 191.3,
+    i_yy: 86723.0,
+    omega_1: 20.5,
+    omega_2: 52.5,
+    omega_3: 105.0,
+    zeta_1: 0.02,
+    zeta_2: 0.02,
+    zeta_3: 0.02,
+    ..NOMINAL
+};
+
+/// Sets of parameters by name.
+pub const SETS: [(&str, Parameters<f64>); 2] = [
+    ("section5.1", NOMINAL),
+    ("section5.3", SECTION5_3),
+];
+
 /// The box in which the curve fits are meant to be used.
 pub const VALIDITY: Validity = Validity {
     velocity: Bounds::new(7000.0, 11000.0),
@@ -94,6 +122,7 @@ pub const VALIDITY: Validity = Validity {
     eta: Bounds::new(-2.0, 2.0),
     eta_dot: Bounds::new(-50.0, 50.0),
     chi: Bounds::new(-1.0, 1.0),
+    alpha_gust: Bounds::new(-0.017453292519943295, 0.017453292519943295),
     phi: Bounds::new(0.05, 1.2),
     delta_e: Bounds::new(-0.3490658503988659, 0.3490658503988659),
     delta_c: Bounds::new(-0.3490658503988659, 0.3490658503988659),

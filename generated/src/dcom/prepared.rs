@@ -48,6 +48,8 @@ pub struct Prepared<R> {
     pub c_d_delta_e: R,
     /// Coefficient of delta_c^2 in C_D, 1/rad^2.
     pub c_d_delta_c_2: R,
+    /// Share of the commanded canard deflection: 1 canard free, else 0, dimensionless.
+    pub canard_command: R,
     /// Canard deflection per elevator deflection, dimensionless.
     pub canard_gain: R,
     /// Coefficient of delta_c in C_D, 1/rad.
@@ -66,10 +68,12 @@ pub struct Prepared<R> {
     pub g: R,
     /// Curvature of the Earth, 0 where it is flat, 1/ft.
     pub earth_curvature: R,
+    /// `R::HALF * s * inv_m`.
+    pub half_s_over_m: R,
     /// Coefficient of alpha in C_L, 1/rad.
     pub c_l_alpha: R,
-    /// Coefficient of delta_e in C_L, 1/rad.
-    pub c_l_delta_e: R,
+    /// Lift coefficient per elevator deflection that the slaved canard leaves, 1/rad.
+    pub elevator_lift: R,
     /// Coefficient of delta_c in C_L, 1/rad.
     pub c_l_delta_c: R,
     /// Constant part of C_L, dimensionless.
@@ -156,17 +160,13 @@ pub struct Prepared<R> {
     pub two_c_t_phi_alpha_2: R,
     /// `2 * c_d_alpha_2`.
     pub two_c_d_alpha_2: R,
-    /// `R::from_f64(-2.0) * earth_curvature`.
-    pub minus_two_earth_curvature: R,
-    /// Vehicle mass, slug/ft.
-    pub m: R,
     /// `2 * c_m_alpha_2`.
     pub two_c_m_alpha_2: R,
-    /// `c_bar * c_m_eta_1 + z_t * c_t_eta_1`.
+    /// `c_bar_c_m_eta_1 + z_t * c_t_eta_1`.
     pub c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: R,
-    /// `c_bar * c_m_eta_2 + z_t * c_t_eta_2`.
+    /// `c_bar_c_m_eta_2 + z_t * c_t_eta_2`.
     pub c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: R,
-    /// `c_bar * c_m_eta_3 + z_t * c_t_eta_3`.
+    /// `c_bar_c_m_eta_3 + z_t * c_t_eta_3`.
     pub c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: R,
     /// `2 * c_n_1_alpha_2`.
     pub two_c_n_1_alpha_2: R,
@@ -190,23 +190,158 @@ pub struct Prepared<R> {
     pub two_c_d_delta_e_2: R,
     /// `2 * c_d_delta_c_2`.
     pub two_c_d_delta_c_2: R,
-    /// Derivative of lift coefficient with respect to delta_e, 1/rad.
-    pub d_c_l_d_delta_e: R,
+    /// `c_l_delta_c * canard_command`.
+    pub c_l_delta_c_canard_command: R,
     /// `c_bar * d_c_m_d_delta_e`.
     pub c_bar_d_c_m_d_delta_e: R,
-    /// `c_bar * c_m_delta_c`.
-    pub c_bar_c_m_delta_c: R,
+    /// `c_bar * c_m_delta_c * canard_command`.
+    pub c_bar_c_m_delta_c_canard_command: R,
     /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, ft^0.5/slug^0.5/rad.
     pub d_c_n_1_d_delta_e: R,
+    /// `c_n_1_delta_c * canard_command`.
+    pub c_n_1_delta_c_canard_command: R,
     /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, ft^0.5/slug^0.5/rad.
     pub d_c_n_2_d_delta_e: R,
+    /// `c_n_2_delta_c * canard_command`.
+    pub c_n_2_delta_c_canard_command: R,
     /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, ft^0.5/slug^0.5/rad.
     pub d_c_n_3_d_delta_e: R,
+    /// `c_n_3_delta_c * canard_command`.
+    pub c_n_3_delta_c_canard_command: R,
+    /// `inv_m * inv_m`.
+    pub inv_m_2: R,
+    /// `inv_h_s * inv_h_s`.
+    pub inv_h_s_2: R,
+    /// `earth_curvature * inv_r_e`.
+    pub earth_curvature_over_r_e: R,
+    /// `c_l_delta_e * inv_c_l_delta_c`.
+    pub c_l_delta_e_over_c_l_delta_c: R,
+    /// `1 / r_e`.
+    pub inv_r_e: R,
+    /// `canard_slaving * inv_c_l_delta_c`.
+    pub canard_slaving_over_c_l_delta_c: R,
+    /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    pub d_c_d_d_c_l_delta_c_constant_1: R,
+    /// `R::from_f64(-0.5) * inv_m_2`.
+    pub minus_half_inv_m_2: R,
+    /// `R::HALF * inv_m`.
+    pub half_over_m: R,
+    /// Coefficient of delta_e in C_L, 1/rad.
+    pub c_l_delta_e: R,
+    /// Derivative of lift coefficient per elevator deflection that the slaved canard leaves with respect to
+    /// c_l_delta_e, dimensionless.
+    pub d_elevator_lift_d_c_l_delta_e: R,
+    /// `R::HALF * c_bar`.
+    pub half_c_bar: R,
+    /// `R::HALF * z_t`.
+    pub half_z_t: R,
+    /// `c_bar * c_m_delta_c * inv_i_yy`.
+    pub c_bar_c_m_delta_c_over_i_yy: R,
+    /// `c_bar * c_m_delta_c * c_l_delta_e * inv_c_l_delta_c * inv_i_yy`.
+    pub parameter_jacobian_constant_1: R,
+    /// `z_t * inv_i_yy`.
+    pub z_t_over_i_yy: R,
+    /// `c_bar * c_m_delta_c * canard_slaving * inv_c_l_delta_c * inv_i_yy`.
+    pub parameter_jacobian_constant_2: R,
+    /// `c_bar * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy`.
+    pub parameter_jacobian_constant_3: R,
+    /// `c_bar * inv_i_yy`.
+    pub c_bar_over_i_yy: R,
+    /// `R::HALF * s`.
+    pub half_s: R,
+    /// `2 * zeta_1`.
+    pub two_zeta_1: R,
+    /// `2 * omega_1`.
+    pub two_omega_1: R,
+    /// `R::from_f64(-2.0) * omega_1`.
+    pub minus_two_omega_1: R,
+    /// `c_n_1_delta_c * c_l_delta_e * inv_c_l_delta_c`.
+    pub parameter_jacobian_constant_4: R,
+    /// `c_n_1_delta_c * canard_slaving * inv_c_l_delta_c`.
+    pub parameter_jacobian_constant_5: R,
+    /// `c_n_1_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    pub parameter_jacobian_constant_6: R,
+    /// `2 * zeta_2`.
+    pub two_zeta_2: R,
+    /// `2 * omega_2`.
+    pub two_omega_2: R,
+    /// `R::from_f64(-2.0) * omega_2`.
+    pub minus_two_omega_2: R,
+    /// `c_n_2_delta_c * c_l_delta_e * inv_c_l_delta_c`.
+    pub parameter_jacobian_constant_7: R,
+    /// `c_n_2_delta_c * canard_slaving * inv_c_l_delta_c`.
+    pub parameter_jacobian_constant_8: R,
+    /// `c_n_2_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    pub parameter_jacobian_constant_9: R,
+    /// `2 * zeta_3`.
+    pub two_zeta_3: R,
+    /// `2 * omega_3`.
+    pub two_omega_3: R,
+    /// `R::from_f64(-2.0) * omega_3`.
+    pub minus_two_omega_3: R,
+    /// `c_n_3_delta_c * c_l_delta_e * inv_c_l_delta_c`.
+    pub parameter_jacobian_constant_10: R,
+    /// `c_n_3_delta_c * canard_slaving * inv_c_l_delta_c`.
+    pub parameter_jacobian_constant_11: R,
+    /// `c_n_3_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    pub parameter_jacobian_constant_12: R,
+    /// `2 * earth_curvature_2`.
+    pub two_earth_curvature_2: R,
+    /// `R::from_f64(6.0) * c_t_alpha_3`.
+    pub six_c_t_alpha_3: R,
+    /// `R::from_f64(6.0) * c_t_phi_alpha_3`.
+    pub six_c_t_phi_alpha_3: R,
+    /// `c_bar * s`.
+    pub c_bar_s: R,
+    /// `2 * c_bar * c_m_alpha_2`.
+    pub two_c_bar_c_m_alpha_2: R,
+    /// `c_bar * c_m_eta_1`.
+    pub c_bar_c_m_eta_1: R,
+    /// `c_bar * c_m_eta_2`.
+    pub c_bar_c_m_eta_2: R,
+    /// `c_bar * c_m_eta_3`.
+    pub c_bar_c_m_eta_3: R,
+    /// Intensity of the white noise w_gamma, rad*s^0.5.
+    pub w_gamma: R,
+    /// Intensity of the white noise w_alpha, rad*s^0.5.
+    pub w_alpha: R,
+    /// Intensity of the white noise w_Q, rad/s^0.5.
+    pub w_q: R,
+    /// Intensity of the white noise on mode 1, (ft*slug)^0.5/s^1.5.
+    pub sigma_1: R,
+    /// `sigma_2 * shared_noise`.
+    pub sigma_2_shared_noise: R,
+    /// `sigma_2 * own_noise`.
+    pub sigma_2_own_noise: R,
+    /// `sigma_3 * shared_noise`.
+    pub sigma_3_shared_noise: R,
+    /// `sigma_3 * own_noise`.
+    pub sigma_3_own_noise: R,
+    /// Intensity of the white noise on mode 2, (ft*slug)^0.5/s^1.5.
+    pub sigma_2: R,
+    /// Correlation of the noise of modes 2, 3, ... with that of mode 1, dimensionless.
+    pub shared_noise: R,
+    /// Share of its own noise in what drives a mode, dimensionless.
+    pub own_noise: R,
+    /// Intensity of the white noise on mode 3, (ft*slug)^0.5/s^1.5.
+    pub sigma_3: R,
+    /// `w_gamma * w_gamma`.
+    pub w_gamma_2: R,
+    /// `w_alpha * w_gamma`.
+    pub w_alpha_w_gamma: R,
+    /// `w_alpha * w_alpha`.
+    pub w_alpha_2: R,
+    /// `w_alpha * w_q`.
+    pub w_alpha_w_q: R,
+    /// `R::HALF * w_gamma_2`.
+    pub half_w_gamma_2: R,
+    /// `R::HALF * w_alpha_2`.
+    pub half_w_alpha_2: R,
 }
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 51 operations: 8 additions, 38 multiplications, 5 divisions.
+/// 138 operations: 10 additions, 122 multiplications, 5 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
@@ -215,6 +350,8 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Canard, (4)
     let inv_c_l_delta_c = p.c_l_delta_c.recip();
     let canard_gain = -p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c;
+    let d_elevator_lift_d_c_l_delta_e = R::ONE - p.canard_slaving;
+    let elevator_lift = p.c_l_delta_e * d_elevator_lift_d_c_l_delta_e; // 1/rad
 
     // Flexible modes, (1)
     let damping_1 = R::TWO * p.zeta_1 * p.omega_1; // rad/s
@@ -225,14 +362,25 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let stiffness_3 = p.omega_3 * p.omega_3; // rad^2/s^2
 
     // Derivatives with respect to delta_e
-    let d_c_l_d_delta_e = p.c_l_delta_e + p.c_l_delta_c * canard_gain; // 1/rad
     let d_c_m_d_delta_e = p.c_m_delta_e + p.c_m_delta_c * canard_gain; // 1/rad
     let d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * canard_gain; // ft^0.5/slug^0.5/rad
     let d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * canard_gain; // ft^0.5/slug^0.5/rad
     let d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * canard_gain; // ft^0.5/slug^0.5/rad
+
+    // Noise of the modes, (16)
+    let own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
     let inv_h_s = p.h_s.recip();
     let inv_m = p.m.recip();
     let inv_i_yy = p.i_yy.recip();
+    let c_bar_c_m_eta_1 = p.c_bar * p.c_m_eta_1;
+    let c_bar_c_m_eta_2 = p.c_bar * p.c_m_eta_2;
+    let c_bar_c_m_eta_3 = p.c_bar * p.c_m_eta_3;
+    let inv_m_2 = inv_m * inv_m;
+    let inv_h_s_2 = inv_h_s * inv_h_s;
+    let inv_c_l_delta_c_2 = inv_c_l_delta_c * inv_c_l_delta_c;
+    let earth_curvature_2 = earth_curvature * earth_curvature;
+    let w_gamma_2 = p.w_gamma * p.w_gamma;
+    let w_alpha_2 = p.w_alpha * p.w_alpha;
 
     Prepared {
         rho_0: p.rho_0,
@@ -255,6 +403,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_d_delta_e_2: p.c_d_delta_e_2,
         c_d_delta_e: p.c_d_delta_e,
         c_d_delta_c_2: p.c_d_delta_c_2,
+        canard_command: p.canard_command,
         canard_gain,
         c_d_delta_c: p.c_d_delta_c,
         c_d_0: p.c_d_0,
@@ -264,8 +413,9 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         inv_m,
         g: p.g,
         earth_curvature,
+        half_s_over_m: R::HALF * p.s * inv_m,
         c_l_alpha: p.c_l_alpha,
-        c_l_delta_e: p.c_l_delta_e,
+        elevator_lift,
         c_l_delta_c: p.c_l_delta_c,
         c_l_0: p.c_l_0,
         c_l_eta_1: p.c_l_eta_1,
@@ -309,12 +459,10 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         three_c_t_phi_alpha_3: R::from_f64(3.0) * p.c_t_phi_alpha_3,
         two_c_t_phi_alpha_2: R::TWO * p.c_t_phi_alpha_2,
         two_c_d_alpha_2: R::TWO * p.c_d_alpha_2,
-        minus_two_earth_curvature: R::from_f64(-2.0) * earth_curvature,
-        m: p.m,
         two_c_m_alpha_2: R::TWO * p.c_m_alpha_2,
-        c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: p.c_bar * p.c_m_eta_1 + p.z_t * p.c_t_eta_1,
-        c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: p.c_bar * p.c_m_eta_2 + p.z_t * p.c_t_eta_2,
-        c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: p.c_bar * p.c_m_eta_3 + p.z_t * p.c_t_eta_3,
+        c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: c_bar_c_m_eta_1 + p.z_t * p.c_t_eta_1,
+        c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: c_bar_c_m_eta_2 + p.z_t * p.c_t_eta_2,
+        c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: c_bar_c_m_eta_3 + p.z_t * p.c_t_eta_3,
         two_c_n_1_alpha_2: R::TWO * p.c_n_1_alpha_2,
         minus_stiffness_1: -stiffness_1,
         minus_damping_1: -damping_1,
@@ -326,11 +474,89 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         minus_damping_3: -damping_3,
         two_c_d_delta_e_2: R::TWO * p.c_d_delta_e_2,
         two_c_d_delta_c_2: R::TWO * p.c_d_delta_c_2,
-        d_c_l_d_delta_e,
+        c_l_delta_c_canard_command: p.c_l_delta_c * p.canard_command,
         c_bar_d_c_m_d_delta_e: p.c_bar * d_c_m_d_delta_e,
-        c_bar_c_m_delta_c: p.c_bar * p.c_m_delta_c,
+        c_bar_c_m_delta_c_canard_command: p.c_bar * p.c_m_delta_c * p.canard_command,
         d_c_n_1_d_delta_e,
+        c_n_1_delta_c_canard_command: p.c_n_1_delta_c * p.canard_command,
         d_c_n_2_d_delta_e,
+        c_n_2_delta_c_canard_command: p.c_n_2_delta_c * p.canard_command,
         d_c_n_3_d_delta_e,
+        c_n_3_delta_c_canard_command: p.c_n_3_delta_c * p.canard_command,
+        inv_m_2,
+        inv_h_s_2,
+        earth_curvature_over_r_e: earth_curvature * inv_r_e,
+        c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
+        inv_r_e,
+        canard_slaving_over_c_l_delta_c: p.canard_slaving * inv_c_l_delta_c,
+        d_c_d_d_c_l_delta_c_constant_1: p.canard_slaving * p.c_l_delta_e
+            * inv_c_l_delta_c_2,
+        minus_half_inv_m_2: R::from_f64(-0.5) * inv_m_2,
+        half_over_m: R::HALF * inv_m,
+        c_l_delta_e: p.c_l_delta_e,
+        d_elevator_lift_d_c_l_delta_e,
+        half_c_bar: R::HALF * p.c_bar,
+        half_z_t: R::HALF * p.z_t,
+        c_bar_c_m_delta_c_over_i_yy: p.c_bar * p.c_m_delta_c * inv_i_yy,
+        parameter_jacobian_constant_1: p.c_bar * p.c_m_delta_c * p.c_l_delta_e
+            * inv_c_l_delta_c * inv_i_yy,
+        z_t_over_i_yy: p.z_t * inv_i_yy,
+        parameter_jacobian_constant_2: p.c_bar * p.c_m_delta_c * p.canard_slaving
+            * inv_c_l_delta_c * inv_i_yy,
+        parameter_jacobian_constant_3: p.c_bar * p.c_m_delta_c * p.canard_slaving
+            * p.c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy,
+        c_bar_over_i_yy: p.c_bar * inv_i_yy,
+        half_s: R::HALF * p.s,
+        two_zeta_1: R::TWO * p.zeta_1,
+        two_omega_1: R::TWO * p.omega_1,
+        minus_two_omega_1: R::from_f64(-2.0) * p.omega_1,
+        parameter_jacobian_constant_4: p.c_n_1_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
+        parameter_jacobian_constant_5: p.c_n_1_delta_c * p.canard_slaving
+            * inv_c_l_delta_c,
+        parameter_jacobian_constant_6: p.c_n_1_delta_c * p.canard_slaving * p.c_l_delta_e
+            * inv_c_l_delta_c_2,
+        two_zeta_2: R::TWO * p.zeta_2,
+        two_omega_2: R::TWO * p.omega_2,
+        minus_two_omega_2: R::from_f64(-2.0) * p.omega_2,
+        parameter_jacobian_constant_7: p.c_n_2_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
+        parameter_jacobian_constant_8: p.c_n_2_delta_c * p.canard_slaving
+            * inv_c_l_delta_c,
+        parameter_jacobian_constant_9: p.c_n_2_delta_c * p.canard_slaving * p.c_l_delta_e
+            * inv_c_l_delta_c_2,
+        two_zeta_3: R::TWO * p.zeta_3,
+        two_omega_3: R::TWO * p.omega_3,
+        minus_two_omega_3: R::from_f64(-2.0) * p.omega_3,
+        parameter_jacobian_constant_10: p.c_n_3_delta_c * p.c_l_delta_e
+            * inv_c_l_delta_c,
+        parameter_jacobian_constant_11: p.c_n_3_delta_c * p.canard_slaving
+            * inv_c_l_delta_c,
+        parameter_jacobian_constant_12: p.c_n_3_delta_c * p.canard_slaving
+            * p.c_l_delta_e * inv_c_l_delta_c_2,
+        two_earth_curvature_2: R::TWO * earth_curvature_2,
+        six_c_t_alpha_3: R::from_f64(6.0) * p.c_t_alpha_3,
+        six_c_t_phi_alpha_3: R::from_f64(6.0) * p.c_t_phi_alpha_3,
+        c_bar_s: p.c_bar * p.s,
+        two_c_bar_c_m_alpha_2: R::TWO * p.c_bar * p.c_m_alpha_2,
+        c_bar_c_m_eta_1,
+        c_bar_c_m_eta_2,
+        c_bar_c_m_eta_3,
+        w_gamma: p.w_gamma,
+        w_alpha: p.w_alpha,
+        w_q: p.w_q,
+        sigma_1: p.sigma_1,
+        sigma_2_shared_noise: p.sigma_2 * p.shared_noise,
+        sigma_2_own_noise: p.sigma_2 * own_noise,
+        sigma_3_shared_noise: p.sigma_3 * p.shared_noise,
+        sigma_3_own_noise: p.sigma_3 * own_noise,
+        sigma_2: p.sigma_2,
+        shared_noise: p.shared_noise,
+        own_noise,
+        sigma_3: p.sigma_3,
+        w_gamma_2,
+        w_alpha_w_gamma: p.w_alpha * p.w_gamma,
+        w_alpha_2,
+        w_alpha_w_q: p.w_alpha * p.w_q,
+        half_w_gamma_2: R::HALF * w_gamma_2,
+        half_w_alpha_2: R::HALF * w_alpha_2,
     }
 }

@@ -12,13 +12,11 @@ pub const PROVENANCE: Parameters<Provenance> = Parameters {
     s: Provenance::new("parker2007", Status::Published, 0.4),
     c_bar: Provenance::new("parker2007", Status::Published, 0.4),
     z_t: Provenance::new("parker2007", Status::Published, 0.4),
-    canard_slaving: Provenance::new("assumed", Status::Assumed, 0.0),
     rho_0: Provenance::new("parker2007", Status::Published, 0.0),
     h_0: Provenance::new("parker2007", Status::Published, 0.0),
     h_s: Provenance::new("parker2007", Status::Published, 0.0),
     g: Provenance::new("standard-gravity", Status::Published, 0.0),
     r_e: Provenance::new("mean-earth-radius", Status::Derived, 0.0),
-    spherical_earth: Provenance::new("assumed", Status::Assumed, 0.0),
     omega_1: Provenance::new("paper-36", Status::Published, 0.4),
     omega_2: Provenance::new("paper-36", Status::Published, 0.4),
     omega_3: Provenance::new("paper-36", Status::Published, 0.4),
@@ -31,6 +29,14 @@ pub const PROVENANCE: Parameters<Provenance> = Parameters {
     w_gamma: Provenance::new("assumed", Status::Assumed, 0.4),
     w_alpha: Provenance::new("assumed", Status::Assumed, 0.4),
     w_q: Provenance::new("assumed", Status::Assumed, 0.4),
+    gust_rms: Provenance::new("assumed", Status::Assumed, 0.4),
+    gust_time: Provenance::new("assumed", Status::Assumed, 0.4),
+    canard_command: Provenance::new("choices", Status::Assumed, 0.0),
+    canard_slaving: Provenance::new("choices", Status::Assumed, 0.0),
+    spherical_earth: Provenance::new("choices", Status::Assumed, 0.0),
+    shared_noise: Provenance::new("choices", Status::Assumed, 0.0),
+    variance_matching: Provenance::new("choices", Status::Assumed, 0.0),
+    moment_matching: Provenance::new("choices", Status::Assumed, 0.0),
     c_t_phi_alpha_3: Provenance::new("com-over-qS", Status::Derived, 0.4),
     c_t_phi_alpha_2: Provenance::new("com-over-qS", Status::Derived, 0.4),
     c_t_phi_alpha: Provenance::new("com-over-qS", Status::Derived, 0.4),
@@ -82,4 +88,17 @@ pub const PROVENANCE: Parameters<Provenance> = Parameters {
     c_n_3_delta_e: Provenance::new("shock-expansion", Status::Derived, 0.4),
     c_n_3_delta_c: Provenance::new("shock-expansion", Status::Derived, 0.4),
     c_n_3_0: Provenance::new("shock-expansion", Status::Derived, 0.4),
+};
+
+/// Source, status and relative uncertainty of each parameter of the set `section5.3`.
+pub const SECTION5_3_PROVENANCE: Parameters<Provenance> = Parameters {
+    m: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    i_yy: Provenance::new("ahv-quoted", Status::Unverified, 0.4),
+    omega_1: Provenance::new("table-3", Status::Derived, 0.4),
+    omega_2: Provenance::new("table-3", Status::Derived, 0.4),
+    omega_3: Provenance::new("table-3", Status::Derived, 0.4),
+    zeta_1: Provenance::new("table-3", Status::Derived, 0.4),
+    zeta_2: Provenance::new("table-3", Status::Derived, 0.4),
+    zeta_3: Provenance::new("table-3", Status::Derived, 0.4),
+    ..PROVENANCE
 };

@@ -3,14 +3,41 @@
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
 use super::{Diffusion, Input, Noise, Prepared, State};
-use ahv_core::{Real, Vector};
+use ahv_core::{Pattern, Real, Vector};
 
-/// Diffusion G(x, u) in the Itô sense; the columns of w_gamma, w_alpha and w_q are derivatives of the drift at
-/// frozen inputs, eq. (27).
+/// Where the entries of the compressed [`Diffusion`] stand.
+pub const DIFFUSION_PATTERN: Pattern<2> = Pattern::new(
+    [State::<u8>::LEN, Noise::<u8>::LEN],
+    &[
+        ahv_core::at!(State.velocity, Noise.w_gamma),
+        ahv_core::at!(State.velocity, Noise.w_alpha),
+        ahv_core::at!(State.altitude, Noise.w_gamma),
+        ahv_core::at!(State.gamma, Noise.w_gamma),
+        ahv_core::at!(State.gamma, Noise.w_alpha),
+        ahv_core::at!(State.alpha, Noise.w_gamma),
+        ahv_core::at!(State.alpha, Noise.w_alpha),
+        ahv_core::at!(State.alpha, Noise.w_q),
+        ahv_core::at!(State.pitch_rate, Noise.w_alpha),
+        ahv_core::at!(State.chi_1, Noise.xi_1),
+        ahv_core::at!(State.chi_2, Noise.xi_1),
+        ahv_core::at!(State.chi_2, Noise.xi_2),
+        ahv_core::at!(State.chi_3, Noise.xi_1),
+        ahv_core::at!(State.chi_3, Noise.xi_3),
+    ],
+);
+
+/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the columns of w_gamma, w_alpha
+/// and w_q are derivatives of the drift, eq. (27).
 ///
-/// 158 operations: 56 additions, 97 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 159 operations: 56 additions, 98 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
-pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
+pub fn diffusion_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> [R; 14] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
@@ -26,14 +53,16 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -88,7 +117,7 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
     let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -126,11 +155,8 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_lift_d_alpha = reference_force * d_c_l_d_alpha; // lb/ft/rad
-    let d_normal_force_d_alpha = thrust * cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_force_turn_d_alpha = turn_factor
+        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -140,43 +166,72 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
         + p.z_t * d_thrust_d_alpha; // lb/rad
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
+    [
+        d_velocity_rate_d_gamma * p.w_gamma,
+        d_velocity_rate_d_alpha * p.w_alpha,
+        d_altitude_rate_d_gamma * p.w_gamma,
+        d_gamma_rate_d_gamma * p.w_gamma,
+        d_force_turn_d_alpha * p.w_alpha,
+        -d_gamma_rate_d_gamma * p.w_gamma,
+        -d_force_turn_d_alpha * p.w_alpha,
+        p.w_q,
+        d_pitch_acceleration_d_alpha * p.w_alpha,
+        p.chi_diffusion_1,
+        p.chi_diffusion_2_shared_noise,
+        p.chi_diffusion_2_own_noise,
+        p.chi_diffusion_3_shared_noise,
+        p.chi_diffusion_3_own_noise,
+    ]
+}
+
+/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the columns of w_gamma, w_alpha
+/// and w_q are derivatives of the drift, eq. (27).
+#[inline]
+pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
+    let [velocity_by_w_gamma, velocity_by_w_alpha, altitude_by_w_gamma, gamma_by_w_gamma,
+    gamma_by_w_alpha, alpha_by_w_gamma, alpha_by_w_alpha, alpha_by_w_q,
+    pitch_rate_by_w_alpha, chi_1_by_xi_1, chi_2_by_xi_1, chi_2_by_xi_2, chi_3_by_xi_1,
+    chi_3_by_xi_3] = diffusion_values(x, u, p);
+
     // Result
     let no_noise = Noise::splat(R::ZERO);
     State {
         velocity: Noise {
-            w_gamma: d_velocity_rate_d_gamma * p.w_gamma,
-            w_alpha: d_velocity_rate_d_alpha * p.w_alpha,
+            w_gamma: velocity_by_w_gamma,
+            w_alpha: velocity_by_w_alpha,
             ..no_noise
         },
         altitude: Noise {
-            w_gamma: d_altitude_rate_d_gamma * p.w_gamma,
+            w_gamma: altitude_by_w_gamma,
             ..no_noise
         },
         gamma: Noise {
-            w_gamma: d_gamma_rate_d_gamma * p.w_gamma,
-            w_alpha: d_gamma_rate_d_alpha * p.w_alpha,
+            w_gamma: gamma_by_w_gamma,
+            w_alpha: gamma_by_w_alpha,
             ..no_noise
         },
         alpha: Noise {
-            w_gamma: -d_gamma_rate_d_gamma * p.w_gamma,
-            w_alpha: -d_gamma_rate_d_alpha * p.w_alpha,
-            w_q: p.w_q,
+            w_gamma: alpha_by_w_gamma,
+            w_alpha: alpha_by_w_alpha,
+            w_q: alpha_by_w_q,
             ..no_noise
         },
         pitch_rate: Noise {
-            w_alpha: d_pitch_acceleration_d_alpha * p.w_alpha,
+            w_alpha: pitch_rate_by_w_alpha,
             ..no_noise
         },
         chi_1: Noise {
-            xi_1: p.chi_diffusion_1,
+            xi_1: chi_1_by_xi_1,
             ..no_noise
         },
         chi_2: Noise {
-            xi_2: p.chi_diffusion_2,
+            xi_1: chi_2_by_xi_1,
+            xi_2: chi_2_by_xi_2,
             ..no_noise
         },
         chi_3: Noise {
-            xi_3: p.chi_diffusion_3,
+            xi_1: chi_3_by_xi_1,
+            xi_3: chi_3_by_xi_3,
             ..no_noise
         },
     }
@@ -190,7 +245,6 @@ pub fn drift_and_diffusion<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-
 ) -> (State<R>, Diffusion<R>) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -207,14 +261,16 @@ pub fn drift_and_diffusion<R: Real>(
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -262,8 +318,8 @@ pub fn drift_and_diffusion<R: Real>(
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
     let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_delta_c * canard_deflection
+        + p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * canard_commanded
         + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
@@ -291,18 +347,15 @@ pub fn drift_and_diffusion<R: Real>(
 
     // Forces and moment, (2)
     let thrust = reference_force * c_t; // lb/ft
-    let lift = reference_force * c_l; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
 
     // Motion, (1)
-    let thrust_cos_alpha = thrust * cos_alpha;
-    let path_force = thrust_cos_alpha - drag; // lb/ft
-    let normal_force = lift + thrust * sin_alpha; // lb/ft
+    let path_force = thrust * cos_alpha - drag; // lb/ft
+    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = normal_force * inverse_momentum
-        - apparent_gravity * inv_velocity * cos_gamma; // rad/s
+    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
     let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 
@@ -315,7 +368,7 @@ pub fn drift_and_diffusion<R: Real>(
     let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -353,11 +406,8 @@ pub fn drift_and_diffusion<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_lift_d_alpha = reference_force * d_c_l_d_alpha; // lb/ft/rad
-    let d_normal_force_d_alpha = thrust_cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_force_turn_d_alpha = turn_factor
+        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -391,12 +441,12 @@ pub fn drift_and_diffusion<R: Real>(
         },
         gamma: Noise {
             w_gamma: d_gamma_rate_d_gamma * p.w_gamma,
-            w_alpha: d_gamma_rate_d_alpha * p.w_alpha,
+            w_alpha: d_force_turn_d_alpha * p.w_alpha,
             ..no_noise
         },
         alpha: Noise {
             w_gamma: -d_gamma_rate_d_gamma * p.w_gamma,
-            w_alpha: -d_gamma_rate_d_alpha * p.w_alpha,
+            w_alpha: -d_force_turn_d_alpha * p.w_alpha,
             w_q: p.w_q,
             ..no_noise
         },
@@ -409,11 +459,13 @@ pub fn drift_and_diffusion<R: Real>(
             ..no_noise
         },
         chi_2: Noise {
-            xi_2: p.chi_diffusion_2,
+            xi_1: p.chi_diffusion_2_shared_noise,
+            xi_2: p.chi_diffusion_2_own_noise,
             ..no_noise
         },
         chi_3: Noise {
-            xi_3: p.chi_diffusion_3,
+            xi_1: p.chi_diffusion_3_shared_noise,
+            xi_3: p.chi_diffusion_3_own_noise,
             ..no_noise
         },
     };
@@ -422,14 +474,13 @@ pub fn drift_and_diffusion<R: Real>(
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
 ///
-/// 170 operations: 60 additions, 105 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 176 operations: 62 additions, 109 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn noise_increment<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     dw: &Noise<R>,
-
 ) -> State<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -446,14 +497,16 @@ pub fn noise_increment<R: Real>(
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -508,7 +561,7 @@ pub fn noise_increment<R: Real>(
     let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -546,11 +599,8 @@ pub fn noise_increment<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_lift_d_alpha = reference_force * d_c_l_d_alpha; // lb/ft/rad
-    let d_normal_force_d_alpha = thrust * cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_force_turn_d_alpha = turn_factor
+        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -561,20 +611,21 @@ pub fn noise_increment<R: Real>(
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
     let d_gamma_rate_d_gamma_w_gamma_dw_gamma = d_gamma_rate_d_gamma * p.w_gamma
         * dw.w_gamma;
-    let d_gamma_rate_d_alpha_w_alpha_dw_alpha = d_gamma_rate_d_alpha * p.w_alpha
+    let d_force_turn_d_alpha_w_alpha_dw_alpha = d_force_turn_d_alpha * p.w_alpha
         * dw.w_alpha;
+    let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {
         velocity: d_velocity_rate_d_gamma * p.w_gamma * dw.w_gamma
             + d_velocity_rate_d_alpha * p.w_alpha * dw.w_alpha,
         altitude: d_altitude_rate_d_gamma * p.w_gamma * dw.w_gamma,
         gamma: d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            + d_gamma_rate_d_alpha_w_alpha_dw_alpha,
+            + d_force_turn_d_alpha_w_alpha_dw_alpha,
         alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            - d_gamma_rate_d_alpha_w_alpha_dw_alpha,
+            - d_force_turn_d_alpha_w_alpha_dw_alpha,
         pitch_rate: d_pitch_acceleration_d_alpha * p.w_alpha * dw.w_alpha,
         chi_1: p.chi_diffusion_1 * dw.xi_1,
-        chi_2: p.chi_diffusion_2 * dw.xi_2,
-        chi_3: p.chi_diffusion_3 * dw.xi_3,
+        chi_2: p.chi_diffusion_2 * (shared_noise_dxi_1 + p.own_noise * dw.xi_2),
+        chi_3: p.chi_diffusion_3 * (shared_noise_dxi_1 + p.own_noise * dw.xi_3),
     }
 }

@@ -3,18 +3,78 @@
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
 use super::{Input, InputJacobian, Prepared, State, StateJacobian};
-use ahv_core::{Real, Vector};
+use ahv_core::{Pattern, Real, Vector};
+
+/// Where the entries of the compressed [`StateJacobian`] stand.
+pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
+    [State::<u8>::LEN, State::<u8>::LEN],
+    &[
+        ahv_core::at!(State.velocity, State.velocity),
+        ahv_core::at!(State.velocity, State.altitude),
+        ahv_core::at!(State.velocity, State.gamma),
+        ahv_core::at!(State.velocity, State.alpha),
+        ahv_core::at!(State.velocity, State.chi_1),
+        ahv_core::at!(State.velocity, State.chi_2),
+        ahv_core::at!(State.velocity, State.chi_3),
+        ahv_core::at!(State.altitude, State.velocity),
+        ahv_core::at!(State.altitude, State.gamma),
+        ahv_core::at!(State.gamma, State.velocity),
+        ahv_core::at!(State.gamma, State.altitude),
+        ahv_core::at!(State.gamma, State.gamma),
+        ahv_core::at!(State.gamma, State.alpha),
+        ahv_core::at!(State.gamma, State.chi_1),
+        ahv_core::at!(State.gamma, State.chi_2),
+        ahv_core::at!(State.gamma, State.chi_3),
+        ahv_core::at!(State.alpha, State.velocity),
+        ahv_core::at!(State.alpha, State.altitude),
+        ahv_core::at!(State.alpha, State.gamma),
+        ahv_core::at!(State.alpha, State.alpha),
+        ahv_core::at!(State.alpha, State.pitch_rate),
+        ahv_core::at!(State.alpha, State.chi_1),
+        ahv_core::at!(State.alpha, State.chi_2),
+        ahv_core::at!(State.alpha, State.chi_3),
+        ahv_core::at!(State.pitch_rate, State.velocity),
+        ahv_core::at!(State.pitch_rate, State.altitude),
+        ahv_core::at!(State.pitch_rate, State.alpha),
+        ahv_core::at!(State.pitch_rate, State.chi_1),
+        ahv_core::at!(State.pitch_rate, State.chi_2),
+        ahv_core::at!(State.pitch_rate, State.chi_3),
+        ahv_core::at!(State.chi_1, State.chi_1),
+        ahv_core::at!(State.chi_2, State.chi_2),
+        ahv_core::at!(State.chi_3, State.chi_3),
+    ],
+);
+
+/// Where the entries of the compressed [`InputJacobian`] stand.
+pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
+    [State::<u8>::LEN, Input::<u8>::LEN],
+    &[
+        ahv_core::at!(State.velocity, Input.phi),
+        ahv_core::at!(State.velocity, Input.delta_e),
+        ahv_core::at!(State.velocity, Input.delta_c),
+        ahv_core::at!(State.gamma, Input.phi),
+        ahv_core::at!(State.gamma, Input.delta_e),
+        ahv_core::at!(State.gamma, Input.delta_c),
+        ahv_core::at!(State.alpha, Input.phi),
+        ahv_core::at!(State.alpha, Input.delta_e),
+        ahv_core::at!(State.alpha, Input.delta_c),
+        ahv_core::at!(State.pitch_rate, Input.phi),
+        ahv_core::at!(State.pitch_rate, Input.delta_e),
+        ahv_core::at!(State.pitch_rate, Input.delta_c),
+    ],
+);
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
 ///
-/// 452 operations: 153 additions, 294 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 445 operations: 151 additions, 289 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
-pub fn jacobians<R: Real>(
+pub fn jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-
-) -> (StateJacobian<R>, InputJacobian<R>) {
+) -> ([R; 33], [R; 12]) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
@@ -30,14 +90,16 @@ pub fn jacobians<R: Real>(
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -85,8 +147,8 @@ pub fn jacobians<R: Real>(
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
     let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_delta_c * canard_deflection
+        + p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * canard_commanded
         + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
@@ -114,10 +176,6 @@ pub fn jacobians<R: Real>(
 
     // Forces and moment, (2)
     let thrust = reference_force * c_t; // lb/ft
-    let lift = reference_force * c_l; // lb/ft
-
-    // Motion, (1)
-    let normal_force = lift + thrust * sin_alpha; // lb/ft
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
@@ -140,22 +198,19 @@ pub fn jacobians<R: Real>(
         + reference_force * d_c_d_d_velocity; // lb*s/ft^2
     let d_path_force_d_velocity = cos_alpha * d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
-    let d_apparent_gravity_d_velocity = p.minus_two_earth_curvature * radius_ratio
-        * x.velocity; // 1/s
-    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
-    let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
+    let inv_velocity_2 = inv_velocity * inv_velocity;
+    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
+        + p.earth_curvature * radius_ratio); // 1/ft
+    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
     let d_c_l_d_velocity = p.c_l_eta_1 * d_eta_static_1_d_velocity
         + p.c_l_eta_2 * d_eta_static_2_d_velocity
         + p.c_l_eta_3 * d_eta_static_3_d_velocity; // s/ft
-    let d_lift_d_velocity = c_l * d_reference_force_d_velocity
-        + reference_force * d_c_l_d_velocity; // lb*s/ft^2
-    let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma
-        * (apparent_gravity * inv_velocity_2
-            - inv_velocity * d_apparent_gravity_d_velocity)
-        + normal_force * d_inverse_momentum_d_velocity
-        + inverse_momentum * d_normal_force_d_velocity; // rad/ft
+    let c_l_plus_c_t_sin_alpha = c_l + c_t * sin_alpha;
+    let d_force_turn_d_velocity = turn_factor
+        * (sin_alpha * d_c_t_d_velocity + d_c_l_d_velocity)
+        + c_l_plus_c_t_sin_alpha * d_turn_factor_d_velocity; // rad/ft
+    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
+        - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
     let d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
         + p.c_m_eta_2 * d_eta_static_2_d_velocity
         + p.c_m_eta_3 * d_eta_static_3_d_velocity; // s/ft
@@ -190,16 +245,17 @@ pub fn jacobians<R: Real>(
     let d_path_force_d_altitude = cos_alpha * d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
     let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m
         - sin_gamma * d_gravity_d_altitude; // 1/s^2
-    let d_apparent_gravity_d_altitude = d_gravity_d_altitude
-        - velocity_2 * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s^2
+    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
+        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
+    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
     let d_c_l_d_altitude = p.c_l_eta_1 * d_eta_static_1_d_altitude
         + p.c_l_eta_2 * d_eta_static_2_d_altitude
         + p.c_l_eta_3 * d_eta_static_3_d_altitude; // 1/ft
-    let d_lift_d_altitude = c_l * d_reference_force_d_altitude
-        + reference_force * d_c_l_d_altitude; // lb/ft^2
-    let d_normal_force_d_altitude = sin_alpha * d_thrust_d_altitude + d_lift_d_altitude; // lb/ft^2
-    let d_gamma_rate_d_altitude = inverse_momentum * d_normal_force_d_altitude
-        - cos_gamma * inv_velocity * d_apparent_gravity_d_altitude; // rad/s/ft
+    let d_force_turn_d_altitude = turn_factor
+        * (sin_alpha * d_c_t_d_altitude + d_c_l_d_altitude)
+        + c_l_plus_c_t_sin_alpha * d_turn_factor_d_altitude; // rad/s/ft
+    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
+        - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
     let d_c_m_d_altitude = p.c_m_eta_1 * d_eta_static_1_d_altitude
         + p.c_m_eta_2 * d_eta_static_2_d_altitude
         + p.c_m_eta_3 * d_eta_static_3_d_altitude; // 1/ft
@@ -212,7 +268,7 @@ pub fn jacobians<R: Real>(
     let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -250,11 +306,8 @@ pub fn jacobians<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_lift_d_alpha = reference_force * d_c_l_d_alpha; // lb/ft/rad
-    let d_normal_force_d_alpha = thrust * cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_force_turn_d_alpha = turn_factor
+        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -267,9 +320,7 @@ pub fn jacobians<R: Real>(
     // Derivatives with respect to chi_1
     let d_path_force_d_chi_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_force_d_chi_1 = reference_force
-        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_1 = turn_factor * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_1 = reference_force
         * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -277,9 +328,7 @@ pub fn jacobians<R: Real>(
     // Derivatives with respect to chi_2
     let d_path_force_d_chi_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_force_d_chi_2 = reference_force
-        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_2 = turn_factor * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_2 = reference_force
         * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -287,9 +336,7 @@ pub fn jacobians<R: Real>(
     // Derivatives with respect to chi_3
     let d_path_force_d_chi_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_force_d_chi_3 = reference_force
-        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_3 = turn_factor * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_3 = reference_force
         * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -298,8 +345,7 @@ pub fn jacobians<R: Real>(
     let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
     let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_normal_force_d_phi = sin_alpha * d_thrust_d_phi; // lb/ft
-    let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
+    let d_force_turn_d_phi = turn_factor * sin_alpha * c_t_phi; // rad/s
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
@@ -314,23 +360,22 @@ pub fn jacobians<R: Real>(
         + p.c_t_eta_2 * d_eta_static_2_d_delta_e
         + p.c_t_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_thrust_d_delta_e = reference_force * d_c_t_d_delta_e; // lb/ft/rad
-    let two_c_d_delta_c_2_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection;
+    let d_c_d_d_delta_e_term_1 = p.two_c_d_delta_c_2 * canard_deflection + p.c_d_delta_c;
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
-        + (two_c_d_delta_c_2_canard_deflection + p.c_d_delta_c) * p.canard_gain
+        + d_c_d_d_delta_e_term_1 * p.canard_gain
         + p.c_d_eta_1 * d_eta_static_1_d_delta_e
         + p.c_d_eta_2 * d_eta_static_2_d_delta_e
         + p.c_d_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_path_force_d_delta_e = cos_alpha * d_thrust_d_delta_e - d_drag_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = d_path_force_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_delta_e = p.c_l_eta_1 * d_eta_static_1_d_delta_e
+    let d_c_l_d_delta_e = p.elevator_lift
+        + p.c_l_eta_1 * d_eta_static_1_d_delta_e
         + p.c_l_eta_2 * d_eta_static_2_d_delta_e
-        + p.c_l_eta_3 * d_eta_static_3_d_delta_e
-        + p.c_l_delta_e_plus_c_l_delta_c_canard_gain; // 1/rad
-    let d_lift_d_delta_e = reference_force * d_c_l_d_delta_e; // lb/ft/rad
-    let d_normal_force_d_delta_e = sin_alpha * d_thrust_d_delta_e + d_lift_d_delta_e; // lb/ft/rad
-    let d_gamma_rate_d_delta_e = inverse_momentum * d_normal_force_d_delta_e; // 1/s
+        + p.c_l_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
+    let d_force_turn_d_delta_e = turn_factor
+        * (sin_alpha * d_c_t_d_delta_e + d_c_l_d_delta_e); // 1/s
     let d_c_m_d_delta_e = p.c_m_eta_1 * d_eta_static_1_d_delta_e
         + p.c_m_eta_2 * d_eta_static_2_d_delta_e
         + p.c_m_eta_3 * d_eta_static_3_d_delta_e
@@ -340,29 +385,33 @@ pub fn jacobians<R: Real>(
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to delta_c
-    let d_eta_static_1_d_delta_c = reference_force * p.c_n_1_delta_c_inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_2_d_delta_c = reference_force * p.c_n_2_delta_c_inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_3_d_delta_c = reference_force * p.c_n_3_delta_c_inv_omega_3_2; // ft^0.5*slug^0.5/rad
+    let d_generalized_force_1_d_delta_c = reference_force
+        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_static_1_d_delta_c = d_generalized_force_1_d_delta_c * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
+    let d_generalized_force_2_d_delta_c = reference_force
+        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_static_2_d_delta_c = d_generalized_force_2_d_delta_c * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
+    let d_generalized_force_3_d_delta_c = reference_force
+        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_static_3_d_delta_c = d_generalized_force_3_d_delta_c * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
     let d_c_t_d_delta_c = p.c_t_eta_1 * d_eta_static_1_d_delta_c
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
         + p.c_t_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_thrust_d_delta_c = reference_force * d_c_t_d_delta_c; // lb/ft/rad
-    let d_c_d_d_delta_c = two_c_d_delta_c_2_canard_deflection
-        + p.c_d_delta_c
+    let d_c_d_d_delta_c = d_c_d_d_delta_e_term_1 * p.canard_command
         + p.c_d_eta_1 * d_eta_static_1_d_delta_c
         + p.c_d_eta_2 * d_eta_static_2_d_delta_c
         + p.c_d_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_drag_d_delta_c = reference_force * d_c_d_d_delta_c; // lb/ft/rad
     let d_path_force_d_delta_c = cos_alpha * d_thrust_d_delta_c - d_drag_d_delta_c; // lb/ft/rad
     let d_velocity_rate_d_delta_c = d_path_force_d_delta_c * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_delta_c = p.c_l_delta_c
+    let d_c_l_d_delta_c = p.c_l_delta_c_canard_command
         + p.c_l_eta_1 * d_eta_static_1_d_delta_c
         + p.c_l_eta_2 * d_eta_static_2_d_delta_c
         + p.c_l_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
-    let d_lift_d_delta_c = reference_force * d_c_l_d_delta_c; // lb/ft/rad
-    let d_normal_force_d_delta_c = sin_alpha * d_thrust_d_delta_c + d_lift_d_delta_c; // lb/ft/rad
-    let d_gamma_rate_d_delta_c = inverse_momentum * d_normal_force_d_delta_c; // 1/s
-    let d_c_m_d_delta_c = p.c_m_delta_c
+    let d_force_turn_d_delta_c = turn_factor
+        * (sin_alpha * d_c_t_d_delta_c + d_c_l_d_delta_c); // 1/s
+    let d_c_m_d_delta_c = p.c_m_delta_c_canard_command
         + p.c_m_eta_1 * d_eta_static_1_d_delta_c
         + p.c_m_eta_2 * d_eta_static_2_d_delta_c
         + p.c_m_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
@@ -371,91 +420,199 @@ pub fn jacobians<R: Real>(
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
 
     // Result
+    let state = [
+        d_velocity_rate_d_velocity,
+        d_velocity_rate_d_altitude,
+        d_velocity_rate_d_gamma,
+        d_velocity_rate_d_alpha,
+        d_velocity_rate_d_chi_1,
+        d_velocity_rate_d_chi_2,
+        d_velocity_rate_d_chi_3,
+        sin_gamma,
+        d_altitude_rate_d_gamma,
+        d_gamma_rate_d_velocity,
+        d_gamma_rate_d_altitude,
+        d_gamma_rate_d_gamma,
+        d_force_turn_d_alpha,
+        d_force_turn_d_chi_1,
+        d_force_turn_d_chi_2,
+        d_force_turn_d_chi_3,
+        -d_gamma_rate_d_velocity,
+        -d_gamma_rate_d_altitude,
+        -d_gamma_rate_d_gamma,
+        -d_force_turn_d_alpha,
+        R::ONE,
+        -d_force_turn_d_chi_1,
+        -d_force_turn_d_chi_2,
+        -d_force_turn_d_chi_3,
+        d_pitch_acceleration_d_velocity,
+        d_pitch_acceleration_d_altitude,
+        d_pitch_acceleration_d_alpha,
+        d_pitch_acceleration_d_chi_1,
+        d_pitch_acceleration_d_chi_2,
+        d_pitch_acceleration_d_chi_3,
+        p.minus_chi_decay_1,
+        p.minus_chi_decay_2,
+        p.minus_chi_decay_3,
+    ];
+    let input = [
+        d_velocity_rate_d_phi,
+        d_velocity_rate_d_delta_e,
+        d_velocity_rate_d_delta_c,
+        d_force_turn_d_phi,
+        d_force_turn_d_delta_e,
+        d_force_turn_d_delta_c,
+        -d_force_turn_d_phi,
+        -d_force_turn_d_delta_e,
+        -d_force_turn_d_delta_c,
+        d_pitch_acceleration_d_phi,
+        d_pitch_acceleration_d_delta_e,
+        d_pitch_acceleration_d_delta_c,
+    ];
+    (state, input)
+}
+
+/// Derivatives of the drift with respect to the state and to the input, eq. (27).
+#[inline]
+pub fn jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (StateJacobian<R>, InputJacobian<R>) {
+    let (
+        [velocity_by_velocity,
+        velocity_by_altitude,
+        velocity_by_gamma,
+        velocity_by_alpha,
+        velocity_by_chi_1,
+        velocity_by_chi_2,
+        velocity_by_chi_3,
+        altitude_by_velocity,
+        altitude_by_gamma,
+        gamma_by_velocity,
+        gamma_by_altitude,
+        gamma_by_gamma,
+        gamma_by_alpha,
+        gamma_by_chi_1,
+        gamma_by_chi_2,
+        gamma_by_chi_3,
+        alpha_by_velocity,
+        alpha_by_altitude,
+        alpha_by_gamma,
+        alpha_by_alpha,
+        alpha_by_pitch_rate,
+        alpha_by_chi_1,
+        alpha_by_chi_2,
+        alpha_by_chi_3,
+        pitch_rate_by_velocity,
+        pitch_rate_by_altitude,
+        pitch_rate_by_alpha,
+        pitch_rate_by_chi_1,
+        pitch_rate_by_chi_2,
+        pitch_rate_by_chi_3,
+        chi_1_by_chi_1,
+        chi_2_by_chi_2,
+        chi_3_by_chi_3,
+        ],
+        [velocity_by_phi,
+        velocity_by_delta_e,
+        velocity_by_delta_c,
+        gamma_by_phi,
+        gamma_by_delta_e,
+        gamma_by_delta_c,
+        alpha_by_phi,
+        alpha_by_delta_e,
+        alpha_by_delta_c,
+        pitch_rate_by_phi,
+        pitch_rate_by_delta_e,
+        pitch_rate_by_delta_c,
+        ],
+    ) = jacobians_values(x, u, p);
+
+    // Result
     let no_state = State::splat(R::ZERO);
     let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
     let state = State {
         velocity: State {
-            velocity: d_velocity_rate_d_velocity,
-            altitude: d_velocity_rate_d_altitude,
-            gamma: d_velocity_rate_d_gamma,
-            alpha: d_velocity_rate_d_alpha,
-            chi_1: d_velocity_rate_d_chi_1,
-            chi_2: d_velocity_rate_d_chi_2,
-            chi_3: d_velocity_rate_d_chi_3,
+            velocity: velocity_by_velocity,
+            altitude: velocity_by_altitude,
+            gamma: velocity_by_gamma,
+            alpha: velocity_by_alpha,
+            chi_1: velocity_by_chi_1,
+            chi_2: velocity_by_chi_2,
+            chi_3: velocity_by_chi_3,
             ..no_state
         },
         altitude: State {
-            velocity: sin_gamma,
-            gamma: d_altitude_rate_d_gamma,
+            velocity: altitude_by_velocity,
+            gamma: altitude_by_gamma,
             ..no_state
         },
         gamma: State {
-            velocity: d_gamma_rate_d_velocity,
-            altitude: d_gamma_rate_d_altitude,
-            gamma: d_gamma_rate_d_gamma,
-            alpha: d_gamma_rate_d_alpha,
-            chi_1: d_gamma_rate_d_chi_1,
-            chi_2: d_gamma_rate_d_chi_2,
-            chi_3: d_gamma_rate_d_chi_3,
+            velocity: gamma_by_velocity,
+            altitude: gamma_by_altitude,
+            gamma: gamma_by_gamma,
+            alpha: gamma_by_alpha,
+            chi_1: gamma_by_chi_1,
+            chi_2: gamma_by_chi_2,
+            chi_3: gamma_by_chi_3,
             ..no_state
         },
         alpha: State {
-            velocity: -d_gamma_rate_d_velocity,
-            altitude: -d_gamma_rate_d_altitude,
-            gamma: -d_gamma_rate_d_gamma,
-            alpha: -d_gamma_rate_d_alpha,
-            pitch_rate: R::ONE,
-            chi_1: -d_gamma_rate_d_chi_1,
-            chi_2: -d_gamma_rate_d_chi_2,
-            chi_3: -d_gamma_rate_d_chi_3,
+            velocity: alpha_by_velocity,
+            altitude: alpha_by_altitude,
+            gamma: alpha_by_gamma,
+            alpha: alpha_by_alpha,
+            pitch_rate: alpha_by_pitch_rate,
+            chi_1: alpha_by_chi_1,
+            chi_2: alpha_by_chi_2,
+            chi_3: alpha_by_chi_3,
         },
         pitch_rate: State {
-            velocity: d_pitch_acceleration_d_velocity,
-            altitude: d_pitch_acceleration_d_altitude,
-            alpha: d_pitch_acceleration_d_alpha,
-            chi_1: d_pitch_acceleration_d_chi_1,
-            chi_2: d_pitch_acceleration_d_chi_2,
-            chi_3: d_pitch_acceleration_d_chi_3,
+            velocity: pitch_rate_by_velocity,
+            altitude: pitch_rate_by_altitude,
+            alpha: pitch_rate_by_alpha,
+            chi_1: pitch_rate_by_chi_1,
+            chi_2: pitch_rate_by_chi_2,
+            chi_3: pitch_rate_by_chi_3,
             ..no_state
         },
         chi_1: State {
-            chi_1: p.minus_chi_decay_1,
+            chi_1: chi_1_by_chi_1,
             ..no_state
         },
         chi_2: State {
-            chi_2: p.minus_chi_decay_2,
+            chi_2: chi_2_by_chi_2,
             ..no_state
         },
         chi_3: State {
-            chi_3: p.minus_chi_decay_3,
+            chi_3: chi_3_by_chi_3,
             ..no_state
         },
     };
     let input = State {
         velocity: Input {
-            phi: d_velocity_rate_d_phi,
-            delta_e: d_velocity_rate_d_delta_e,
-            delta_c: d_velocity_rate_d_delta_c,
+            phi: velocity_by_phi,
+            delta_e: velocity_by_delta_e,
+            delta_c: velocity_by_delta_c,
         },
-        altitude: no_input,
         gamma: Input {
-            phi: d_gamma_rate_d_phi,
-            delta_e: d_gamma_rate_d_delta_e,
-            delta_c: d_gamma_rate_d_delta_c,
+            phi: gamma_by_phi,
+            delta_e: gamma_by_delta_e,
+            delta_c: gamma_by_delta_c,
         },
         alpha: Input {
-            phi: -d_gamma_rate_d_phi,
-            delta_e: -d_gamma_rate_d_delta_e,
-            delta_c: -d_gamma_rate_d_delta_c,
+            phi: alpha_by_phi,
+            delta_e: alpha_by_delta_e,
+            delta_c: alpha_by_delta_c,
         },
         pitch_rate: Input {
-            phi: d_pitch_acceleration_d_phi,
-            delta_e: d_pitch_acceleration_d_delta_e,
-            delta_c: d_pitch_acceleration_d_delta_c,
+            phi: pitch_rate_by_phi,
+            delta_e: pitch_rate_by_delta_e,
+            delta_c: pitch_rate_by_delta_c,
         },
-        chi_1: no_input,
-        chi_2: no_input,
-        chi_3: no_input,
+        ..no_state_input
     };
     (state, input)
 }
@@ -463,13 +620,12 @@ pub fn jacobians<R: Real>(
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (27).
 ///
-/// 471 operations: 158 additions, 308 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 464 operations: 156 additions, 303 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift_and_jacobians<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -486,14 +642,16 @@ pub fn drift_and_jacobians<R: Real>(
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -541,8 +699,8 @@ pub fn drift_and_jacobians<R: Real>(
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
     let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_delta_c * canard_deflection
+        + p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * canard_commanded
         + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
@@ -570,18 +728,16 @@ pub fn drift_and_jacobians<R: Real>(
 
     // Forces and moment, (2)
     let thrust = reference_force * c_t; // lb/ft
-    let lift = reference_force * c_l; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
 
     // Motion, (1)
-    let thrust_cos_alpha = thrust * cos_alpha;
-    let path_force = thrust_cos_alpha - drag; // lb/ft
-    let normal_force = lift + thrust * sin_alpha; // lb/ft
+    let path_force = thrust * cos_alpha - drag; // lb/ft
+    let c_l_plus_c_t_sin_alpha = c_l + c_t * sin_alpha;
+    let force_turn = turn_factor * c_l_plus_c_t_sin_alpha; // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = normal_force * inverse_momentum
-        - apparent_gravity * inv_velocity * cos_gamma; // rad/s
+    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
     let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 
@@ -611,22 +767,18 @@ pub fn drift_and_jacobians<R: Real>(
         + reference_force * d_c_d_d_velocity; // lb*s/ft^2
     let d_path_force_d_velocity = cos_alpha * d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
-    let d_apparent_gravity_d_velocity = p.minus_two_earth_curvature * radius_ratio
-        * x.velocity; // 1/s
-    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
-    let d_inverse_momentum_d_velocity = -inverse_momentum_2 * p.m; // s^2/slug/ft
+    let inv_velocity_2 = inv_velocity * inv_velocity;
+    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
+        + p.earth_curvature * radius_ratio); // 1/ft
+    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
     let d_c_l_d_velocity = p.c_l_eta_1 * d_eta_static_1_d_velocity
         + p.c_l_eta_2 * d_eta_static_2_d_velocity
         + p.c_l_eta_3 * d_eta_static_3_d_velocity; // s/ft
-    let d_lift_d_velocity = c_l * d_reference_force_d_velocity
-        + reference_force * d_c_l_d_velocity; // lb*s/ft^2
-    let d_normal_force_d_velocity = sin_alpha * d_thrust_d_velocity + d_lift_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gamma_rate_d_velocity = cos_gamma
-        * (apparent_gravity * inv_velocity_2
-            - inv_velocity * d_apparent_gravity_d_velocity)
-        + normal_force * d_inverse_momentum_d_velocity
-        + inverse_momentum * d_normal_force_d_velocity; // rad/ft
+    let d_force_turn_d_velocity = turn_factor
+        * (sin_alpha * d_c_t_d_velocity + d_c_l_d_velocity)
+        + c_l_plus_c_t_sin_alpha * d_turn_factor_d_velocity; // rad/ft
+    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
+        - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
     let d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
         + p.c_m_eta_2 * d_eta_static_2_d_velocity
         + p.c_m_eta_3 * d_eta_static_3_d_velocity; // s/ft
@@ -661,16 +813,17 @@ pub fn drift_and_jacobians<R: Real>(
     let d_path_force_d_altitude = cos_alpha * d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
     let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m
         - sin_gamma * d_gravity_d_altitude; // 1/s^2
-    let d_apparent_gravity_d_altitude = d_gravity_d_altitude
-        - velocity_2 * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s^2
+    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
+        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
+    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
     let d_c_l_d_altitude = p.c_l_eta_1 * d_eta_static_1_d_altitude
         + p.c_l_eta_2 * d_eta_static_2_d_altitude
         + p.c_l_eta_3 * d_eta_static_3_d_altitude; // 1/ft
-    let d_lift_d_altitude = c_l * d_reference_force_d_altitude
-        + reference_force * d_c_l_d_altitude; // lb/ft^2
-    let d_normal_force_d_altitude = sin_alpha * d_thrust_d_altitude + d_lift_d_altitude; // lb/ft^2
-    let d_gamma_rate_d_altitude = inverse_momentum * d_normal_force_d_altitude
-        - cos_gamma * inv_velocity * d_apparent_gravity_d_altitude; // rad/s/ft
+    let d_force_turn_d_altitude = turn_factor
+        * (sin_alpha * d_c_t_d_altitude + d_c_l_d_altitude)
+        + c_l_plus_c_t_sin_alpha * d_turn_factor_d_altitude; // rad/s/ft
+    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
+        - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
     let d_c_m_d_altitude = p.c_m_eta_1 * d_eta_static_1_d_altitude
         + p.c_m_eta_2 * d_eta_static_2_d_altitude
         + p.c_m_eta_3 * d_eta_static_3_d_altitude; // 1/ft
@@ -683,7 +836,7 @@ pub fn drift_and_jacobians<R: Real>(
     let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -apparent_gravity * inv_velocity * d_cos_gamma_d_gamma; // 1/s
+    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -721,11 +874,8 @@ pub fn drift_and_jacobians<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_lift_d_alpha = reference_force * d_c_l_d_alpha; // lb/ft/rad
-    let d_normal_force_d_alpha = thrust_cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_force_turn_d_alpha = turn_factor
+        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -738,9 +888,7 @@ pub fn drift_and_jacobians<R: Real>(
     // Derivatives with respect to chi_1
     let d_path_force_d_chi_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_force_d_chi_1 = reference_force
-        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_1 = turn_factor * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_1 = reference_force
         * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -748,9 +896,7 @@ pub fn drift_and_jacobians<R: Real>(
     // Derivatives with respect to chi_2
     let d_path_force_d_chi_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_force_d_chi_2 = reference_force
-        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_2 = turn_factor * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_2 = reference_force
         * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -758,9 +904,7 @@ pub fn drift_and_jacobians<R: Real>(
     // Derivatives with respect to chi_3
     let d_path_force_d_chi_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_force_d_chi_3 = reference_force
-        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_3 = turn_factor * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_3 = reference_force
         * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -769,8 +913,7 @@ pub fn drift_and_jacobians<R: Real>(
     let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
     let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_normal_force_d_phi = sin_alpha * d_thrust_d_phi; // lb/ft
-    let d_gamma_rate_d_phi = inverse_momentum * d_normal_force_d_phi; // rad/s
+    let d_force_turn_d_phi = turn_factor * sin_alpha * c_t_phi; // rad/s
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
@@ -785,23 +928,22 @@ pub fn drift_and_jacobians<R: Real>(
         + p.c_t_eta_2 * d_eta_static_2_d_delta_e
         + p.c_t_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_thrust_d_delta_e = reference_force * d_c_t_d_delta_e; // lb/ft/rad
-    let two_c_d_delta_c_2_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection;
+    let d_c_d_d_delta_e_term_1 = p.two_c_d_delta_c_2 * canard_deflection + p.c_d_delta_c;
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
-        + (two_c_d_delta_c_2_canard_deflection + p.c_d_delta_c) * p.canard_gain
+        + d_c_d_d_delta_e_term_1 * p.canard_gain
         + p.c_d_eta_1 * d_eta_static_1_d_delta_e
         + p.c_d_eta_2 * d_eta_static_2_d_delta_e
         + p.c_d_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_path_force_d_delta_e = cos_alpha * d_thrust_d_delta_e - d_drag_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = d_path_force_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_delta_e = p.c_l_eta_1 * d_eta_static_1_d_delta_e
+    let d_c_l_d_delta_e = p.elevator_lift
+        + p.c_l_eta_1 * d_eta_static_1_d_delta_e
         + p.c_l_eta_2 * d_eta_static_2_d_delta_e
-        + p.c_l_eta_3 * d_eta_static_3_d_delta_e
-        + p.c_l_delta_e_plus_c_l_delta_c_canard_gain; // 1/rad
-    let d_lift_d_delta_e = reference_force * d_c_l_d_delta_e; // lb/ft/rad
-    let d_normal_force_d_delta_e = sin_alpha * d_thrust_d_delta_e + d_lift_d_delta_e; // lb/ft/rad
-    let d_gamma_rate_d_delta_e = inverse_momentum * d_normal_force_d_delta_e; // 1/s
+        + p.c_l_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
+    let d_force_turn_d_delta_e = turn_factor
+        * (sin_alpha * d_c_t_d_delta_e + d_c_l_d_delta_e); // 1/s
     let d_c_m_d_delta_e = p.c_m_eta_1 * d_eta_static_1_d_delta_e
         + p.c_m_eta_2 * d_eta_static_2_d_delta_e
         + p.c_m_eta_3 * d_eta_static_3_d_delta_e
@@ -811,29 +953,33 @@ pub fn drift_and_jacobians<R: Real>(
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to delta_c
-    let d_eta_static_1_d_delta_c = reference_force * p.c_n_1_delta_c_inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_2_d_delta_c = reference_force * p.c_n_2_delta_c_inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_3_d_delta_c = reference_force * p.c_n_3_delta_c_inv_omega_3_2; // ft^0.5*slug^0.5/rad
+    let d_generalized_force_1_d_delta_c = reference_force
+        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_static_1_d_delta_c = d_generalized_force_1_d_delta_c * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
+    let d_generalized_force_2_d_delta_c = reference_force
+        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_static_2_d_delta_c = d_generalized_force_2_d_delta_c * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
+    let d_generalized_force_3_d_delta_c = reference_force
+        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_static_3_d_delta_c = d_generalized_force_3_d_delta_c * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
     let d_c_t_d_delta_c = p.c_t_eta_1 * d_eta_static_1_d_delta_c
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
         + p.c_t_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_thrust_d_delta_c = reference_force * d_c_t_d_delta_c; // lb/ft/rad
-    let d_c_d_d_delta_c = two_c_d_delta_c_2_canard_deflection
-        + p.c_d_delta_c
+    let d_c_d_d_delta_c = d_c_d_d_delta_e_term_1 * p.canard_command
         + p.c_d_eta_1 * d_eta_static_1_d_delta_c
         + p.c_d_eta_2 * d_eta_static_2_d_delta_c
         + p.c_d_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_drag_d_delta_c = reference_force * d_c_d_d_delta_c; // lb/ft/rad
     let d_path_force_d_delta_c = cos_alpha * d_thrust_d_delta_c - d_drag_d_delta_c; // lb/ft/rad
     let d_velocity_rate_d_delta_c = d_path_force_d_delta_c * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_delta_c = p.c_l_delta_c
+    let d_c_l_d_delta_c = p.c_l_delta_c_canard_command
         + p.c_l_eta_1 * d_eta_static_1_d_delta_c
         + p.c_l_eta_2 * d_eta_static_2_d_delta_c
         + p.c_l_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
-    let d_lift_d_delta_c = reference_force * d_c_l_d_delta_c; // lb/ft/rad
-    let d_normal_force_d_delta_c = sin_alpha * d_thrust_d_delta_c + d_lift_d_delta_c; // lb/ft/rad
-    let d_gamma_rate_d_delta_c = inverse_momentum * d_normal_force_d_delta_c; // 1/s
-    let d_c_m_d_delta_c = p.c_m_delta_c
+    let d_force_turn_d_delta_c = turn_factor
+        * (sin_alpha * d_c_t_d_delta_c + d_c_l_d_delta_c); // 1/s
+    let d_c_m_d_delta_c = p.c_m_delta_c_canard_command
         + p.c_m_eta_1 * d_eta_static_1_d_delta_c
         + p.c_m_eta_2 * d_eta_static_2_d_delta_c
         + p.c_m_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
@@ -844,6 +990,7 @@ pub fn drift_and_jacobians<R: Real>(
     // Result
     let no_state = State::splat(R::ZERO);
     let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
     let drift = State {
         velocity: velocity_rate,
         altitude: altitude_rate,
@@ -874,21 +1021,21 @@ pub fn drift_and_jacobians<R: Real>(
             velocity: d_gamma_rate_d_velocity,
             altitude: d_gamma_rate_d_altitude,
             gamma: d_gamma_rate_d_gamma,
-            alpha: d_gamma_rate_d_alpha,
-            chi_1: d_gamma_rate_d_chi_1,
-            chi_2: d_gamma_rate_d_chi_2,
-            chi_3: d_gamma_rate_d_chi_3,
+            alpha: d_force_turn_d_alpha,
+            chi_1: d_force_turn_d_chi_1,
+            chi_2: d_force_turn_d_chi_2,
+            chi_3: d_force_turn_d_chi_3,
             ..no_state
         },
         alpha: State {
             velocity: -d_gamma_rate_d_velocity,
             altitude: -d_gamma_rate_d_altitude,
             gamma: -d_gamma_rate_d_gamma,
-            alpha: -d_gamma_rate_d_alpha,
+            alpha: -d_force_turn_d_alpha,
             pitch_rate: R::ONE,
-            chi_1: -d_gamma_rate_d_chi_1,
-            chi_2: -d_gamma_rate_d_chi_2,
-            chi_3: -d_gamma_rate_d_chi_3,
+            chi_1: -d_force_turn_d_chi_1,
+            chi_2: -d_force_turn_d_chi_2,
+            chi_3: -d_force_turn_d_chi_3,
         },
         pitch_rate: State {
             velocity: d_pitch_acceleration_d_velocity,
@@ -918,25 +1065,22 @@ pub fn drift_and_jacobians<R: Real>(
             delta_e: d_velocity_rate_d_delta_e,
             delta_c: d_velocity_rate_d_delta_c,
         },
-        altitude: no_input,
         gamma: Input {
-            phi: d_gamma_rate_d_phi,
-            delta_e: d_gamma_rate_d_delta_e,
-            delta_c: d_gamma_rate_d_delta_c,
+            phi: d_force_turn_d_phi,
+            delta_e: d_force_turn_d_delta_e,
+            delta_c: d_force_turn_d_delta_c,
         },
         alpha: Input {
-            phi: -d_gamma_rate_d_phi,
-            delta_e: -d_gamma_rate_d_delta_e,
-            delta_c: -d_gamma_rate_d_delta_c,
+            phi: -d_force_turn_d_phi,
+            delta_e: -d_force_turn_d_delta_e,
+            delta_c: -d_force_turn_d_delta_c,
         },
         pitch_rate: Input {
             phi: d_pitch_acceleration_d_phi,
             delta_e: d_pitch_acceleration_d_delta_e,
             delta_c: d_pitch_acceleration_d_delta_c,
         },
-        chi_1: no_input,
-        chi_2: no_input,
-        chi_3: no_input,
+        ..no_state_input
     };
     (drift, state, input)
 }

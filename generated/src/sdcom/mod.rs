@@ -5,19 +5,31 @@
 mod diffusion;
 mod drift;
 mod evaluations;
+mod hessian;
 mod jacobians;
+mod lie_derivatives;
+mod noise_derivatives;
+mod parameter_jacobian;
 mod prepared;
 mod strict_feedback;
 
 pub use diffusion::*;
 pub use drift::*;
 pub use evaluations::*;
+pub use hessian::*;
 pub use jacobians::*;
+pub use lie_derivatives::*;
+pub use noise_derivatives::*;
+pub use parameter_jacobian::*;
 pub use strict_feedback::*;
-pub use crate::dcom::{NOMINAL, PROVENANCE, Parameters, VALIDITY, Validity};
+pub use crate::dcom::{
+    Canard, Earth, ModalNoise, NOMINAL, PROVENANCE, Parameters, Reduction, SECTION5_3,
+    SECTION5_3_PROVENANCE, SETS, UNIT_SYSTEM, VALIDITY, Validity,
+};
+
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, Real};
+use ahv_core::{Bounds, NoiseClass, Real};
 
 /// State of SDCOM.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,70 +53,24 @@ pub struct State<T> {
     pub chi_3: T,
 }
 
-impl<T> State<T> {
-    /// Names of the components.
-    pub const NAMES: [&'static str; 8] = [
-        "velocity",
-        "altitude",
-        "gamma",
-        "alpha",
-        "pitch_rate",
-        "chi_1",
-        "chi_2",
-        "chi_3",
-    ];
-
-    /// Units of the components.
-    pub const UNITS: [&'static str; 8] = [
-        "ft/s",
-        "ft",
-        "rad",
-        "rad",
-        "rad/s",
-        "(ft*slug)^0.5",
-        "(ft*slug)^0.5",
-        "(ft*slug)^0.5",
-    ];
-
-    /// The components in order.
-    #[inline]
-    pub fn to_array(self) -> [T; 8] {
-        [
-            self.velocity,
-            self.altitude,
-            self.gamma,
-            self.alpha,
-            self.pitch_rate,
-            self.chi_1,
-            self.chi_2,
-            self.chi_3,
-        ]
-    }
-
-    /// A vector from its components in order.
-    #[inline]
-    pub fn from_array(values: [T; 8]) -> Self {
-        let [velocity, altitude, gamma, alpha, pitch_rate, chi_1, chi_2, chi_3] = values;
-        Self {
-            velocity,
-            altitude,
-            gamma,
-            alpha,
-            pitch_rate,
-            chi_1,
-            chi_2,
-            chi_3,
-        }
+ahv_core::impl_vector! {
+    State {
+        velocity: ["ft/s", "m/s", 0.3048],
+        altitude: ["ft", "m", 0.3048],
+        gamma: ["rad", "rad", 1.0],
+        alpha: ["rad", "rad", 1.0],
+        pitch_rate: ["rad/s", "rad/s", 1.0],
+        chi_1: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        chi_2: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        chi_3: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
     }
 }
 
-ahv_core::impl_vector!(State, 8);
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(State);
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(State, 8);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, 8, State, 8);
+ahv_core::impl_nalgebra_matrix!(State, State);
 
 /// Where the curve fits are meant to be used.
 pub const STATE_BOUNDS: State<Bounds> = State {
@@ -130,34 +96,19 @@ pub struct Input<T> {
     pub delta_c: T,
 }
 
-impl<T> Input<T> {
-    /// Names of the components.
-    pub const NAMES: [&'static str; 3] = ["phi", "delta_e", "delta_c"];
-
-    /// Units of the components.
-    pub const UNITS: [&'static str; 3] = ["1", "rad", "rad"];
-
-    /// The components in order.
-    #[inline]
-    pub fn to_array(self) -> [T; 3] {
-        [self.phi, self.delta_e, self.delta_c]
-    }
-
-    /// A vector from its components in order.
-    #[inline]
-    pub fn from_array(values: [T; 3]) -> Self {
-        let [phi, delta_e, delta_c] = values;
-        Self { phi, delta_e, delta_c }
+ahv_core::impl_vector! {
+    Input {
+        phi: ["1", "1", 1.0],
+        delta_e: ["rad", "rad", 1.0],
+        delta_c: ["rad", "rad", 1.0],
     }
 }
 
-ahv_core::impl_vector!(Input, 3);
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Input);
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Input, 3);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, 8, Input, 3);
+ahv_core::impl_nalgebra_matrix!(State, Input);
 
 /// Where the curve fits are meant to be used.
 pub const INPUT_BOUNDS: Input<Bounds> = Input {
@@ -184,64 +135,102 @@ pub struct Noise<T> {
     pub xi_3: T,
 }
 
-impl<T> Noise<T> {
-    /// Names of the components.
-    pub const NAMES: [&'static str; 6] = [
-        "w_gamma",
-        "w_alpha",
-        "w_q",
-        "xi_1",
-        "xi_2",
-        "xi_3",
-    ];
-
-    /// Units of the components.
-    pub const UNITS: [&'static str; 6] = [
-        "s^0.5",
-        "s^0.5",
-        "s^0.5",
-        "s^0.5",
-        "s^0.5",
-        "s^0.5",
-    ];
-
-    /// The components in order.
-    #[inline]
-    pub fn to_array(self) -> [T; 6] {
-        [self.w_gamma, self.w_alpha, self.w_q, self.xi_1, self.xi_2, self.xi_3]
-    }
-
-    /// A vector from its components in order.
-    #[inline]
-    pub fn from_array(values: [T; 6]) -> Self {
-        let [w_gamma, w_alpha, w_q, xi_1, xi_2, xi_3] = values;
-        Self {
-            w_gamma,
-            w_alpha,
-            w_q,
-            xi_1,
-            xi_2,
-            xi_3,
-        }
+ahv_core::impl_vector! {
+    Noise {
+        w_gamma: ["s^0.5", "s^0.5", 1.0],
+        w_alpha: ["s^0.5", "s^0.5", 1.0],
+        w_q: ["s^0.5", "s^0.5", 1.0],
+        xi_1: ["s^0.5", "s^0.5", 1.0],
+        xi_2: ["s^0.5", "s^0.5", 1.0],
+        xi_3: ["s^0.5", "s^0.5", 1.0],
     }
 }
 
-ahv_core::impl_vector!(Noise, 6);
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Noise);
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Noise, 6);
+ahv_core::impl_nalgebra_matrix!(State, Noise);
 
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, 8, Noise, 6);
-
-/// ∂f/∂x: `jacobian.velocity.alpha` is the derivative of the velocity's rate with respect to the angle of attack.
+/// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
 
 /// ∂f/∂u, by rows of the state.
 pub type InputJacobian<T> = State<Input<T>>;
 
+/// ∂f/∂p, by rows of the state.
+pub type ParameterJacobian<T> = State<Parameters<T>>;
+
+/// ∂²f/∂x², by rows of the state.
+pub type Hessian<T> = State<State<State<T>>>;
+
 /// G, by rows of the state.
 pub type Diffusion<T> = State<Noise<T>>;
+
+/// L^j b^k, by rows of the state, j and k.
+pub type NoiseDerivatives<T> = State<Noise<Noise<T>>>;
+
+/// How each column of the diffusion depends on the state.
+pub const NOISE_CLASS: Noise<NoiseClass> = Noise {
+    w_gamma: NoiseClass::General,
+    w_alpha: NoiseClass::General,
+    w_q: NoiseClass::Constant,
+    xi_1: NoiseClass::Constant,
+    xi_2: NoiseClass::Constant,
+    xi_3: NoiseClass::Constant,
+};
+
+/// Whether two columns of the diffusion commute: L^j b^k = L^k b^j.
+pub const NOISE_COMMUTES: Noise<Noise<bool>> = Noise {
+    w_gamma: Noise {
+        w_gamma: true,
+        w_alpha: false,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    w_alpha: Noise {
+        w_gamma: false,
+        w_alpha: true,
+        w_q: false,
+        xi_1: false,
+        xi_2: false,
+        xi_3: false,
+    },
+    w_q: Noise {
+        w_gamma: true,
+        w_alpha: false,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    xi_1: Noise {
+        w_gamma: true,
+        w_alpha: false,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    xi_2: Noise {
+        w_gamma: true,
+        w_alpha: false,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+    xi_3: Noise {
+        w_gamma: true,
+        w_alpha: false,
+        w_q: true,
+        xi_1: true,
+        xi_2: true,
+        xi_3: true,
+    },
+};
 
 /// SDCOM with its parameters prepared.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -42,6 +42,8 @@ pub struct Prepared<R> {
     pub c_n_1_delta_e: R,
     /// Coefficient of delta_c in C_N_1, (ft/slug)^0.5/rad.
     pub c_n_1_delta_c: R,
+    /// Share of the commanded canard deflection: 1 canard free, else 0, dimensionless.
+    pub canard_command: R,
     /// Canard deflection per elevator deflection, dimensionless.
     pub canard_gain: R,
     /// Constant part of C_N_1, (ft/slug)^0.5.
@@ -102,10 +104,12 @@ pub struct Prepared<R> {
     pub g: R,
     /// Curvature of the Earth, 0 where it is flat, 1/ft.
     pub earth_curvature: R,
+    /// `R::HALF * s * inv_m`.
+    pub half_s_over_m: R,
     /// Coefficient of alpha in C_L, 1/rad.
     pub c_l_alpha: R,
-    /// Coefficient of delta_e in C_L, 1/rad.
-    pub c_l_delta_e: R,
+    /// Lift coefficient per elevator deflection that the slaved canard leaves, 1/rad.
+    pub elevator_lift: R,
     /// Coefficient of delta_c in C_L, 1/rad.
     pub c_l_delta_c: R,
     /// Constant part of C_L, dimensionless.
@@ -162,17 +166,13 @@ pub struct Prepared<R> {
     pub two_c_t_phi_alpha_2: R,
     /// `2 * c_d_alpha_2`.
     pub two_c_d_alpha_2: R,
-    /// `R::from_f64(-2.0) * earth_curvature`.
-    pub minus_two_earth_curvature: R,
-    /// Vehicle mass, slug/ft.
-    pub m: R,
     /// `2 * c_m_alpha_2`.
     pub two_c_m_alpha_2: R,
-    /// `c_bar * c_m_eta_1 + z_t * c_t_eta_1`.
+    /// `c_bar_c_m_eta_1 + z_t_c_t_eta_1`.
     pub c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: R,
-    /// `c_bar * c_m_eta_2 + z_t * c_t_eta_2`.
+    /// `c_bar_c_m_eta_2 + z_t_c_t_eta_2`.
     pub c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: R,
-    /// `c_bar * c_m_eta_3 + z_t * c_t_eta_3`.
+    /// `c_bar_c_m_eta_3 + z_t_c_t_eta_3`.
     pub c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: R,
     /// `-chi_decay_1`.
     pub minus_chi_decay_1: R,
@@ -190,16 +190,181 @@ pub struct Prepared<R> {
     pub two_c_d_delta_e_2: R,
     /// `2 * c_d_delta_c_2`.
     pub two_c_d_delta_c_2: R,
-    /// `c_n_1_delta_c * inv_omega_1_2`.
-    pub c_n_1_delta_c_inv_omega_1_2: R,
-    /// `c_n_2_delta_c * inv_omega_2_2`.
-    pub c_n_2_delta_c_inv_omega_2_2: R,
-    /// `c_n_3_delta_c * inv_omega_3_2`.
-    pub c_n_3_delta_c_inv_omega_3_2: R,
-    /// `c_l_delta_e + c_l_delta_c * canard_gain`.
-    pub c_l_delta_e_plus_c_l_delta_c_canard_gain: R,
+    /// `c_n_1_delta_c * canard_command`.
+    pub c_n_1_delta_c_canard_command: R,
+    /// `c_n_2_delta_c * canard_command`.
+    pub c_n_2_delta_c_canard_command: R,
+    /// `c_n_3_delta_c * canard_command`.
+    pub c_n_3_delta_c_canard_command: R,
+    /// `c_l_delta_c * canard_command`.
+    pub c_l_delta_c_canard_command: R,
     /// Part of C_M that belongs to g of the pitch_rate row, 1/rad.
     pub c_m_of_g_pitch_rate: R,
+    /// `c_m_delta_c * canard_command`.
+    pub c_m_delta_c_canard_command: R,
+    /// `inv_m * inv_m`.
+    pub inv_m_2: R,
+    /// `c_t_eta_1 * inv_omega_1_2`.
+    pub c_t_eta_1_inv_omega_1_2: R,
+    /// `c_t_eta_2 * inv_omega_2_2`.
+    pub c_t_eta_2_inv_omega_2_2: R,
+    /// `c_t_eta_3 * inv_omega_3_2`.
+    pub c_t_eta_3_inv_omega_3_2: R,
+    /// `c_d_eta_1 * inv_omega_1_2`.
+    pub c_d_eta_1_inv_omega_1_2: R,
+    /// `c_d_eta_2 * inv_omega_2_2`.
+    pub c_d_eta_2_inv_omega_2_2: R,
+    /// `c_d_eta_3 * inv_omega_3_2`.
+    pub c_d_eta_3_inv_omega_3_2: R,
+    /// `R::HALF * s`.
+    pub half_s: R,
+    /// `R::HALF * c_t_eta_1 * inv_omega_1_2`.
+    pub half_c_t_eta_1_inv_omega_1_2: R,
+    /// `R::HALF * c_t_eta_2 * inv_omega_2_2`.
+    pub half_c_t_eta_2_inv_omega_2_2: R,
+    /// `R::HALF * c_t_eta_3 * inv_omega_3_2`.
+    pub half_c_t_eta_3_inv_omega_3_2: R,
+    /// `R::HALF * c_d_eta_1 * inv_omega_1_2`.
+    pub half_c_d_eta_1_inv_omega_1_2: R,
+    /// `R::HALF * c_d_eta_2 * inv_omega_2_2`.
+    pub half_c_d_eta_2_inv_omega_2_2: R,
+    /// `R::HALF * c_d_eta_3 * inv_omega_3_2`.
+    pub half_c_d_eta_3_inv_omega_3_2: R,
+    /// `inv_h_s * inv_h_s`.
+    pub inv_h_s_2: R,
+    /// `earth_curvature * inv_r_e`.
+    pub earth_curvature_over_r_e: R,
+    /// `1 / omega_1`.
+    pub inv_omega_1: R,
+    /// `2 * c_t_eta_1`.
+    pub two_c_t_eta_1: R,
+    /// `1 / omega_2`.
+    pub inv_omega_2: R,
+    /// `2 * c_t_eta_2`.
+    pub two_c_t_eta_2: R,
+    /// `1 / omega_3`.
+    pub inv_omega_3: R,
+    /// `2 * c_t_eta_3`.
+    pub two_c_t_eta_3: R,
+    /// `c_t_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
+    pub c_t_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
+    /// `c_t_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
+    pub c_t_eta_2_c_n_2_delta_c_inv_omega_2_2: R,
+    /// `c_t_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
+    pub c_t_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
+    /// `c_d_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
+    pub c_d_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
+    /// `c_d_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
+    pub c_d_eta_2_c_n_2_delta_c_inv_omega_2_2: R,
+    /// `c_d_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
+    pub c_d_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
+    /// `c_l_delta_e * inv_c_l_delta_c`.
+    pub c_l_delta_e_over_c_l_delta_c: R,
+    /// `1 / r_e`.
+    pub inv_r_e: R,
+    /// `canard_slaving * inv_c_l_delta_c`.
+    pub canard_slaving_over_c_l_delta_c: R,
+    /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    pub d_c_t_d_c_l_delta_c_constant_1: R,
+    /// `R::from_f64(-0.5) * inv_m_2`.
+    pub minus_half_inv_m_2: R,
+    /// `c_l_eta_1 * inv_omega_1_2`.
+    pub c_l_eta_1_inv_omega_1_2: R,
+    /// `c_l_eta_2 * inv_omega_2_2`.
+    pub c_l_eta_2_inv_omega_2_2: R,
+    /// `c_l_eta_3 * inv_omega_3_2`.
+    pub c_l_eta_3_inv_omega_3_2: R,
+    /// `R::HALF * inv_m`.
+    pub half_over_m: R,
+    /// `R::HALF * c_l_eta_1 * inv_omega_1_2`.
+    pub half_c_l_eta_1_inv_omega_1_2: R,
+    /// `R::HALF * c_l_eta_2 * inv_omega_2_2`.
+    pub half_c_l_eta_2_inv_omega_2_2: R,
+    /// `R::HALF * c_l_eta_3 * inv_omega_3_2`.
+    pub half_c_l_eta_3_inv_omega_3_2: R,
+    /// `c_l_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
+    pub c_l_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
+    /// `c_l_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
+    pub c_l_eta_2_c_n_2_delta_c_inv_omega_2_2: R,
+    /// `c_l_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
+    pub c_l_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
+    /// Coefficient of delta_e in C_L, 1/rad.
+    pub c_l_delta_e: R,
+    /// `1 / c_l_delta_c`.
+    pub inv_c_l_delta_c: R,
+    /// Derivative of lift coefficient per elevator deflection that the slaved canard leaves with respect to
+    /// c_l_delta_e, dimensionless.
+    pub d_elevator_lift_d_c_l_delta_e: R,
+    /// `c_m_eta_1 * inv_omega_1_2`.
+    pub c_m_eta_1_inv_omega_1_2: R,
+    /// `c_m_eta_2 * inv_omega_2_2`.
+    pub c_m_eta_2_inv_omega_2_2: R,
+    /// `c_m_eta_3 * inv_omega_3_2`.
+    pub c_m_eta_3_inv_omega_3_2: R,
+    /// `R::HALF * c_m_eta_1 * inv_omega_1_2`.
+    pub half_c_m_eta_1_inv_omega_1_2: R,
+    /// `R::HALF * c_m_eta_2 * inv_omega_2_2`.
+    pub half_c_m_eta_2_inv_omega_2_2: R,
+    /// `R::HALF * c_m_eta_3 * inv_omega_3_2`.
+    pub half_c_m_eta_3_inv_omega_3_2: R,
+    /// `inv_omega_1 * (2 * c_bar_c_m_eta_1 + 2 * z_t_c_t_eta_1)`.
+    pub d_pitching_moment_d_omega_1_constant_1: R,
+    /// `inv_omega_2 * (2 * c_bar_c_m_eta_2 + 2 * z_t_c_t_eta_2)`.
+    pub d_pitching_moment_d_omega_2_constant_1: R,
+    /// `inv_omega_3 * (2 * c_bar_c_m_eta_3 + 2 * z_t_c_t_eta_3)`.
+    pub d_pitching_moment_d_omega_3_constant_1: R,
+    /// `c_m_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
+    pub c_m_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
+    /// `c_m_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
+    pub c_m_eta_2_c_n_2_delta_c_inv_omega_2_2: R,
+    /// `c_m_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
+    pub c_m_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
+    /// `z_t * inv_i_yy`.
+    pub z_t_over_i_yy: R,
+    /// `c_bar * inv_i_yy`.
+    pub c_bar_over_i_yy: R,
+    /// `c_bar * c_m_eta_1`.
+    pub c_bar_c_m_eta_1: R,
+    /// `z_t * c_t_eta_1`.
+    pub z_t_c_t_eta_1: R,
+    /// `inv_omega_1_2 * c_bar_c_m_eta_1_plus_z_t_c_t_eta_1`.
+    pub d_pitching_moment_d_c_n_1_delta_c_constant_1: R,
+    /// `c_bar * c_m_eta_2`.
+    pub c_bar_c_m_eta_2: R,
+    /// `z_t * c_t_eta_2`.
+    pub z_t_c_t_eta_2: R,
+    /// `inv_omega_2_2 * c_bar_c_m_eta_2_plus_z_t_c_t_eta_2`.
+    pub d_pitching_moment_d_c_n_2_delta_c_constant_1: R,
+    /// `c_bar * c_m_eta_3`.
+    pub c_bar_c_m_eta_3: R,
+    /// `z_t * c_t_eta_3`.
+    pub z_t_c_t_eta_3: R,
+    /// `inv_omega_3_2 * c_bar_c_m_eta_3_plus_z_t_c_t_eta_3`.
+    pub d_pitching_moment_d_c_n_3_delta_c_constant_1: R,
+    /// Derivative of decay rate of the coloured noise of mode 1 with respect to omega_1, 1/rad.
+    pub d_chi_decay_1_d_omega_1: R,
+    /// Derivative of decay rate of the coloured noise of mode 1 with respect to zeta_1, 1/s.
+    pub d_chi_decay_1_d_zeta_1: R,
+    /// Derivative of decay rate of the coloured noise of mode 1 with respect to moment_matching, 1/s.
+    pub d_chi_decay_1_d_moment_matching: R,
+    /// Derivative of decay rate of the coloured noise of mode 2 with respect to omega_2, 1/rad.
+    pub d_chi_decay_2_d_omega_2: R,
+    /// Derivative of decay rate of the coloured noise of mode 2 with respect to zeta_2, 1/s.
+    pub d_chi_decay_2_d_zeta_2: R,
+    /// Derivative of decay rate of the coloured noise of mode 2 with respect to moment_matching, 1/s.
+    pub d_chi_decay_2_d_moment_matching: R,
+    /// Derivative of decay rate of the coloured noise of mode 3 with respect to omega_3, 1/rad.
+    pub d_chi_decay_3_d_omega_3: R,
+    /// Derivative of decay rate of the coloured noise of mode 3 with respect to zeta_3, 1/s.
+    pub d_chi_decay_3_d_zeta_3: R,
+    /// Derivative of decay rate of the coloured noise of mode 3 with respect to moment_matching, 1/s.
+    pub d_chi_decay_3_d_moment_matching: R,
+    /// `2 * earth_curvature_2`.
+    pub two_earth_curvature_2: R,
+    /// `R::from_f64(6.0) * c_t_alpha_3`.
+    pub six_c_t_alpha_3: R,
+    /// `R::from_f64(6.0) * c_t_phi_alpha_3`.
+    pub six_c_t_phi_alpha_3: R,
     /// Intensity of the white noise w_gamma, rad*s^0.5.
     pub w_gamma: R,
     /// Intensity of the white noise w_alpha, rad*s^0.5.
@@ -208,17 +373,45 @@ pub struct Prepared<R> {
     pub w_q: R,
     /// Diffusion of the coloured noise of mode 1, (ft*slug)^0.5/s^0.5.
     pub chi_diffusion_1: R,
+    /// `chi_diffusion_2 * shared_noise`.
+    pub chi_diffusion_2_shared_noise: R,
+    /// `chi_diffusion_2 * own_noise`.
+    pub chi_diffusion_2_own_noise: R,
+    /// `chi_diffusion_3 * shared_noise`.
+    pub chi_diffusion_3_shared_noise: R,
+    /// `chi_diffusion_3 * own_noise`.
+    pub chi_diffusion_3_own_noise: R,
     /// Diffusion of the coloured noise of mode 2, (ft*slug)^0.5/s^0.5.
     pub chi_diffusion_2: R,
+    /// Correlation of the noise of modes 2, 3, ... with that of mode 1, dimensionless.
+    pub shared_noise: R,
+    /// Share of its own noise in what drives a mode, dimensionless.
+    pub own_noise: R,
     /// Diffusion of the coloured noise of mode 3, (ft*slug)^0.5/s^0.5.
     pub chi_diffusion_3: R,
+    /// `w_gamma * w_gamma`.
+    pub w_gamma_2: R,
+    /// `w_alpha * w_gamma`.
+    pub w_alpha_w_gamma: R,
+    /// `w_alpha * w_alpha`.
+    pub w_alpha_2: R,
+    /// `w_alpha * w_q`.
+    pub w_alpha_w_q: R,
+    /// `w_alpha * chi_diffusion_2 * own_noise`.
+    pub w_alpha_chi_diffusion_2_own_noise: R,
+    /// `w_alpha * chi_diffusion_3 * own_noise`.
+    pub w_alpha_chi_diffusion_3_own_noise: R,
+    /// `R::HALF * w_gamma_2`.
+    pub half_w_gamma_2: R,
+    /// `R::HALF * w_alpha_2`.
+    pub half_w_alpha_2: R,
     /// `c_bar * inv_i_yy * c_m_of_g_pitch_rate`.
     pub c_bar_c_m_of_g_pitch_rate_over_i_yy: R,
 }
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 60 operations: 8 additions, 44 multiplications, 8 divisions.
+/// 232 operations: 33 additions, 187 multiplications, 11 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
@@ -227,24 +420,67 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Canard, (4)
     let inv_c_l_delta_c = p.c_l_delta_c.recip();
     let canard_gain = -p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c;
+    let d_elevator_lift_d_c_l_delta_e = R::ONE - p.canard_slaving;
+    let elevator_lift = p.c_l_delta_e * d_elevator_lift_d_c_l_delta_e; // 1/rad
 
     // Coloured noise, (23)
-    let chi_decay_1 = p.zeta_1 * p.omega_1; // 1/s
-    let chi_decay_2 = p.zeta_2 * p.omega_2; // 1/s
-    let chi_decay_3 = p.zeta_3 * p.omega_3; // 1/s
+    let inv_zeta_1 = p.zeta_1.recip();
+    let half_inv_zeta_1_minus_zeta_1 = R::HALF * inv_zeta_1 - p.zeta_1;
+    let d_chi_decay_1_d_omega_1 = p.zeta_1
+        + p.moment_matching * half_inv_zeta_1_minus_zeta_1; // 1/rad
+    let chi_decay_1 = p.omega_1 * d_chi_decay_1_d_omega_1; // 1/s
+    let inv_zeta_2 = p.zeta_2.recip();
+    let half_inv_zeta_2_minus_zeta_2 = R::HALF * inv_zeta_2 - p.zeta_2;
+    let d_chi_decay_2_d_omega_2 = p.zeta_2
+        + p.moment_matching * half_inv_zeta_2_minus_zeta_2; // 1/rad
+    let chi_decay_2 = p.omega_2 * d_chi_decay_2_d_omega_2; // 1/s
+    let inv_zeta_3 = p.zeta_3.recip();
+    let half_inv_zeta_3_minus_zeta_3 = R::HALF * inv_zeta_3 - p.zeta_3;
+    let d_chi_decay_3_d_omega_3 = p.zeta_3
+        + p.moment_matching * half_inv_zeta_3_minus_zeta_3; // 1/rad
+    let chi_decay_3 = p.omega_3 * d_chi_decay_3_d_omega_3; // 1/s
 
     // Derivatives with respect to delta_e
     let d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * canard_gain; // ft^0.5/slug^0.5/rad
     let d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * canard_gain; // ft^0.5/slug^0.5/rad
     let d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * canard_gain; // ft^0.5/slug^0.5/rad
 
+    // Derivatives with respect to parameters
+    let inv_zeta_1_2 = inv_zeta_1 * inv_zeta_1;
+    let d_chi_decay_1_d_zeta_1 = p.omega_1
+        * (R::ONE + p.moment_matching * (-R::HALF * inv_zeta_1_2 - R::ONE)); // 1/s
+    let inv_zeta_2_2 = inv_zeta_2 * inv_zeta_2;
+    let d_chi_decay_2_d_zeta_2 = p.omega_2
+        * (R::ONE + p.moment_matching * (-R::HALF * inv_zeta_2_2 - R::ONE)); // 1/s
+    let inv_zeta_3_2 = inv_zeta_3 * inv_zeta_3;
+    let d_chi_decay_3_d_zeta_3 = p.omega_3
+        * (R::ONE + p.moment_matching * (-R::HALF * inv_zeta_3_2 - R::ONE)); // 1/s
+    let d_chi_decay_1_d_moment_matching = p.omega_1 * half_inv_zeta_1_minus_zeta_1; // 1/s
+    let d_chi_decay_2_d_moment_matching = p.omega_2 * half_inv_zeta_2_minus_zeta_2; // 1/s
+    let d_chi_decay_3_d_moment_matching = p.omega_3 * half_inv_zeta_3_minus_zeta_3; // 1/s
+
     // Coloured noise, (23)
+    let chi_share_1_term_1 = R::ONE
+        - p.variance_matching
+        - p.moment_matching;
+    let chi_share_1 = p.zeta_1 * chi_share_1_term_1
+        + R::from_f64(0.7071067811865475) * p.variance_matching
+        + R::HALF * p.moment_matching * inv_zeta_1;
     let inv_omega_1 = p.omega_1.recip();
-    let chi_diffusion_1 = p.zeta_1 * p.sigma_1 * inv_omega_1; // (ft*slug)^0.5/s^0.5
+    let chi_diffusion_1 = chi_share_1 * p.sigma_1 * inv_omega_1; // (ft*slug)^0.5/s^0.5
+    let chi_share_2 = p.zeta_2 * chi_share_1_term_1
+        + R::from_f64(0.7071067811865475) * p.variance_matching
+        + R::HALF * p.moment_matching * inv_zeta_2;
     let inv_omega_2 = p.omega_2.recip();
-    let chi_diffusion_2 = p.zeta_2 * p.sigma_2 * inv_omega_2; // (ft*slug)^0.5/s^0.5
+    let chi_diffusion_2 = chi_share_2 * p.sigma_2 * inv_omega_2; // (ft*slug)^0.5/s^0.5
+    let chi_share_3 = p.zeta_3 * chi_share_1_term_1
+        + R::from_f64(0.7071067811865475) * p.variance_matching
+        + R::HALF * p.moment_matching * inv_zeta_3;
     let inv_omega_3 = p.omega_3.recip();
-    let chi_diffusion_3 = p.zeta_3 * p.sigma_3 * inv_omega_3; // (ft*slug)^0.5/s^0.5
+    let chi_diffusion_3 = chi_share_3 * p.sigma_3 * inv_omega_3; // (ft*slug)^0.5/s^0.5
+
+    // Noise of the modes, (16)
+    let own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
 
     // Strict-feedback form, (34)
     let c_m_of_g_pitch_rate = p.c_m_delta_e + p.c_m_delta_c * canard_gain; // 1/rad
@@ -254,6 +490,21 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let inv_omega_3_2 = inv_omega_3 * inv_omega_3;
     let inv_m = p.m.recip();
     let inv_i_yy = p.i_yy.recip();
+    let c_bar_c_m_eta_1 = p.c_bar * p.c_m_eta_1;
+    let z_t_c_t_eta_1 = p.z_t * p.c_t_eta_1;
+    let c_bar_c_m_eta_1_plus_z_t_c_t_eta_1 = c_bar_c_m_eta_1 + z_t_c_t_eta_1;
+    let c_bar_c_m_eta_2 = p.c_bar * p.c_m_eta_2;
+    let z_t_c_t_eta_2 = p.z_t * p.c_t_eta_2;
+    let c_bar_c_m_eta_2_plus_z_t_c_t_eta_2 = c_bar_c_m_eta_2 + z_t_c_t_eta_2;
+    let c_bar_c_m_eta_3 = p.c_bar * p.c_m_eta_3;
+    let z_t_c_t_eta_3 = p.z_t * p.c_t_eta_3;
+    let c_bar_c_m_eta_3_plus_z_t_c_t_eta_3 = c_bar_c_m_eta_3 + z_t_c_t_eta_3;
+    let inv_m_2 = inv_m * inv_m;
+    let inv_h_s_2 = inv_h_s * inv_h_s;
+    let inv_c_l_delta_c_2 = inv_c_l_delta_c * inv_c_l_delta_c;
+    let earth_curvature_2 = earth_curvature * earth_curvature;
+    let w_gamma_2 = p.w_gamma * p.w_gamma;
+    let w_alpha_2 = p.w_alpha * p.w_alpha;
 
     Prepared {
         rho_0: p.rho_0,
@@ -273,6 +524,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_n_1_alpha: p.c_n_1_alpha,
         c_n_1_delta_e: p.c_n_1_delta_e,
         c_n_1_delta_c: p.c_n_1_delta_c,
+        canard_command: p.canard_command,
         canard_gain,
         c_n_1_0: p.c_n_1_0,
         inv_omega_1_2,
@@ -303,8 +555,9 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         inv_m,
         g: p.g,
         earth_curvature,
+        half_s_over_m: R::HALF * p.s * inv_m,
         c_l_alpha: p.c_l_alpha,
-        c_l_delta_e: p.c_l_delta_e,
+        elevator_lift,
         c_l_delta_c: p.c_l_delta_c,
         c_l_0: p.c_l_0,
         c_l_eta_1: p.c_l_eta_1,
@@ -333,12 +586,10 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         three_c_t_phi_alpha_3: R::from_f64(3.0) * p.c_t_phi_alpha_3,
         two_c_t_phi_alpha_2: R::TWO * p.c_t_phi_alpha_2,
         two_c_d_alpha_2: R::TWO * p.c_d_alpha_2,
-        minus_two_earth_curvature: R::from_f64(-2.0) * earth_curvature,
-        m: p.m,
         two_c_m_alpha_2: R::TWO * p.c_m_alpha_2,
-        c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: p.c_bar * p.c_m_eta_1 + p.z_t * p.c_t_eta_1,
-        c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: p.c_bar * p.c_m_eta_2 + p.z_t * p.c_t_eta_2,
-        c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: p.c_bar * p.c_m_eta_3 + p.z_t * p.c_t_eta_3,
+        c_bar_c_m_eta_1_plus_z_t_c_t_eta_1,
+        c_bar_c_m_eta_2_plus_z_t_c_t_eta_2,
+        c_bar_c_m_eta_3_plus_z_t_c_t_eta_3,
         minus_chi_decay_1: -chi_decay_1,
         minus_chi_decay_2: -chi_decay_2,
         minus_chi_decay_3: -chi_decay_3,
@@ -347,18 +598,132 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         d_c_n_3_d_delta_e,
         two_c_d_delta_e_2: R::TWO * p.c_d_delta_e_2,
         two_c_d_delta_c_2: R::TWO * p.c_d_delta_c_2,
-        c_n_1_delta_c_inv_omega_1_2: p.c_n_1_delta_c * inv_omega_1_2,
-        c_n_2_delta_c_inv_omega_2_2: p.c_n_2_delta_c * inv_omega_2_2,
-        c_n_3_delta_c_inv_omega_3_2: p.c_n_3_delta_c * inv_omega_3_2,
-        c_l_delta_e_plus_c_l_delta_c_canard_gain: p.c_l_delta_e
-            + p.c_l_delta_c * canard_gain,
+        c_n_1_delta_c_canard_command: p.c_n_1_delta_c * p.canard_command,
+        c_n_2_delta_c_canard_command: p.c_n_2_delta_c * p.canard_command,
+        c_n_3_delta_c_canard_command: p.c_n_3_delta_c * p.canard_command,
+        c_l_delta_c_canard_command: p.c_l_delta_c * p.canard_command,
         c_m_of_g_pitch_rate,
+        c_m_delta_c_canard_command: p.c_m_delta_c * p.canard_command,
+        inv_m_2,
+        c_t_eta_1_inv_omega_1_2: p.c_t_eta_1 * inv_omega_1_2,
+        c_t_eta_2_inv_omega_2_2: p.c_t_eta_2 * inv_omega_2_2,
+        c_t_eta_3_inv_omega_3_2: p.c_t_eta_3 * inv_omega_3_2,
+        c_d_eta_1_inv_omega_1_2: p.c_d_eta_1 * inv_omega_1_2,
+        c_d_eta_2_inv_omega_2_2: p.c_d_eta_2 * inv_omega_2_2,
+        c_d_eta_3_inv_omega_3_2: p.c_d_eta_3 * inv_omega_3_2,
+        half_s: R::HALF * p.s,
+        half_c_t_eta_1_inv_omega_1_2: R::HALF * p.c_t_eta_1 * inv_omega_1_2,
+        half_c_t_eta_2_inv_omega_2_2: R::HALF * p.c_t_eta_2 * inv_omega_2_2,
+        half_c_t_eta_3_inv_omega_3_2: R::HALF * p.c_t_eta_3 * inv_omega_3_2,
+        half_c_d_eta_1_inv_omega_1_2: R::HALF * p.c_d_eta_1 * inv_omega_1_2,
+        half_c_d_eta_2_inv_omega_2_2: R::HALF * p.c_d_eta_2 * inv_omega_2_2,
+        half_c_d_eta_3_inv_omega_3_2: R::HALF * p.c_d_eta_3 * inv_omega_3_2,
+        inv_h_s_2,
+        earth_curvature_over_r_e: earth_curvature * inv_r_e,
+        inv_omega_1,
+        two_c_t_eta_1: R::TWO * p.c_t_eta_1,
+        inv_omega_2,
+        two_c_t_eta_2: R::TWO * p.c_t_eta_2,
+        inv_omega_3,
+        two_c_t_eta_3: R::TWO * p.c_t_eta_3,
+        c_t_eta_1_c_n_1_delta_c_inv_omega_1_2: p.c_t_eta_1 * p.c_n_1_delta_c
+            * inv_omega_1_2,
+        c_t_eta_2_c_n_2_delta_c_inv_omega_2_2: p.c_t_eta_2 * p.c_n_2_delta_c
+            * inv_omega_2_2,
+        c_t_eta_3_c_n_3_delta_c_inv_omega_3_2: p.c_t_eta_3 * p.c_n_3_delta_c
+            * inv_omega_3_2,
+        c_d_eta_1_c_n_1_delta_c_inv_omega_1_2: p.c_d_eta_1 * p.c_n_1_delta_c
+            * inv_omega_1_2,
+        c_d_eta_2_c_n_2_delta_c_inv_omega_2_2: p.c_d_eta_2 * p.c_n_2_delta_c
+            * inv_omega_2_2,
+        c_d_eta_3_c_n_3_delta_c_inv_omega_3_2: p.c_d_eta_3 * p.c_n_3_delta_c
+            * inv_omega_3_2,
+        c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
+        inv_r_e,
+        canard_slaving_over_c_l_delta_c: p.canard_slaving * inv_c_l_delta_c,
+        d_c_t_d_c_l_delta_c_constant_1: p.canard_slaving * p.c_l_delta_e
+            * inv_c_l_delta_c_2,
+        minus_half_inv_m_2: R::from_f64(-0.5) * inv_m_2,
+        c_l_eta_1_inv_omega_1_2: p.c_l_eta_1 * inv_omega_1_2,
+        c_l_eta_2_inv_omega_2_2: p.c_l_eta_2 * inv_omega_2_2,
+        c_l_eta_3_inv_omega_3_2: p.c_l_eta_3 * inv_omega_3_2,
+        half_over_m: R::HALF * inv_m,
+        half_c_l_eta_1_inv_omega_1_2: R::HALF * p.c_l_eta_1 * inv_omega_1_2,
+        half_c_l_eta_2_inv_omega_2_2: R::HALF * p.c_l_eta_2 * inv_omega_2_2,
+        half_c_l_eta_3_inv_omega_3_2: R::HALF * p.c_l_eta_3 * inv_omega_3_2,
+        c_l_eta_1_c_n_1_delta_c_inv_omega_1_2: p.c_l_eta_1 * p.c_n_1_delta_c
+            * inv_omega_1_2,
+        c_l_eta_2_c_n_2_delta_c_inv_omega_2_2: p.c_l_eta_2 * p.c_n_2_delta_c
+            * inv_omega_2_2,
+        c_l_eta_3_c_n_3_delta_c_inv_omega_3_2: p.c_l_eta_3 * p.c_n_3_delta_c
+            * inv_omega_3_2,
+        c_l_delta_e: p.c_l_delta_e,
+        inv_c_l_delta_c,
+        d_elevator_lift_d_c_l_delta_e,
+        c_m_eta_1_inv_omega_1_2: p.c_m_eta_1 * inv_omega_1_2,
+        c_m_eta_2_inv_omega_2_2: p.c_m_eta_2 * inv_omega_2_2,
+        c_m_eta_3_inv_omega_3_2: p.c_m_eta_3 * inv_omega_3_2,
+        half_c_m_eta_1_inv_omega_1_2: R::HALF * p.c_m_eta_1 * inv_omega_1_2,
+        half_c_m_eta_2_inv_omega_2_2: R::HALF * p.c_m_eta_2 * inv_omega_2_2,
+        half_c_m_eta_3_inv_omega_3_2: R::HALF * p.c_m_eta_3 * inv_omega_3_2,
+        d_pitching_moment_d_omega_1_constant_1: inv_omega_1
+            * (R::TWO * c_bar_c_m_eta_1 + R::TWO * z_t_c_t_eta_1),
+        d_pitching_moment_d_omega_2_constant_1: inv_omega_2
+            * (R::TWO * c_bar_c_m_eta_2 + R::TWO * z_t_c_t_eta_2),
+        d_pitching_moment_d_omega_3_constant_1: inv_omega_3
+            * (R::TWO * c_bar_c_m_eta_3 + R::TWO * z_t_c_t_eta_3),
+        c_m_eta_1_c_n_1_delta_c_inv_omega_1_2: p.c_m_eta_1 * p.c_n_1_delta_c
+            * inv_omega_1_2,
+        c_m_eta_2_c_n_2_delta_c_inv_omega_2_2: p.c_m_eta_2 * p.c_n_2_delta_c
+            * inv_omega_2_2,
+        c_m_eta_3_c_n_3_delta_c_inv_omega_3_2: p.c_m_eta_3 * p.c_n_3_delta_c
+            * inv_omega_3_2,
+        z_t_over_i_yy: p.z_t * inv_i_yy,
+        c_bar_over_i_yy: p.c_bar * inv_i_yy,
+        c_bar_c_m_eta_1,
+        z_t_c_t_eta_1,
+        d_pitching_moment_d_c_n_1_delta_c_constant_1: inv_omega_1_2
+            * c_bar_c_m_eta_1_plus_z_t_c_t_eta_1,
+        c_bar_c_m_eta_2,
+        z_t_c_t_eta_2,
+        d_pitching_moment_d_c_n_2_delta_c_constant_1: inv_omega_2_2
+            * c_bar_c_m_eta_2_plus_z_t_c_t_eta_2,
+        c_bar_c_m_eta_3,
+        z_t_c_t_eta_3,
+        d_pitching_moment_d_c_n_3_delta_c_constant_1: inv_omega_3_2
+            * c_bar_c_m_eta_3_plus_z_t_c_t_eta_3,
+        d_chi_decay_1_d_omega_1,
+        d_chi_decay_1_d_zeta_1,
+        d_chi_decay_1_d_moment_matching,
+        d_chi_decay_2_d_omega_2,
+        d_chi_decay_2_d_zeta_2,
+        d_chi_decay_2_d_moment_matching,
+        d_chi_decay_3_d_omega_3,
+        d_chi_decay_3_d_zeta_3,
+        d_chi_decay_3_d_moment_matching,
+        two_earth_curvature_2: R::TWO * earth_curvature_2,
+        six_c_t_alpha_3: R::from_f64(6.0) * p.c_t_alpha_3,
+        six_c_t_phi_alpha_3: R::from_f64(6.0) * p.c_t_phi_alpha_3,
         w_gamma: p.w_gamma,
         w_alpha: p.w_alpha,
         w_q: p.w_q,
         chi_diffusion_1,
+        chi_diffusion_2_shared_noise: chi_diffusion_2 * p.shared_noise,
+        chi_diffusion_2_own_noise: chi_diffusion_2 * own_noise,
+        chi_diffusion_3_shared_noise: chi_diffusion_3 * p.shared_noise,
+        chi_diffusion_3_own_noise: chi_diffusion_3 * own_noise,
         chi_diffusion_2,
+        shared_noise: p.shared_noise,
+        own_noise,
         chi_diffusion_3,
+        w_gamma_2,
+        w_alpha_w_gamma: p.w_alpha * p.w_gamma,
+        w_alpha_2,
+        w_alpha_w_q: p.w_alpha * p.w_q,
+        w_alpha_chi_diffusion_2_own_noise: p.w_alpha * chi_diffusion_2 * own_noise,
+        w_alpha_chi_diffusion_3_own_noise: p.w_alpha * chi_diffusion_3 * own_noise,
+        half_w_gamma_2: R::HALF * w_gamma_2,
+        half_w_alpha_2: R::HALF * w_alpha_2,
         c_bar_c_m_of_g_pitch_rate_over_i_yy: p.c_bar * inv_i_yy * c_m_of_g_pitch_rate,
     }
 }

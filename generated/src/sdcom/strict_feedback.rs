@@ -8,7 +8,7 @@ use ahv_core::Real;
 
 /// Part of the velocity rate that is left to f, eq. (28). Unit: ft/s^2.
 ///
-/// 90 operations: 32 additions, 54 multiplications, 1 division, 2 sin_cos, 1 exp.
+/// 91 operations: 32 additions, 55 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline]
 pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -28,7 +28,8 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let gravity = p.g * radius_ratio_2; // ft/s^2
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -146,9 +147,10 @@ pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     [d_velocity_rate_d_chi_1, d_velocity_rate_d_chi_2, d_velocity_rate_d_chi_3]
 }
 
-/// Total derivative of the velocity rate with respect to the angle of attack, eq. (28). Unit: ft/s^2/rad.
+/// Derivative of the velocity rate with respect to the angle of attack, at frozen inputs, eq. (28). Unit:
+/// ft/s^2/rad.
 ///
-/// 110 operations: 44 additions, 64 multiplications, 1 sin_cos, 1 exp.
+/// 111 operations: 44 additions, 65 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -162,7 +164,8 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -250,7 +253,7 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Part of f_V from the static flexible coordinates, eq. (29). Unit: ft/s^2.
 ///
-/// 56 operations: 19 additions, 35 multiplications, 1 sin_cos, 1 exp.
+/// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -264,7 +267,8 @@ pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let cos_alpha = x.alpha.cos();
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -326,14 +330,16 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -370,7 +376,7 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let f_gamma_eta = inverse_momentum * reference_force
+    let f_gamma_eta = turn_factor
         * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
     let alpha_3 = x.alpha * alpha_2;
     let c_t_of_f_gamma = p.c_t_phi_alpha_3 * u.phi * alpha_3
@@ -379,79 +385,66 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_0;
-    let c_l_of_f_gamma = p.c_l_delta_e * u.delta_e
-        + p.c_l_delta_c * canard_deflection
+    let c_l_of_f_gamma = p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * canard_commanded
         + p.c_l_0;
 
-    inverse_momentum * reference_force * (sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
-        - apparent_gravity * inv_velocity * cos_gamma + f_gamma_eta
+    turn_factor * (sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
+        - gravity_turn * cos_gamma
+        + f_gamma_eta
 }
 
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
 ///
-/// 17 operations: 3 additions, 11 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Strict-feedback form, (30)
     let c_t_of_g_gamma = p.c_t_phi_alpha * u.phi + p.c_t_alpha; // 1/rad
 
-    inverse_momentum * reference_force * (sin_alpha * c_t_of_g_gamma + p.c_l_alpha)
+    turn_factor * (sin_alpha * c_t_of_g_gamma + p.c_l_alpha)
 }
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
 ///
-/// 23 operations: 4 additions, 16 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Derivatives with respect to chi_1
-    let d_normal_force_d_chi_1 = reference_force
-        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_1 = turn_factor * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_normal_force_d_chi_2 = reference_force
-        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_2 = turn_factor * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_normal_force_d_chi_3 = reference_force
-        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_3 = turn_factor * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
 
-    [d_gamma_rate_d_chi_1, d_gamma_rate_d_chi_2, d_gamma_rate_d_chi_3]
+    [d_force_turn_d_chi_1, d_force_turn_d_chi_2, d_force_turn_d_chi_3]
 }
 
-/// Total derivative of the gamma rate with respect to the angle of attack, eq. (30). Unit: 1/s.
+/// Derivative of the gamma rate with respect to the angle of attack, at frozen inputs, eq. (30). Unit: 1/s.
 ///
-/// 110 operations: 43 additions, 64 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 108 operations: 43 additions, 63 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -465,11 +458,11 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -517,9 +510,6 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
 
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
     // Derivatives with respect to alpha
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
@@ -540,22 +530,17 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_eta_2 * d_eta_static_2_d_alpha
         + p.c_t_eta_3 * d_eta_static_3_d_alpha
         + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
     let d_c_l_d_alpha = p.c_l_alpha
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_lift_d_alpha = reference_force * d_c_l_d_alpha; // lb/ft/rad
-    let d_normal_force_d_alpha = thrust * cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
 
-    inverse_momentum * d_normal_force_d_alpha
+    turn_factor * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha)
 }
 
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
 ///
-/// 58 operations: 19 additions, 36 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 58 operations: 19 additions, 37 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -569,11 +554,11 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let sin_alpha = x.alpha.sin();
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -611,8 +596,7 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
 
-    inverse_momentum * reference_force
-        * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma)
+    turn_factor * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma)
 }
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
@@ -635,14 +619,16 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let gravity = p.g * radius_ratio_2; // ft/s^2
-    let apparent_gravity = gravity - p.earth_curvature * radius_ratio * velocity_2; // ft/s^2
+    let inv_velocity = x.velocity.recip();
+    let gravity_turn = gravity * inv_velocity
+        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -679,7 +665,7 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let f_gamma_eta = inverse_momentum * reference_force
+    let f_gamma_eta = turn_factor
         * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let alpha_3 = x.alpha * alpha_2;
@@ -692,13 +678,13 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_alpha * x.alpha
         + p.c_t_0;
     let c_l_of_f_alpha = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_delta_c * canard_deflection
+        + p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * canard_commanded
         + p.c_l_0;
 
-    apparent_gravity * inv_velocity * cos_gamma
-        - inverse_momentum * reference_force
-            * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha) + f_alpha_eta
+    gravity_turn * cos_gamma
+        - turn_factor * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha)
+        + f_alpha_eta
 }
 
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
@@ -711,44 +697,34 @@ pub fn g_alpha<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 
 /// Derivatives of the alpha rate with respect to the coloured noises chi, eq. (33).
 ///
-/// 23 operations: 4 additions, 16 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
     let sin_alpha = x.alpha.sin();
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Derivatives with respect to chi_1
-    let d_normal_force_d_chi_1 = reference_force
-        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_1 = inverse_momentum * d_normal_force_d_chi_1; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_1 = turn_factor * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_normal_force_d_chi_2 = reference_force
-        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_2 = inverse_momentum * d_normal_force_d_chi_2; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_2 = turn_factor * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_normal_force_d_chi_3 = reference_force
-        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // lb/ft^1.5/slug^0.5
-    let d_gamma_rate_d_chi_3 = inverse_momentum * d_normal_force_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let d_force_turn_d_chi_3 = turn_factor * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
 
-    [-d_gamma_rate_d_chi_1, -d_gamma_rate_d_chi_2, -d_gamma_rate_d_chi_3]
+    [-d_force_turn_d_chi_1, -d_force_turn_d_chi_2, -d_force_turn_d_chi_3]
 }
 
-/// Total derivative of the alpha rate with respect to the angle of attack, eq. (32). Unit: 1/s.
+/// Derivative of the alpha rate with respect to the angle of attack, at frozen inputs, eq. (32). Unit: 1/s.
 ///
-/// 110 operations: 43 additions, 64 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 108 operations: 43 additions, 63 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -762,11 +738,11 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -814,9 +790,6 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
 
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
     // Derivatives with respect to alpha
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
@@ -837,23 +810,19 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_eta_2 * d_eta_static_2_d_alpha
         + p.c_t_eta_3 * d_eta_static_3_d_alpha
         + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
     let d_c_l_d_alpha = p.c_l_alpha
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_lift_d_alpha = reference_force * d_c_l_d_alpha; // lb/ft/rad
-    let d_normal_force_d_alpha = thrust * cos_alpha
-        + sin_alpha * d_thrust_d_alpha
-        + d_lift_d_alpha; // lb/ft/rad
-    let d_gamma_rate_d_alpha = inverse_momentum * d_normal_force_d_alpha; // 1/s
+    let d_force_turn_d_alpha = turn_factor
+        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
 
-    -d_gamma_rate_d_alpha
+    -d_force_turn_d_alpha
 }
 
 /// Part of f_alpha from the static flexible coordinates, eq. (33). Unit: rad/s.
 ///
-/// 58 operations: 19 additions, 36 multiplications, 1 division, 1 sin_cos, 1 exp.
+/// 58 operations: 19 additions, 37 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -867,11 +836,11 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let sin_alpha = x.alpha.sin();
 
     // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
+    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -908,7 +877,7 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let f_gamma_eta = inverse_momentum * reference_force
+    let f_gamma_eta = turn_factor
         * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
 
     -f_gamma_eta
@@ -916,7 +885,7 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Part of the pitch_rate rate that is left to f, eq. (34). Unit: rad/s^2.
 ///
-/// 86 operations: 31 additions, 54 multiplications, 1 exp.
+/// 87 operations: 31 additions, 55 multiplications, 1 exp.
 #[inline]
 pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -927,7 +896,8 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -977,7 +947,7 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         * (p.z_t * c_t_of_f_eta_velocity + p.c_bar * c_m_of_f_eta_pitch_rate); // rad/s^2
     let c_m_of_f_pitch_rate = p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
-        + p.c_m_delta_c * u.delta_c
+        + p.c_m_delta_c * canard_commanded
         + p.c_m_0;
 
     p.inv_i_yy * reference_force
@@ -1034,7 +1004,8 @@ pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     ]
 }
 
-/// Total derivative of the pitch_rate rate with respect to the angle of attack, eq. (34). Unit: 1/s^2.
+/// Derivative of the pitch_rate rate with respect to the angle of attack, at frozen inputs, eq. (34). Unit:
+/// 1/s^2.
 ///
 /// 51 operations: 17 additions, 33 multiplications, 1 exp.
 #[inline]
@@ -1081,7 +1052,7 @@ pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Part of f_Q from the static flexible coordinates, eq. (35). Unit: rad/s^2.
 ///
-/// 56 operations: 19 additions, 36 multiplications, 1 exp.
+/// 57 operations: 19 additions, 37 multiplications, 1 exp.
 #[inline]
 pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
@@ -1092,7 +1063,8 @@ pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Canard, (4)
-    let canard_deflection = u.delta_c + p.canard_gain * u.delta_e; // rad
+    let canard_commanded = p.canard_command * u.delta_c; // rad
+    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;

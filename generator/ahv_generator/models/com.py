@@ -1,40 +1,126 @@
-"""COM, rigid part: thrust is a curve fit in lb/ft, not scaled with dynamic pressure."""
+"""COM: thrust is a curve fit in lb/ft, not scaled with dynamic pressure; rigid, or with two cantilever modes."""
 
 from __future__ import annotations
 
+import casadi as ca
+
+from ..derivatives import add_drift_and_derivatives, add_lie_derivatives
 from ..model import Model
-from ..schema import DELTA_E, PHI, RIGID_STATE
+from ..schema import DELTA_E, FLEXIBLE, PHI, RIGID_STATE
 from ..table import Table
+from .dcom import define_modal_acceleration, modal_load, modal_state
 from .vehicle import (
+    add_flexible_evaluations,
     add_rigid_evaluations,
     define_air,
     define_angles,
     define_force,
     define_gravity,
-    define_inverse_momentum,
+    define_momentum,
+    define_pitch_acceleration,
     define_polynomial,
     define_rigid_rates,
 )
 
+INPUT = (PHI, DELTA_E)
 
-def build_com(table: Table) -> Model:
+
+def build_com_rigid(table: Table) -> Model:
     """The rigid control-oriented model."""
     m = Model(
-        "com",
+        "com_rigid",
         "control-oriented model, rigid body",
         "(1)-(3)",
         table,
-        {"state": RIGID_STATE, "input": (PHI, DELTA_E)},
+        {"state": RIGID_STATE, "input": INPUT},
     )
+    return _finished(m, define_rigid_rates(m, _define_forces(m)))
+
+
+def build_com(table: Table) -> Model:
+    """The control-oriented model with a forebody and an aftbody clamped at the centre of mass."""
+    m = Model(
+        "com",
+        "control-oriented model, forebody and aftbody flexible",
+        "(1)-(3)",
+        table,
+        {"state": RIGID_STATE + modal_state(table.schema.modes), "input": INPUT},
+    )
+    turn = _define_forces(m)
+    variables = {name: m[name] for name in ("alpha", "delta_e")}
+    loads = {}
+    for i in range(1, table.schema.modes + 1):
+        spec = next(spec for spec in table.schema.quantities if spec.key == f"N_{i}")
+        polynomial = table.polynomials[spec.key]
+        force = define_polynomial(m, spec, f"generalized_force_{i}", spec.doc, variables, polynomial, "(2)")
+        loads[i] = _define_load(m, i, force)
+    mass = inertial_coupling(m, list(loads))
+    rates = define_rigid_rates(m, turn, _define_pitch_acceleration(m, mass, loads))
+    for i, load in loads.items():
+        rates[f"eta_{i}"] = m[f"eta_dot_{i}"]
+        rates[f"eta_dot_{i}"] = define_modal_acceleration(m, i, load - mass[0, i] * m["pitch_acceleration"])
+    add_flexible_evaluations(m, "generalized_force")
+    return _finished(m, rates)
+
+
+def inertial_coupling(m: Model, modes: list[int]) -> ca.SX:
+    """The mass matrix of Lagrange's equations in (Q, rates of the modes), from the kinetic energy.
+
+    A point of a beam clamped at the centre of mass, x ahead of it, moves across the body axis with Q x + phi_i(x) times
+    the rate of mode i (displacement and lift positive up). Integrated over the mass, with mass-normalised mode shapes
+    of beams that do not overlap, that is T below with psi_i the integral of x phi_i over the mass. As in the published
+    model, the plunging motion is that of (1): the integrals of phi_i alone, which would couple it, are left out.
+    """
+    rates = [m["pitch_rate"], *(m[f"eta_dot_{i}"] for i in modes)]
+    energy = m.parameter("i_yy") * rates[0] ** 2 / 2
+    for i, rate in zip(modes, rates[1:], strict=True):
+        energy = energy + rate**2 / 2 + m.parameter(f"psi_{i}") * rates[0] * rate
+    mass, _ = ca.hessian(energy, ca.vertcat(*rates))
+    return mass
+
+
+def _define_load(m: Model, i: int, force: ca.SX) -> ca.SX:
+    return m.graph.define(
+        f"modal_load_{i}",
+        modal_load(m, i, force),
+        symbol=f"r_{i}",
+        unit=f"{FLEXIBLE}/s^2",
+        doc=f"generalized force of mode {i} less damping and stiffness",
+        equation="(1)",
+        section="Flexible modes",
+    )
+
+
+def _define_pitch_acceleration(m: Model, mass: ca.SX, loads: dict[int, ca.SX]) -> ca.SX:
+    """Solves the coupled rows for the pitch acceleration: the modes are eliminated, as they are not coupled by mass."""
+    inertia, moment = mass[0, 0], m["pitching_moment"]
+    for i, load in loads.items():
+        inertia = inertia - mass[0, i] * mass[i, 0] / mass[i, i]
+        moment = moment - mass[0, i] / mass[i, i] * load
+    inertia = m.graph.define(
+        "effective_inertia",
+        inertia,
+        symbol=r"I_{yy}-\sum\psi_i^2",
+        unit="slug*ft",
+        doc="pitch moment of inertia that is left when the modes yield",
+        equation="(1)",
+        section="Flexible modes",
+    )
+    return define_pitch_acceleration(m, moment / inertia)
+
+
+def _define_forces(m: Model) -> ca.SX:
+    """Forces and moment of (2); the turn rate by lift and thrust."""
     define_air(m)
     define_angles(m)
     define_gravity(m)
-    define_inverse_momentum(m)
+    define_momentum(m)
     variables = {name: m[name] for name in ("phi", "alpha", "delta_e")}
-    fit = {
-        spec.key: define_polynomial(m, spec, "thrust" if spec.key == "T" else spec.key.lower(), spec.doc, variables)
-        for spec in table.schema.quantities
-    }
+    fit = {}
+    for spec in m.table.schema.quantities:
+        if not spec.key.startswith("N_"):
+            name = "thrust" if spec.key == "T" else spec.key.lower()
+            fit[spec.key] = define_polynomial(m, spec, name, spec.doc, variables, m.table.polynomials[spec.key])
     force = m["reference_force"]
     define_force(m, "lift", "L", "lb/ft", "lift", force * fit["C_L"])
     define_force(m, "drag", "D", "lb/ft", "drag", force * fit["C_D"])
@@ -46,6 +132,11 @@ def build_com(table: Table) -> Model:
         "pitching moment",
         m.parameter("z_t") * fit["T"] + force * m.parameter("c_bar") * fit["C_M"],
     )
-    m.add_drift_and_jacobians(define_rigid_rates(m), "(1)")
+    return m["turn_factor"] * fit["C_L"] + fit["T"] * m["sin_alpha"] * m["inverse_momentum"]
+
+
+def _finished(m: Model, rates: dict[str, ca.SX]) -> Model:
+    add_drift_and_derivatives(m, rates, "(1)")
     add_rigid_evaluations(m)
+    add_lie_derivatives(m, rates, "(1)")
     return m

@@ -6,9 +6,13 @@ from collections.abc import Mapping
 
 import casadi as ca
 
+from ..derivatives import add_drift_and_derivatives, add_lie_derivatives
 from ..model import Model
+from ..polynomial import Polynomial, Term
 from ..schema import DELTA_C, DELTA_E, FLEXIBLE, PHI, RIGID_STATE, VariableSpec
+from ..stochastic import add_diffusion
 from ..table import Table
+from .noise import PERTURBATIONS, RIGID_INCREMENTS, modal_gains, modal_increments, perturbation_gains
 from .vehicle import (
     add_flexible_evaluations,
     add_rigid_evaluations,
@@ -16,7 +20,7 @@ from .vehicle import (
     define_angles,
     define_force,
     define_gravity,
-    define_inverse_momentum,
+    define_momentum,
     define_polynomial,
     define_rigid_rates,
 )
@@ -44,7 +48,7 @@ def modal_state(modes: int) -> tuple[VariableSpec, ...]:
 
 
 def define_canard(m: Model) -> ca.SX:
-    """The canard deflection that the airframe sees: commanded, and slaved to the elevator by (4)."""
+    """The canard deflection that the airframe sees: commanded where the canard is free, slaved by (4)."""
     gain = m.graph.define(
         "canard_gain",
         -m.parameter("canard_slaving") * m.parameter("c_l_delta_e") / m.parameter("c_l_delta_c"),
@@ -54,9 +58,27 @@ def define_canard(m: Model) -> ca.SX:
         equation="(4)",
         section="Canard",
     )
+    commanded = m.graph.define(
+        "canard_commanded",
+        m.parameter("canard_command") * m["delta_c"],
+        symbol=r"\delta_{c,0}",
+        unit="rad",
+        doc="canard deflection as commanded",
+        equation="(4)",
+        section="Canard",
+    )
+    m.graph.define(
+        "elevator_lift",
+        m.parameter("c_l_delta_e") * (1 - m.parameter("canard_slaving")),
+        symbol=r"C_L^{\delta_e}(1-s_c)",
+        unit="1/rad",
+        doc="lift coefficient per elevator deflection that the slaved canard leaves",
+        equation="(4)",
+        section="Canard",
+    )
     return m.graph.define(
         "canard_deflection",
-        m["delta_c"] + gain * m["delta_e"],
+        commanded + gain * m["delta_e"],
         symbol=r"\delta_c",
         unit="rad",
         doc="canard deflection, commanded and slaved",
@@ -68,7 +90,10 @@ def define_canard(m: Model) -> ca.SX:
 def define_generalized_forces(m: Model, variables: Mapping[str, ca.SX]) -> list[ca.SX]:
     """N_i of (2) and (6)."""
     specs = [spec for spec in m.table.schema.quantities if spec.key.startswith("C_N_")]
-    coefficients = [define_polynomial(m, spec, spec.key.lower(), spec.doc, variables) for spec in specs]
+    polynomials = m.table.polynomials
+    coefficients = [
+        define_polynomial(m, spec, spec.key.lower(), spec.doc, variables, polynomials[spec.key]) for spec in specs
+    ]
     return [
         m.graph.define(
             f"generalized_force_{mode}",
@@ -83,18 +108,41 @@ def define_generalized_forces(m: Model, variables: Mapping[str, ca.SX]) -> list[
     ]
 
 
-def define_forces(m: Model, variables: Mapping[str, ca.SX]) -> None:
-    """Thrust, lift, drag and pitching moment of (2) from the curve fits (3)."""
+def slaved_fits(m: Model) -> dict[str, Polynomial]:
+    """The curve fits of the rigid body, law (4) worked out where it makes the elevator's lift vanish.
+
+    The canard lifts with C_L^delta_c delta_c, of which law (4) makes the elevator's lift, negative: in the two linear
+    terms they cancel exactly, not to rounding.
+    """
+
+    def lifted(term: Term) -> Term:
+        if term.powers == (("delta_c", 1),):
+            return Term(term.coefficient, (("canard_commanded", 1),), term.scale)
+        return Term("elevator_lift", term.powers) if term.powers == (("delta_e", 1),) else term
+
+    fits = {key: p for key, p in m.table.polynomials.items() if not key.startswith("C_N_")}
+    return fits | {"C_L": Polynomial(tuple(lifted(term) for term in fits["C_L"].terms))}
+
+
+def define_forces(m: Model, variables: Mapping[str, ca.SX]) -> ca.SX:
+    """Thrust, lift, drag and pitching moment of (2) from the curve fits (3); the turn rate by lift and thrust."""
+    fits = slaved_fits(m)
     fit = {
-        spec.key: define_polynomial(m, spec, spec.key.lower(), spec.doc, variables)
+        spec.key: define_polynomial(m, spec, spec.key.lower(), spec.doc, variables, fits[spec.key])
         for spec in m.table.schema.quantities
-        if not spec.key.startswith("C_N_")
+        if spec.key in fits
     }
     force = m["reference_force"]
     thrust = define_force(m, "thrust", "T", "lb/ft", "thrust", force * fit["C_T"])
     define_force(m, "lift", "L", "lb/ft", "lift", force * fit["C_L"])
     define_force(m, "drag", "D", "lb/ft", "drag", force * fit["C_D"])
     define_force(m, "pitching_moment", "M", "lb", "pitching moment", total_moment(m, thrust, force * fit["C_M"]))
+    return total_turn(m, fit["C_L"], fit["C_T"])
+
+
+def total_turn(m: Model, c_l: ca.SX, c_t: ca.SX) -> ca.SX:
+    """(L + T sin(alpha))/(m V) of (1)."""
+    return m["turn_factor"] * (c_l + c_t * m["sin_alpha"])
 
 
 def total_moment(m: Model, thrust: ca.SX, force_times_c_m: ca.SX) -> ca.SX:
@@ -107,37 +155,63 @@ def control_variables(m: Model) -> dict[str, ca.SX]:
     return {name: m[name] for name in ("phi", "alpha", "delta_e")} | {"delta_c": m["canard_deflection"]}
 
 
+def define_surroundings(m: Model) -> None:
+    """What stands before the curve fits: air, angles, gravity, momentum, canard."""
+    define_air(m)
+    define_angles(m)
+    define_gravity(m)
+    define_momentum(m)
+    define_canard(m)
+
+
 def build_dcom(table: Table) -> Model:
-    """The decoupled control-oriented model."""
+    """The decoupled control-oriented model, with the noise that drives its reduction."""
     modes = range(1, table.schema.modes + 1)
     m = Model(
         "dcom",
         "decoupled control-oriented model",
         "(1)-(4)",
         table,
-        {"state": RIGID_STATE + modal_state(table.schema.modes), "input": INPUT},
+        {
+            "state": RIGID_STATE + modal_state(table.schema.modes),
+            "input": INPUT,
+            "noise": RIGID_INCREMENTS + modal_increments(table.schema.modes),
+        },
     )
-    define_air(m)
-    define_angles(m)
-    define_gravity(m)
-    define_inverse_momentum(m)
-    define_canard(m)
+    define_surroundings(m)
     variables = control_variables(m)
-    define_forces(m, variables | {f"eta_{i}": m[f"eta_{i}"] for i in modes})
+    turn = define_forces(m, variables | {f"eta_{i}": m[f"eta_{i}"] for i in modes})
     forces = define_generalized_forces(m, variables)
-    rates = define_rigid_rates(m)
+    rates = define_rigid_rates(m, turn)
     for i, force in zip(modes, forces, strict=True):
         rates[f"eta_{i}"] = m[f"eta_dot_{i}"]
-        rates[f"eta_dot_{i}"] = _define_modal_acceleration(m, i, force)
-    m.add_drift_and_jacobians(rates, "(1)")
+        rates[f"eta_dot_{i}"] = define_modal_acceleration(m, i, modal_load(m, i, force))
+    add_drift_and_derivatives(m, rates, "(1)")
     add_rigid_evaluations(m)
     add_flexible_evaluations(m, "c_n", "generalized_force")
+    gains = perturbation_gains(m, rates)
+    gains |= modal_gains(m, {f"eta_dot_{i}": m.parameter(f"sigma_{i}") for i in modes})
+    add_diffusion(m, rates, gains, PERTURBATIONS + "; the modes are driven as in (17)", "(17)")
+    add_lie_derivatives(m, rates, "(1)")
     return m
 
 
-def _define_modal_acceleration(m: Model, i: int, force: ca.SX) -> ca.SX:
+def define_modal_acceleration(m: Model, i: int, expr: ca.SX) -> ca.SX:
+    """The second derivative of a flexible coordinate by its name."""
+    return m.graph.define(
+        f"eta_acceleration_{i}",
+        expr,
+        symbol=rf"\ddot\eta_{i}",
+        unit=f"{FLEXIBLE}/s^2",
+        doc=f"acceleration of the flexible generalized coordinate of mode {i}",
+        equation="(1)",
+        section="Flexible modes",
+    )
+
+
+def modal_load(m: Model, i: int, force: ca.SX) -> ca.SX:
+    """N_i less damping and stiffness, (1)."""
     omega, zeta = m.parameter(f"omega_{i}"), m.parameter(f"zeta_{i}")
-    section = "Flexible modes"
     damping = m.graph.define(
         f"damping_{i}",
         2 * zeta * omega,
@@ -145,7 +219,7 @@ def _define_modal_acceleration(m: Model, i: int, force: ca.SX) -> ca.SX:
         unit="rad/s",
         doc=f"damping of mode {i}",
         equation="(1)",
-        section=section,
+        section="Flexible modes",
     )
     stiffness = m.graph.define(
         f"stiffness_{i}",
@@ -154,14 +228,6 @@ def _define_modal_acceleration(m: Model, i: int, force: ca.SX) -> ca.SX:
         unit="rad^2/s^2",
         doc=f"stiffness of mode {i}",
         equation="(1)",
-        section=section,
+        section="Flexible modes",
     )
-    return m.graph.define(
-        f"eta_acceleration_{i}",
-        force - damping * m[f"eta_dot_{i}"] - stiffness * m[f"eta_{i}"],
-        symbol=rf"\ddot\eta_{i}",
-        unit=f"{FLEXIBLE}/s^2",
-        doc=f"acceleration of the flexible generalized coordinate of mode {i}",
-        equation="(1)",
-        section=section,
-    )
+    return force - damping * m[f"eta_dot_{i}"] - stiffness * m[f"eta_{i}"]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ..model import Model
+from ..polynomial import Polynomial
 from ..schema import QuantitySpec
 
 
@@ -86,24 +87,33 @@ def define_gravity(m: Model) -> None:
         section="Gravity",
     )
     define(
-        "apparent_gravity",
-        gravity - curvature * ratio * m["velocity"] ** 2,
-        symbol="g(h)-V^2/r",
-        unit="ft/s^2",
-        doc="gravity less the centripetal acceleration of flight along the curvature",
+        "gravity_turn",
+        gravity / m["velocity"] - curvature * ratio * m["velocity"],
+        symbol="g(h)/V-V/r",
+        unit="1/s",
+        doc="turn rate of a level path by gravity, less that of the Earth's curvature",
         equation="(1)",
         section="Gravity",
     )
 
 
-def define_inverse_momentum(m: Model) -> None:
-    """1/(m V) of (1)."""
+def define_momentum(m: Model) -> None:
+    """1/(m V) of (1), and the dynamic pressure times S over it; the velocity that both have cancels."""
     m.graph.define(
         "inverse_momentum",
         1 / (m.parameter("m") * m["velocity"]),
         symbol="1/(mV)",
         unit="s/slug",
         doc="reciprocal of mass times velocity",
+        equation="(1)",
+        section="Motion",
+    )
+    m.graph.define(
+        "turn_factor",
+        0.5 * m["density"] * m["velocity"] * m.parameter("s") / m.parameter("m"),
+        symbol=r"\bar q S/(mV)",
+        unit="1/s",
+        doc="turn rate per force coefficient across the flight path",
         equation="(1)",
         section="Motion",
     )
@@ -125,16 +135,22 @@ def define_angles(m: Model) -> None:
 
 
 def coefficient_symbols(m: Model, variables: Mapping[str, ca.SX]) -> dict[str, ca.SX]:
-    """What a polynomial is written in: the coefficients of the table and the given variables."""
-    return {p.name: m.parameter(p.name) for p in m.table.parameters} | dict(variables)
+    """What a polynomial is written in: the coefficients of the table, quantities by name and the given variables."""
+    quantities = {name: m[name] for name in m.graph.quantities}
+    return quantities | {p.name: m.parameter(p.name) for p in m.table.parameters} | dict(variables)
 
 
 def define_polynomial(
-    m: Model, spec: QuantitySpec, name: str, doc: str, variables: Mapping[str, ca.SX], equation: str = "(3)"
+    m: Model,
+    spec: QuantitySpec,
+    name: str,
+    doc: str,
+    variables: Mapping[str, ca.SX],
+    polynomial: Polynomial,
+    equation: str = "(3)",
 ) -> ca.SX:
     """A curve-fitted quantity; what depends on the fuel equivalence ratio is factored as in (3)."""
     symbols = coefficient_symbols(m, variables)
-    polynomial = m.table.polynomials[spec.key]
     section = "Curve fits"
     slope = polynomial.linear_part("phi")
     expr = polynomial.without_linear("phi").expression(symbols)
@@ -160,52 +176,70 @@ def define_force(m: Model, name: str, symbol: str, unit: str, doc: str, expr: ca
 
 @dataclass(frozen=True)
 class Resultants:
-    """What acts on the rigid body: forces along and across the flight path, and the pitching moment."""
+    """What acts on the rigid body: force along the flight path, the turn rate by lift and thrust, and the moment."""
 
     path_force: ca.SX
-    normal_force: ca.SX
+    turn: ca.SX
     moment: ca.SX
-
-
-def resultants(m: Model, thrust: ca.SX, lift: ca.SX, drag: ca.SX, moment: ca.SX) -> Resultants:
-    """T cos(alpha) - D and L + T sin(alpha) of (1), and M."""
-    return Resultants(thrust * m["cos_alpha"] - drag, lift + thrust * m["sin_alpha"], moment)
 
 
 def rigid_rates(m: Model, acting: Resultants) -> dict[str, ca.SX]:
     """Right-hand sides of the rigid rows of (1), but for the angle of attack, by state."""
-    mass, velocity = m.parameter("m"), m["velocity"]
     return {
-        "velocity": acting.path_force / mass - m["gravity"] * m["sin_gamma"],
-        "altitude": velocity * m["sin_gamma"],
-        "gamma": acting.normal_force * m["inverse_momentum"] - m["apparent_gravity"] / velocity * m["cos_gamma"],
+        "velocity": acting.path_force / m.parameter("m") - m["gravity"] * m["sin_gamma"],
+        "altitude": m["velocity"] * m["sin_gamma"],
+        "gamma": acting.turn - m["gravity_turn"] * m["cos_gamma"],
         "pitch_rate": acting.moment / m.parameter("i_yy"),
     }
 
 
-def define_rigid_rates(m: Model) -> dict[str, ca.SX]:
-    """The rigid rows of (1) as named quantities, by state."""
-    acting = resultants(m, m["thrust"], m["lift"], m["drag"], m["pitching_moment"])
-    forces = (
-        ("path_force", r"T\cos\alpha-D", "force along the flight path", acting.path_force),
-        ("normal_force", r"L+T\sin\alpha", "force across the flight path", acting.normal_force),
+def define_pitch_acceleration(m: Model, expr: ca.SX) -> ca.SX:
+    """The last rigid row of (1)."""
+    return m.graph.define(
+        "pitch_acceleration",
+        expr,
+        symbol=r"\dot Q",
+        unit="rad/s^2",
+        doc="pitch acceleration",
+        equation="(1)",
+        section="Motion",
     )
-    named = [
-        m.graph.define(name, expr, symbol=symbol, unit="lb/ft", doc=doc, equation="(1)", section="Motion")
-        for name, symbol, doc, expr in forces
-    ]
-    exprs = rigid_rates(m, Resultants(named[0], named[1], acting.moment))
+
+
+def define_rigid_rates(m: Model, turn: ca.SX, pitch_acceleration: ca.SX | None = None) -> dict[str, ca.SX]:
+    """The rigid rows of (1) as named quantities, by state; the pitch acceleration is M/I_yy unless it is given."""
+    path_force = m.graph.define(
+        "path_force",
+        m["thrust"] * m["cos_alpha"] - m["drag"],
+        symbol=r"T\cos\alpha-D",
+        unit="lb/ft",
+        doc="force along the flight path",
+        equation="(1)",
+        section="Motion",
+    )
+    turn = m.graph.define(
+        "force_turn",
+        turn,
+        symbol=r"(L+T\sin\alpha)/(mV)",
+        unit="rad/s",
+        doc="turn rate by the force across the flight path",
+        equation="(1)",
+        section="Motion",
+    )
+    exprs = rigid_rates(m, Resultants(path_force, turn, m["pitching_moment"]))
     rows = {
         "velocity": ("velocity_rate", r"\dot V", "ft/s^2", "rate of the velocity"),
         "altitude": ("altitude_rate", r"\dot h", "ft/s", "rate of the altitude"),
         "gamma": ("gamma_rate", r"\dot\gamma", "rad/s", "rate of the flight-path angle"),
-        "pitch_rate": ("pitch_acceleration", r"\dot Q", "rad/s^2", "pitch acceleration"),
     }
     rates = {}
     for row, (name, symbol, unit, doc) in rows.items():
         rates[row] = m.graph.define(
             name, exprs[row], symbol=symbol, unit=unit, doc=doc, equation="(1)", section="Motion"
         )
+    if pitch_acceleration is None:
+        pitch_acceleration = define_pitch_acceleration(m, exprs["pitch_rate"])
+    rates["pitch_rate"] = pitch_acceleration
     rates["alpha"] = m.graph.define(
         "alpha_rate",
         m["pitch_rate"] - rates["gamma"],

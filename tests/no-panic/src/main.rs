@@ -1,4 +1,4 @@
-//! Calls every generated function and both steppers, and links only while no panic can be reached.
+//! Calls every generated function (see build.rs) and both steppers, and links only while no panic can be reached.
 //!
 //! The panic handler calls a function that nobody defines. Where the linker finds the handler
 //! reachable it stops with `undefined symbol: a_panic_can_be_reached`. Values pass through
@@ -11,7 +11,7 @@ use core::panic::PanicInfo;
 
 use ahv_core::{Bounds, DifferentiableModel, Real, StochasticModel, Vector, first_outside};
 use ahv_integrate::{EulerMaruyama, Rk4};
-use ahv_models::{com, dcom, sdcom};
+use ahv_models::{com, com_rigid, dcom, flexible_mode, sdcom, sdcom_gust, sdcom_printed};
 
 unsafe extern "C" {
     fn a_panic_can_be_reached() -> !;
@@ -33,146 +33,7 @@ pub extern "C" fn _start() -> ! {
     loop {}
 }
 
-fn every_model<R: Real>() {
-    com_functions::<R>();
-    dcom_functions::<R>();
-    sdcom_functions::<R>();
-    com_evaluations::<R>();
-    dcom_evaluations::<R>();
-    sdcom_evaluations::<R>();
-}
-
-fn com_functions<R: Real>() {
-    let nominal = com::NOMINAL.map_into(R::from_f64);
-    let (x, u, p) = (unknown(), unknown(), com::prepare(&black_box(nominal)));
-    black_box(com::drift::<R>(&x, &u, &p));
-    black_box(com::jacobians::<R>(&x, &u, &p));
-    black_box(com::drift_and_jacobians::<R>(&x, &u, &p));
-    let model = black_box(com::Model::new(&nominal));
-    differentiable(&model, &com::STATE_BOUNDS, &com::INPUT_BOUNDS);
-    vector::<R, com::Parameters<R>>();
-}
-
-fn dcom_functions<R: Real>() {
-    let nominal = dcom::NOMINAL.map_into(R::from_f64);
-    let (x, u, p) = (unknown(), unknown(), dcom::prepare(&black_box(nominal)));
-    black_box(dcom::drift::<R>(&x, &u, &p));
-    black_box(dcom::jacobians::<R>(&x, &u, &p));
-    black_box(dcom::drift_and_jacobians::<R>(&x, &u, &p));
-    let model = black_box(dcom::Model::new(&nominal));
-    differentiable(&model, &dcom::STATE_BOUNDS, &dcom::INPUT_BOUNDS);
-    vector::<R, dcom::Parameters<R>>();
-}
-
-fn sdcom_functions<R: Real>() {
-    let nominal = sdcom::NOMINAL.map_into(R::from_f64);
-    let (x, u, p) = (unknown(), unknown(), sdcom::prepare(&black_box(nominal)));
-    black_box(sdcom::drift::<R>(&x, &u, &p));
-    black_box(sdcom::jacobians::<R>(&x, &u, &p));
-    black_box(sdcom::drift_and_jacobians::<R>(&x, &u, &p));
-    black_box(sdcom::diffusion::<R>(&x, &u, &p));
-    black_box(sdcom::drift_and_diffusion::<R>(&x, &u, &p));
-    black_box(sdcom::noise_increment::<R>(&x, &u, &p, &unknown()));
-    let model = black_box(sdcom::Model::new(&nominal));
-    differentiable(&model, &sdcom::STATE_BOUNDS, &sdcom::INPUT_BOUNDS);
-    stochastic(&model);
-}
-
-/// Calls functions of state, input and prepared parameters.
-macro_rules! call {
-    ($x:expr, $u:expr, $p:expr; $($function:path),+ $(,)?) => {
-        $(black_box($function($x, $u, $p));)+
-    };
-}
-
-fn com_evaluations<R: Real>() {
-    let (x, u) = (unknown(), unknown());
-    let p = com::prepare(&com::NOMINAL.map_into(R::from_f64));
-    call!(&x, &u, &p;
-        com::density,
-        com::dynamic_pressure,
-        com::c_l,
-        com::c_d,
-        com::c_m,
-        com::thrust,
-        com::lift,
-        com::drag,
-        com::pitching_moment,
-    );
-}
-
-fn dcom_evaluations<R: Real>() {
-    let (x, u) = (unknown(), unknown());
-    let p = dcom::prepare(&dcom::NOMINAL.map_into(R::from_f64));
-    call!(&x, &u, &p;
-        dcom::density,
-        dcom::dynamic_pressure,
-        dcom::c_l,
-        dcom::c_d,
-        dcom::c_m,
-        dcom::c_t,
-        dcom::thrust,
-        dcom::lift,
-        dcom::drag,
-        dcom::pitching_moment,
-        dcom::c_n_1,
-        dcom::c_n_2,
-        dcom::c_n_3,
-        dcom::generalized_force_1,
-        dcom::generalized_force_2,
-        dcom::generalized_force_3,
-    );
-}
-
-fn sdcom_evaluations<R: Real>() {
-    let (x, u) = (unknown(), unknown());
-    let p = sdcom::prepare(&sdcom::NOMINAL.map_into(R::from_f64));
-    call!(&x, &u, &p;
-        sdcom::density,
-        sdcom::dynamic_pressure,
-        sdcom::c_l,
-        sdcom::c_d,
-        sdcom::c_m,
-        sdcom::c_t,
-        sdcom::thrust,
-        sdcom::lift,
-        sdcom::drag,
-        sdcom::pitching_moment,
-        sdcom::c_n_1,
-        sdcom::c_n_2,
-        sdcom::c_n_3,
-        sdcom::generalized_force_1,
-        sdcom::generalized_force_2,
-        sdcom::generalized_force_3,
-        sdcom::eta_static_1,
-        sdcom::eta_static_2,
-        sdcom::eta_static_3,
-        sdcom::eta_1,
-        sdcom::eta_2,
-        sdcom::eta_3,
-        sdcom::f_V,
-        sdcom::g_V,
-        sdcom::h_V,
-        sdcom::H_V,
-        sdcom::f_V_eta,
-        sdcom::f_gamma,
-        sdcom::g_gamma,
-        sdcom::h_gamma,
-        sdcom::H_gamma,
-        sdcom::f_gamma_eta,
-        sdcom::f_alpha,
-        sdcom::g_alpha,
-        sdcom::h_alpha,
-        sdcom::H_alpha,
-        sdcom::f_alpha_eta,
-        sdcom::f_Q,
-        sdcom::g_Q,
-        sdcom::h_Q,
-        sdcom::H_Q,
-        sdcom::f_Q_eta,
-        sdcom::g_Q_total,
-    );
-}
+include!(concat!(env!("OUT_DIR"), "/calls.rs"));
 
 fn differentiable<M, X, U>(model: &M, states: &X, inputs: &U)
 where

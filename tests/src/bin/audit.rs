@@ -4,6 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use ahv_tests::evaluate::{MODELS, evaluate};
 use ahv_tests::measure::{Worst, compare};
@@ -33,9 +35,12 @@ struct Arguments {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let mut all_within = true;
-    for model in MODELS {
-        match audit(&arguments, model) {
-            Ok(within) => all_within &= within,
+    for report in audit_all(&arguments) {
+        match report {
+            Ok((text, within)) => {
+                print!("{text}");
+                all_within &= within;
+            }
             Err(message) => {
                 eprintln!("error: {message}");
                 return ExitCode::from(2);
@@ -51,21 +56,50 @@ fn main() -> ExitCode {
     }
 }
 
-/// Audits one model; whether all its errors are within the bar.
-fn audit(arguments: &Arguments, model: &str) -> Result<bool, String> {
+/// What a model's audit says, and whether all its errors are within the bar.
+type Report = Result<(String, bool), String>;
+
+/// Audits the models, as many at a time as there are processors; reports in the order of the models.
+fn audit_all(arguments: &Arguments) -> Vec<Report> {
+    let next = AtomicUsize::new(0);
+    let reports = Mutex::new(BTreeMap::new());
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..workers.min(MODELS.len()) {
+            scope.spawn(|| {
+                while let Some((model, table)) = MODELS.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let report = audit(arguments, model, table);
+                    let mut reports = reports.lock().unwrap_or_else(PoisonError::into_inner);
+                    reports.insert(*model, report);
+                }
+            });
+        }
+    });
+    let mut reports = reports.into_inner().unwrap_or_else(PoisonError::into_inner);
+    MODELS
+        .iter()
+        .filter_map(|(model, _)| reports.remove(model))
+        .collect()
+}
+
+/// Audits one model.
+fn audit(arguments: &Arguments, model: &str, table: &str) -> Report {
     let folder = tempfile::tempdir().map_err(|e| format!("no temporary folder: {e}"))?;
     let file = folder.path().join("vectors.txt");
-    draw(arguments, model, &file)?;
+    draw(arguments, model, table, &file)?;
     let mut worst: BTreeMap<String, Worst> = BTreeMap::new();
     for point in read_oracle(&file) {
         compare(&point, &evaluate::<f64>(model, &point.inputs), &mut worst);
     }
-    println!(
-        "{model}, {} points, error in units of 2^-52 K:",
+    let mut text = format!(
+        "{model}, {} points, error in units of 2^-52 K:\n",
         arguments.points
     );
     for (function, found) in &worst {
-        println!("  {function:<16} {:>6.2}  at {}", found.error, found.label);
+        text += &format!(
+            "  {function:<30} {:>6.2}  at {}\n",
+            found.error, found.label
+        );
     }
     if let Some(found) = worst.values().max_by(|a, b| a.error.total_cmp(&b.error)) {
         let point: Vec<String> = found
@@ -73,13 +107,12 @@ fn audit(arguments: &Arguments, model: &str) -> Result<bool, String> {
             .iter()
             .map(|(name, value)| format!("{name}={value}"))
             .collect();
-        println!("  worst point: {}", point.join(" "));
+        text += &format!("  worst point: {}\n", point.join(" "));
     }
-    Ok(worst.values().all(|found| found.error <= BAR))
+    Ok((text, worst.values().all(|found| found.error <= BAR)))
 }
 
-fn draw(arguments: &Arguments, model: &str, file: &Path) -> Result<(), String> {
-    let table = if model == "com" { "com" } else { "dcom" };
+fn draw(arguments: &Arguments, model: &str, table: &str, file: &Path) -> Result<(), String> {
     let generator = arguments.root.join("generator");
     let output = Command::new(&arguments.python)
         .args(["-m", "ahv_oracle", "vectors", "--model", model])

@@ -1,12 +1,21 @@
 //! The chain as a user of the tables meets it: a changed value, a new monomial.
 
-use crate::common::{Scratch, repository};
+use crate::common::{Scratch, copy, repository};
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 const DCOM: &str = "generator/tables/dcom.toml";
 
-/// One value: one line of Rust, one line of provenance, and git says so.
+/// A changed number, with what git has to say of `generated/src`: one line of one file.
+const CHANGES: [(&str, &str, &str, &str); 4] = [
+    ("a value", "value = 4.6773,", "value = 4.7773,", "c_l_alpha: 4.7773,"),
+    ("a value of a set", "value = 191.3,", "value = 191.4,", "m: 191.4,"),
+    ("a choice", "canard = \"none\"", "canard = \"slaved\"", "canard_slaving: 1.0,"),
+    ("another choice", "reduction = \"printed\"", "reduction = \"moment\"", "moment_matching: 1.0,"),
+];
+
+/// One value: one line of Rust, one line of provenance, and git says so. The documentation shows values, too.
 #[test]
 fn a_changed_value_is_one_line_for_git() {
     let scratch = Scratch::new();
@@ -19,19 +28,76 @@ fn a_changed_value_is_one_line_for_git() {
         String::from_utf8(output.stdout).expect("text")
     };
     git(&["init", "--quiet"]);
-    git(&["add", "--all"]);
-    git(&["commit", "--quiet", "--message", "before"]);
-    scratch.edit(DCOM, "value = 4.6773,", "value = 4.7773,");
+    for (name, from, to, line) in CHANGES {
+        git(&["add", "--all"]);
+        git(&["commit", "--quiet", "--message", name]);
+        scratch.edit(DCOM, from, to);
+        assert_eq!(scratch.generate(&[]).code, 0, "{name}");
+        git(&["add", "--all"]);
+        let changed = |how: &str, place: &[&str]| git(&[&["diff", "--cached", how, "--"], place].concat());
+        assert_eq!(
+            changed("--numstat", &["generated/src"]),
+            "1\t1\tgenerated/src/dcom/nominal.rs\n",
+            "{name}"
+        );
+        assert!(changed("-U0", &["generated/src"]).contains(&format!("+    {line}\n")), "{name}");
+        assert_eq!(
+            changed("--numstat", &["generated", ":!generated/src", ":!generated/docs"]),
+            "1\t1\tgenerated/manifest.json\n",
+            "{name}"
+        );
+    }
+}
+
+/// At most this many changed lines for each term that a new monomial adds, Jacobians included.
+const LINES_A_TERM: usize = 3;
+
+/// Additions of all functions of a package, as their documentation counts them.
+fn additions(folder: &Path) -> usize {
+    let mut sum = 0;
+    for entry in fs::read_dir(folder).expect("readable") {
+        let path = entry.expect("readable").path();
+        if path.is_dir() {
+            sum += additions(&path);
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("a text file");
+        let counts = text.lines().filter(|line| line.starts_with("/// ") && line.contains(" operations: "));
+        for part in counts.flat_map(|line| line.split([':', ','])) {
+            let (count, what) = part.trim().split_once(' ').unwrap_or_default();
+            if what.starts_with("addition") {
+                sum += count.parse::<usize>().expect("a number");
+            }
+        }
+    }
+    sum
+}
+
+/// A new monomial costs few lines: what a reviewer reads grows with what was added, not with the size of the models.
+#[test]
+fn a_new_monomial_is_a_few_lines_a_term() {
+    let scratch = Scratch::new();
+    let before = scratch.path("before");
+    copy(&scratch.path("generated"), &before);
+    for table in [DCOM, "generator/tables/com.toml"] {
+        let entry = "[C_L]\n\"alpha^2\" = { value = 0.5, unit = \"1/rad^2\" }\n";
+        scratch.edit(table, "[C_L]\n", entry);
+    }
     assert_eq!(scratch.generate(&[]).code, 0);
-    git(&["add", "--all"]);
-    let numstat = |place: &[&str]| git(&[&["diff", "--cached", "--numstat", "--"], place].concat());
-    assert_eq!(
-        numstat(&["generated/src"]),
-        "1\t1\tgenerated/src/dcom/nominal.rs\n"
-    );
-    assert_eq!(
-        numstat(&["generated", ":!generated/src"]),
-        "1\t1\tgenerated/manifest.json\n"
+    let (before, after) = (before.join("src"), scratch.path("generated/src"));
+    let terms = additions(&after) - additions(&before);
+    let mut git = Command::new("git");
+    git.args(["diff", "--no-index", "--numstat"]).args([&before, &after]);
+    let answer = crate::common::answer(&mut git);
+    assert_eq!(answer.code, 1, "{}", answer.stderr);
+    let inserted = answer.stdout.lines().filter_map(|line| line.split('\t').next()?.parse::<usize>().ok());
+    let lines: usize = inserted.sum();
+    println!("{lines} lines for {terms} terms");
+    assert!(terms > 50, "{terms} terms");
+    assert!(
+        lines <= LINES_A_TERM * terms,
+        "{lines} lines for {terms} terms:\n{}",
+        answer.stdout
     );
 }
 

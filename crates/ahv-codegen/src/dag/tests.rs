@@ -63,6 +63,7 @@ fn value_of_node(dag: &Dag, id: Id, at: &HashMap<String, f64>) -> f64 {
                 Kind::Input => "u",
                 Kind::Noise => "w",
                 Kind::Parameter => "p",
+                Kind::Argument => "t",
             };
             leaf(&format!("{prefix}.{name}"), at)
         }

@@ -1,0 +1,225 @@
+//! The files of one table: its parameters, their values, where they come from, and what is chosen by name.
+
+use askama::Template;
+
+use crate::EmitError;
+use crate::emit::render;
+use crate::ir::{Choice, Document, Parameter, Variable, capitalised, status_variant};
+use crate::model::vector_impl;
+use crate::values::Values;
+
+#[derive(Template)]
+#[template(path = "parameters.rs")]
+struct ParametersTemplate<'a> {
+    parameters: &'a [Parameter],
+    validity: &'a [Variable],
+    implementation: String,
+}
+
+#[derive(Template)]
+#[template(path = "nominal.rs")]
+struct NominalTemplate<'a> {
+    system: &'a str,
+    own_set: &'a str,
+    values: Vec<(String, String)>,
+    sets: Vec<SetText>,
+    bounds: Vec<(String, String, String)>,
+}
+
+struct SetText {
+    name: String,
+    constant: String,
+    values: Vec<(String, String)>,
+}
+
+#[derive(Template)]
+#[template(path = "provenance.rs")]
+struct ProvenanceTemplate {
+    lists: Vec<ProvenanceList>,
+}
+
+struct ProvenanceList {
+    /// The set that it belongs to, empty for the table's own.
+    set: String,
+    constant: String,
+    /// Name, source, status and uncertainty.
+    entries: Vec<(String, String, &'static str, String)>,
+    /// Whether the other entries are those of the table.
+    rest: bool,
+}
+
+#[derive(Template)]
+#[template(path = "choices.rs")]
+struct ChoicesTemplate {
+    choices: Vec<ChoiceText>,
+}
+
+struct ChoiceText {
+    name: String,
+    doc: String,
+    type_name: String,
+    options: Vec<OptionText>,
+}
+
+struct OptionText {
+    name: String,
+    variant: String,
+    doc: String,
+    values: Vec<(String, String)>,
+}
+
+/// The texts of a table's files, by name without ending.
+pub(crate) fn files(
+    document: &Document,
+    values: &Values,
+) -> Result<Vec<(&'static str, String)>, EmitError> {
+    let fields = document.parameters.iter().map(|p| (&p.name, &p.unit));
+    let parameters = ParametersTemplate {
+        parameters: &document.parameters,
+        validity: &document.validity,
+        implementation: vector_impl("Parameters", fields, &document.units)?,
+    };
+    let mut files = vec![
+        ("parameters", render(&parameters)),
+        ("nominal", render(&nominal(document, values))),
+        ("provenance", render(&provenance(document))),
+    ];
+    if !document.choices.is_empty() {
+        let choices = document.choices.iter().map(choice).collect();
+        files.push(("choices", render(&ChoicesTemplate { choices })));
+    }
+    Ok(files)
+}
+
+/// What the other models of a table take from its home.
+pub(crate) fn names(document: &Document) -> Vec<String> {
+    let mut names: Vec<String> = [
+        "NOMINAL",
+        "PROVENANCE",
+        "Parameters",
+        "SETS",
+        "UNIT_SYSTEM",
+        "VALIDITY",
+        "Validity",
+    ]
+    .map(str::to_owned)
+    .into();
+    for set in document.sets.iter().skip(1) {
+        names.extend([
+            constant(&set.name),
+            format!("{}_PROVENANCE", constant(&set.name)),
+        ]);
+    }
+    names.extend(
+        document
+            .choices
+            .iter()
+            .map(|choice| choice.type_name.clone()),
+    );
+    names.sort_unstable();
+    names
+}
+
+fn nominal<'a>(document: &'a Document, values: &Values) -> NominalTemplate<'a> {
+    let number = |value: f64| format!("{value:?}");
+    let names = document.parameters.iter().map(|p| p.name.clone());
+    let sets = document.sets.iter().zip(&values.sets).skip(1);
+    let bounds = document.validity.iter().zip(&values.bounds);
+    NominalTemplate {
+        system: &document.units.system,
+        own_set: document.sets.first().map_or("", |set| &set.name),
+        values: names
+            .zip(values.nominal.iter().map(|&v| number(v)))
+            .collect(),
+        sets: sets
+            .map(|(set, replaced)| SetText {
+                name: set.name.clone(),
+                constant: constant(&set.name),
+                values: replaced
+                    .iter()
+                    .map(|(name, v)| (name.clone(), number(*v)))
+                    .collect(),
+            })
+            .collect(),
+        bounds: bounds
+            .map(|(v, &(min, max))| (v.name.clone(), number(min), number(max)))
+            .collect(),
+    }
+}
+
+fn provenance(document: &Document) -> ProvenanceTemplate {
+    let mut lists = vec![ProvenanceList {
+        set: String::new(),
+        constant: "PROVENANCE".to_owned(),
+        entries: document
+            .parameters
+            .iter()
+            .map(|p| entry(&p.name, &p.source, &p.status, p.uncertainty))
+            .collect(),
+        rest: false,
+    }];
+    for set in document.sets.iter().skip(1) {
+        let replaced = set.parameters.iter();
+        lists.push(ProvenanceList {
+            set: set.name.clone(),
+            constant: format!("{}_PROVENANCE", constant(&set.name)),
+            entries: replaced
+                .map(|p| entry(&p.name, &p.source, &p.status, p.uncertainty))
+                .collect(),
+            rest: true,
+        });
+    }
+    ProvenanceTemplate { lists }
+}
+
+fn entry(
+    name: &str,
+    source: &str,
+    status: &str,
+    uncertainty: f64,
+) -> (String, String, &'static str, String) {
+    let quoted = format!("{source:?}");
+    (
+        name.to_owned(),
+        quoted,
+        status_variant(status),
+        format!("{uncertainty:?}"),
+    )
+}
+
+fn choice(choice: &Choice) -> ChoiceText {
+    let scalar = |value: &f64| match *value {
+        0.0 => "R::ZERO".to_owned(),
+        1.0 => "R::ONE".to_owned(),
+        other => format!("R::from_f64({other:?})"),
+    };
+    let options = choice.options.iter().map(|option| OptionText {
+        name: option.name.clone(),
+        variant: capitalised(&option.name),
+        doc: format!("{}.", capitalised(&option.doc)),
+        values: option
+            .values
+            .iter()
+            .map(|(name, v)| (name.clone(), scalar(v)))
+            .collect(),
+    });
+    ChoiceText {
+        name: choice.name.clone(),
+        doc: format!("{}.", capitalised(&choice.doc)),
+        type_name: choice.type_name.clone(),
+        options: options.collect(),
+    }
+}
+
+/// The name of a set as a constant: `section5.3` becomes `SECTION5_3`.
+fn constant(name: &str) -> String {
+    name.chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_uppercase()
+            } else {
+                '_'
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,170 @@
+//! The numbers of a table, as its IR names them, in the unit system that is asked for.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::ir::{Document, Parameter, Units, Variable};
+use crate::{EmitError, Table};
+
+/// Section of the parameters that a choice sets.
+pub(crate) const CHOICES: &str = "choices";
+
+/// The numbers of a table.
+pub(crate) struct Values {
+    /// One for each parameter, in their order.
+    pub(crate) nominal: Vec<f64>,
+    /// What each set replaces, by the parameter's name.
+    pub(crate) sets: Vec<Vec<(String, f64)>>,
+    /// Ends of the validity box, angles in rad.
+    pub(crate) bounds: Vec<(f64, f64)>,
+}
+
+impl Values {
+    /// Reads the numbers that a document names, and turns document and numbers into the unit system `system`.
+    pub(crate) fn read(
+        table: &Table,
+        document: &mut Document,
+        system: Option<&str>,
+    ) -> Result<Self, EmitError> {
+        let mut found = Self {
+            nominal: Vec::new(),
+            sets: Vec::new(),
+            bounds: Vec::new(),
+        };
+        for parameter in &document.parameters {
+            found.nominal.push(value(table, document, parameter)?);
+        }
+        for set in &document.sets {
+            let replaced = set.parameters.iter().map(|replacement| {
+                let mut path: Vec<&str> = replacement.path.iter().map(String::as_str).collect();
+                path.push("value");
+                Ok((replacement.name.clone(), number(table, &path)?))
+            });
+            found.sets.push(replaced.collect::<Result<_, EmitError>>()?);
+        }
+        for variable in &document.validity {
+            found.bounds.push(bounds(table, variable)?);
+        }
+        if system.is_some_and(|system| system != document.units.system) {
+            found.convert(document)?;
+        }
+        Ok(found)
+    }
+
+    fn convert(&mut self, document: &mut Document) -> Result<(), EmitError> {
+        let units = Units {
+            system: document.units.other.clone(),
+            other: document.units.system.clone(),
+            factors: BTreeMap::new(),
+        };
+        let from = std::mem::replace(&mut document.units, units);
+        let mut scales = HashMap::new();
+        for (parameter, value) in document.parameters.iter_mut().zip(&mut self.nominal) {
+            let factor = from.convert(&mut parameter.unit)?;
+            *value *= factor;
+            scales.insert(parameter.name.clone(), factor);
+        }
+        for (name, value) in self.sets.iter_mut().flatten() {
+            *value *= scales.get(name).copied().unwrap_or(1.0);
+        }
+        for (variable, (min, max)) in document.validity.iter_mut().zip(&mut self.bounds) {
+            let factor = from.convert(&mut variable.unit)?;
+            (*min, *max) = (*min * factor, *max * factor);
+        }
+        for model in &mut document.models {
+            for variable in model.bases.values_mut().flatten() {
+                from.convert(&mut variable.unit)?;
+            }
+            for quantity in &mut model.quantities {
+                from.convert(&mut quantity.unit)?;
+            }
+            let outputs = model.functions.iter_mut().flat_map(|f| &mut f.outputs);
+            for unit in outputs.filter_map(|output| output.unit.as_mut()) {
+                from.convert(unit)?;
+            }
+        }
+        let back = from.factors.iter();
+        document.units.factors = back
+            .map(|(unit, (other, factor))| (other.clone(), (unit.clone(), 1.0 / factor)))
+            .collect();
+        Ok(())
+    }
+}
+
+impl Units {
+    /// Replaces a unit by that of the other system; the factor for its values.
+    fn convert(&self, unit: &mut String) -> Result<f64, EmitError> {
+        let (other, factor) = self.other_unit(unit)?;
+        let (other, factor) = (other.to_owned(), factor);
+        *unit = other;
+        Ok(factor)
+    }
+
+    /// A unit in the other system, and the factor for its values.
+    fn other_unit(&self, unit: &str) -> Result<(&str, f64), EmitError> {
+        let found = self.factors.get(unit).ok_or_else(|| {
+            EmitError::Mismatch(format!(
+                "the IR does not say what the unit `{unit}` is in the system `{}`; derive it again",
+                self.other
+            ))
+        })?;
+        Ok((&found.0, found.1))
+    }
+
+    /// A unit in the International System, and the factor for its values.
+    pub(crate) fn si<'a>(&'a self, unit: &'a str) -> Result<(&'a str, f64), EmitError> {
+        if self.system == "si" {
+            Ok((unit, 1.0))
+        } else {
+            self.other_unit(unit)
+        }
+    }
+
+    /// The base units in words.
+    pub(crate) fn in_words(&self) -> &'static str {
+        if self.system == "si" {
+            "metre, kilogram, second and radian"
+        } else {
+            "foot, slug, second and radian"
+        }
+    }
+}
+
+fn number(table: &Table, path: &[&str]) -> Result<f64, EmitError> {
+    table.number(path).ok_or_else(|| {
+        EmitError::Mismatch(format!(
+            "{} has no number at `{}`, which its IR names; derive it again",
+            table.file_name,
+            path.join(".")
+        ))
+    })
+}
+
+/// The value of a parameter, from its entry or from the choice that sets it.
+fn value(table: &Table, document: &Document, parameter: &Parameter) -> Result<f64, EmitError> {
+    let (section, key) = (parameter.path.0.as_str(), parameter.path.1.as_str());
+    if section != CHOICES {
+        return number(table, &[section, key, "value"]);
+    }
+    let chosen = table.text(&[section, key]).unwrap_or_default();
+    let choice = document.choices.iter().find(|choice| choice.name == key);
+    let option = choice.and_then(|choice| choice.options.iter().find(|o| o.name == chosen));
+    let value = option.and_then(|option| option.values.get(&parameter.name));
+    value.copied().ok_or_else(|| {
+        EmitError::Mismatch(format!(
+            "{} chooses `{chosen}` at `{section}.{key}`, which its IR does not know; derive it again",
+            table.file_name
+        ))
+    })
+}
+
+fn bounds(table: &Table, variable: &Variable) -> Result<(f64, f64), EmitError> {
+    let path = |key| ["validity", variable.name.as_str(), key];
+    let unit = table.text(&path("unit")).unwrap_or_default();
+    let (min, max) = (number(table, &path("min"))?, number(table, &path("max"))?);
+    // Other units than that of the model are refused by the derivation.
+    Ok(if unit.contains("deg") {
+        (min.to_radians(), max.to_radians())
+    } else {
+        (min, max)
+    })
+}

@@ -1,0 +1,63 @@
+"""The white noises of the paper: on the rigid states, (27), and on the flexible modes, (16)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import casadi as ca
+
+from ..model import Model
+from ..schema import VariableSpec
+from ..stochastic import Gains
+
+RIGID_INCREMENTS = (
+    VariableSpec("w_gamma", r"w_\gamma", "s^0.5", "Wiener increment that perturbs the flight-path angle"),
+    VariableSpec("w_alpha", r"w_\alpha", "s^0.5", "Wiener increment that perturbs the angle of attack"),
+    VariableSpec("w_q", "w_Q", "s^0.5", "Wiener increment that perturbs the pitch rate"),
+)
+PERTURBATIONS = "the columns of w_gamma, w_alpha and w_q are derivatives of the drift"
+
+_PERTURBED = {"w_gamma": "x.gamma", "w_alpha": "x.alpha", "w_q": "x.pitch_rate"}
+
+
+def modal_increments(modes: int) -> tuple[VariableSpec, ...]:
+    """One Wiener increment for each flexible mode."""
+    return tuple(
+        VariableSpec(f"xi_{i}", rf"\xi_{i}", "s^0.5", f"Wiener increment that drives flexible mode {i}")
+        for i in range(1, modes + 1)
+    )
+
+
+def perturbation_gains(m: Model, rates: Mapping[str, ca.SX]) -> Gains:
+    """The derivatives of the drift by gamma, alpha and Q, times the intensities of their noise."""
+    return {
+        (row, column): m.graph.derivative(rates[row], leaf) * m.parameter(column)
+        for row in m.names("state")
+        for column, leaf in _PERTURBED.items()
+    }
+
+
+def modal_gains(m: Model, by_row: Mapping[str, ca.SX]) -> Gains:
+    """What drives the modes, by the rows that it enters: correlated with mode 1 as `shared_noise` says."""
+    share = m.parameter("shared_noise")
+    own = (
+        m.graph.define(
+            "own_noise",
+            ca.sqrt((1 - share) * (1 + share)),
+            symbol=r"\sqrt{1-\rho_\xi^2}",
+            unit="1",
+            doc="share of its own noise in what drives a mode",
+            equation="(16)",
+            section="Noise of the modes",
+        )
+        if len(by_row) > 1
+        else None
+    )
+    gains: Gains = {}
+    for i, (row, gain) in enumerate(by_row.items(), start=1):
+        if i == 1 or own is None:
+            gains[row, "xi_1"] = gain
+        else:
+            gains[row, "xi_1"] = gain * share
+            gains[row, f"xi_{i}"] = gain * own
+    return gains
