@@ -29,16 +29,16 @@ const REDUNDANT_ROWS: [&str; 2] = ["altitude", "alpha"];
 /// Where to trim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevelFlight<U> {
-    /// Velocity in ft/s.
+    /// Velocity, in the model's unit.
     pub velocity: f64,
-    /// Altitude in ft.
+    /// Altitude, in the model's unit.
     pub altitude: f64,
     /// Inputs: `phi` and `delta_e` are where the search starts, all others are held.
     pub input: U,
 }
 
 impl<U: Vector<f64>> LevelFlight<U> {
-    /// Level flight at `velocity` (ft/s) and `altitude` (ft), all other inputs 0, with the customary cold start.
+    /// Level flight at `velocity` and `altitude`, in the model's units, all other inputs 0, with the customary cold start.
     pub fn new(velocity: f64, altitude: f64) -> Self {
         let start = |name| match name {
             "phi" => 0.25,

@@ -12,8 +12,7 @@ use ahv_models::{dcom, sdcom};
 
 /// Element `index` of `pointers` as a vector whose components all are f64.
 ///
-/// The order of a struct's fields is the compiler's business: that it is the order of the array is seen when
-/// the benchmark compares the candidates.
+/// The generated vectors are `repr(C)`: their fields lie in the order of the array.
 ///
 /// # Safety
 /// `pointers` has more than `index` elements, and that one points to the numbers of an `X`.

@@ -68,9 +68,9 @@ def main() -> None:
                     "operations": count(peer),
                     "work": [peer.sz_arg(), peer.sz_res(), peer.sz_iw(), peer.sz_w()],
                 }
+            extra = [expansion.leaves("noise"), expansion.leaves("argument")]
             counts[model.name] = {
-                f.name: count(function(f.name, expansion, expansion.matrices(f), [expansion.leaves("noise")]))
-                for f in model.functions
+                f.name: count(function(f.name, expansion, expansion.matrices(f), extra)) for f in model.functions
             }
     generator.generate(f"{arguments.out}/")
     answer = {"version": version("casadi"), "kernels": kernels, "counts": counts}

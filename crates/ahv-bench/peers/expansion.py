@@ -4,30 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import casadi as ca
 
-from ahv_generator.model import Function, Model
+from ahv_generator.model import Function, Model, Output
 
 sys.setrecursionlimit(10_000)
-
-
-@dataclass(frozen=True)
-class Output:
-    """A vector (`columns` is empty) or a matrix over named rows and columns; cells not listed are zero."""
-
-    rows: tuple[str, ...]
-    columns: tuple[str, ...]
-    cells: dict[tuple[str, ...], ca.SX]
-
-    def dense(self) -> ca.SX:
-        """The output as a CasADi matrix, with structural zeros."""
-        found = ca.SX(len(self.rows), max(len(self.columns), 1))
-        for at, expr in self.cells.items():
-            column = self.columns.index(at[1]) if self.columns else 0
-            found[self.rows.index(at[0]), column] = expr
-        return found
 
 
 class Expansion:
@@ -39,7 +21,7 @@ class Expansion:
 
     def leaves(self, basis: str) -> ca.SX:
         """The symbols of a basis as a column."""
-        return self._column(self.model.qualified(basis) if basis in self.model.bases else ())
+        return self._column(self.model.leaves(basis).values() if basis in self.model.bases else ())
 
     def parameters(self) -> ca.SX:
         """The symbols of the parameters as a column, in the order of the table."""
@@ -54,48 +36,57 @@ class Expansion:
 
     def drift(self) -> ca.SX:
         """Right-hand side of the model."""
-        (drift,) = self.outputs(self._function("drift"))
-        return ca.densify(drift.dense())
+        (drift,) = self._function("drift").outputs
+        return ca.densify(self._dense(drift))
 
     def jacobian(self, basis: str) -> ca.SX:
         """Derivative of the drift, by CasADi on the full expression."""
-        return ca.jacobian(self.drift(), self.leaves(basis))
+        return ca.jacobian(self.drift(), self.parameters() if basis == "parameter" else self.leaves(basis))
+
+    def hessian(self) -> ca.SX:
+        """Second derivatives of the drift by two states, of each pair one."""
+        rows = ca.vertsplit(self.drift())
+        return ca.horzcat(*(ca.tril(ca.hessian(row, self.leaves("state"))[0]) for row in rows))
 
     def diffusion(self) -> ca.SX:
-        """G: columns of the Jacobian times intensities, and what the table gives for the modes."""
-        (given,) = self.outputs(self._function("diffusion"))
+        """G: columns of the Jacobian times intensities, and what the generator gives for the other columns."""
+        (output,) = self._function("diffusion").outputs
+        given = self._dense(output)
         perturbed = {"w_gamma": "x.gamma", "w_alpha": "x.alpha", "w_q": "x.pitch_rate"}
+        if self.model.name == "sdcom_printed":
+            perturbed = {}  # its H is not the derivative of its drift
         columns = []
-        for j, increment in enumerate(given.columns):
+        for j, increment in enumerate(self.model.names("noise")):
             if increment in perturbed:
                 slope = ca.jacobian(self.drift(), self.model.graph.symbols[perturbed[increment]])
                 columns.append(slope * self.model.parameter(increment))
             else:
-                columns.append(given.dense()[:, j])
+                columns.append(given[:, j])
         return ca.horzcat(*columns)
 
     def matrices(self, function: Function) -> list[ca.SX]:
-        """The outputs of a function; derivatives are CasADi's, of full expressions."""
-        if function.name == "jacobians":
-            return [self.jacobian("state"), self.jacobian("input")]
-        if function.name == "drift_and_jacobians":
-            return [self.drift(), self.jacobian("state"), self.jacobian("input")]
-        if function.name == "diffusion":
-            return [self.diffusion()]
-        if function.name == "drift_and_diffusion":
-            return [self.drift(), self.diffusion()]
-        return [output.dense() for output in self.outputs(function)]
+        """What a function computes; first and second derivatives of the drift are CasADi's, of full expressions."""
+        drift, diffusion = self.drift, self.diffusion
+        derived = {
+            "jacobians": lambda: [self.jacobian("state"), self.jacobian("input")],
+            "drift_and_jacobians": lambda: [drift(), self.jacobian("state"), self.jacobian("input")],
+            "parameter_jacobian": lambda: [self.jacobian("parameter")],
+            "hessian": lambda: [self.hessian()],
+            "diffusion": lambda: [diffusion()],
+            "drift_and_diffusion": lambda: [drift(), diffusion()],
+        }
+        if function.name in derived:
+            return derived[function.name]()
+        return [ca.vertcat(*(self.expand(entry.expr) for entry in output.entries)) for output in function.outputs]
 
-    def outputs(self, function: Function) -> list[Output]:
-        """The outputs of a function as the generator has them, expanded."""
-        return [
-            Output(
-                self.model.names(output.basis[0]) if output.basis else ("",),
-                self.model.names(output.basis[1]) if len(output.basis) > 1 else (),
-                {(entry.at or ("",)): self.expand(entry.expr) for entry in output.entries},
-            )
-            for output in function.outputs
-        ]
+    def _dense(self, output: Output) -> ca.SX:
+        """A vector or a matrix of the generator, expanded, with structural zeros."""
+        rows, *columns = (self.model.names(basis) for basis in output.basis)
+        found = ca.SX(len(rows), len(columns[0]) if columns else 1)
+        for entry in output.entries:
+            column = columns[0].index(entry.at[1]) if columns else 0
+            found[rows.index(entry.at[0]), column] = self.expand(entry.expr)
+        return found
 
     def _column(self, names: Iterable[str]) -> ca.SX:
         return ca.vertcat(*(self.model.graph.symbols[name] for name in names))

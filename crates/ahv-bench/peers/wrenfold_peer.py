@@ -62,8 +62,8 @@ class Formulation:
         self.model = model
         self.description = FunctionDescription(name)
         self.symbols: dict[str, sym.Expr] = {}
-        self.state = self._argument("x", model.qualified("state"))
-        self.input = self._argument("u", model.qualified("input"))
+        self.state = self._argument("x", tuple(model.leaves("state").values()))
+        self.input = self._argument("u", tuple(model.leaves("input").values()))
         self._argument("p", tuple(f"p.{parameter.name}" for parameter in model.table.parameters))
         for quantity in model.graph.quantities.values():
             self.symbols[quantity.name] = convert(quantity.expr, self.symbols)

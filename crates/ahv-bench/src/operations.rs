@@ -99,21 +99,27 @@ fn headers(root: &Path, model: &str) -> Result<BTreeMap<String, Count>, String> 
 }
 
 /// Pairs each `/// 141 operations: 58 additions, …` with the function below it.
+///
+/// A matrix is computed in its compressed form, whose count stands for both.
 fn counts(text: &str) -> Vec<(String, Count)> {
     let mut found = Vec::new();
-    let mut last = Count::default();
+    let mut last = None;
     for line in text.lines() {
         if let Some(count) = line.strip_prefix("/// ").and_then(header) {
-            last = count;
+            last = Some(count);
         } else if let Some(rest) = line.strip_prefix("pub fn ") {
             let name = rest.split(['<', '(']).next().unwrap_or_default();
-            found.push((name.to_owned(), std::mem::take(&mut last)));
+            let name = name.strip_suffix("_values").unwrap_or(name);
+            found.extend(last.take().map(|count| (name.to_owned(), count)));
         }
     }
     found
 }
 
 fn header(line: &str) -> Option<Count> {
+    if line == "No operations." {
+        return Some(Count::default());
+    }
     let (total, kinds) = line.split_once(": ")?;
     let operations = total
         .strip_suffix("operations")
@@ -135,7 +141,8 @@ mod tests {
     #[test]
     fn headers_belong_to_the_function_below() {
         let text = "/// Drift, eq. (1).\n///\n/// 141 operations: 140 additions, 1 division.\n#[inline]\n\
-                    pub fn drift<R: Real>(x: &State<R>) {}\n/// Nothing to do.\npub fn none(x: f64) {}\n";
+                    pub fn drift_values<R: Real>(x: &State<R>) {}\n/// Dense.\npub fn drift<R: Real>(x: &State<R>) {}\n\
+                    /// No operations.\npub fn none(x: f64) {}\n";
         let drift = Count {
             operations: 141,
             divisions: 1,

@@ -5,25 +5,28 @@ use std::f64::consts::PI;
 use ahv_core::Vector;
 
 use crate::failure::Failure;
+use crate::names;
+use crate::units::Units;
 
 const RAD_PER_DEG: f64 = PI / 180.0;
-
-/// Similarity above which an unknown name is taken for a slip of a known one.
-const SIMILAR: f64 = 0.7;
 
 /// Values given for components of a vector.
 pub(crate) struct Assignments(Vec<(usize, f64)>);
 
 impl Assignments {
-    /// Reads `name=value` pairs for a `V`, given by `option`.
+    /// Reads `name=value` pairs in `units` for a `V`, given by `option`.
     ///
     /// # Errors
     ///
     /// [`Failure::Request`] that says what is wrong and what would be right.
-    pub(crate) fn parse<V: Vector<f64>>(option: &str, texts: &[String]) -> Result<Self, Failure> {
+    pub(crate) fn parse<V: Vector<f64>>(
+        option: &str,
+        texts: &[String],
+        units: Units,
+    ) -> Result<Self, Failure> {
         let mut assignments: Vec<(usize, f64)> = Vec::new();
         for text in texts {
-            let assignment = parse_one::<V>(text)
+            let assignment = parse_one::<V>(text, units)
                 .and_then(|new| match assignments.iter().any(|old| old.0 == new.0) {
                     true => Err(format!("`{text}` gives a value a second time")),
                     false => Ok(new),
@@ -55,29 +58,14 @@ impl Assignments {
     }
 }
 
-fn parse_one<V: Vector<f64>>(text: &str) -> Result<(usize, f64), String> {
+fn parse_one<V: Vector<f64>>(text: &str, units: Units) -> Result<(usize, f64), String> {
     let (name, value) = text
         .split_once('=')
         .ok_or_else(|| format!("`{text}` is not of the form NAME=VALUE"))?;
     let name = name.trim();
-    let index = V::index_of(name).ok_or_else(|| unknown_name::<V>(name))?;
-    let unit = V::UNITS.get(index).copied().unwrap_or("1");
-    Ok((index, parse_value(name, value.trim(), unit)?))
-}
-
-fn unknown_name<V: Vector<f64>>(name: &str) -> String {
-    let names = V::NAMES.join(", ");
-    let nearest = V::NAMES
-        .iter()
-        .map(|known| (strsim::jaro_winkler(&name.to_lowercase(), known), known))
-        .filter(|&(similarity, _)| similarity > SIMILAR)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    match nearest {
-        Some((_, known)) => {
-            format!("unknown name `{name}`; did you mean `{known}`? Known: {names}")
-        }
-        None => format!("unknown name `{name}`; known: {names}"),
-    }
+    let index = V::index_of(name).ok_or_else(|| names::unknown("name", name, V::NAMES))?;
+    let value = parse_value(name, value.trim(), units.label::<V>(name))?;
+    Ok((index, value))
 }
 
 /// Units in which a quantity of unit `unit` may be given, with their size in `unit`.

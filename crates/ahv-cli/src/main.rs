@@ -2,10 +2,14 @@
 #![forbid(unsafe_code)]
 
 mod assignment;
+mod condition;
 mod failure;
 #[cfg(feature = "generate")]
 mod generate;
+mod names;
 mod simulate;
+mod units;
+mod vehicle;
 
 use std::process::ExitCode;
 

@@ -9,12 +9,14 @@ mod table;
 use std::path::PathBuf;
 
 use ahv_analysis::noise::WienerSource;
-use ahv_core::Vector;
+use ahv_core::{StochasticModel, Vector};
 use ahv_integrate::{EulerMaruyama, Rk4};
-use ahv_models::{dcom, sdcom};
-use clap::{Args, ValueEnum};
+use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust, sdcom_printed};
+use clap::Args;
 
+use crate::condition::{Condition, Vehicle};
 use crate::failure::Failure;
+use crate::vehicle::{FlightModel, ModelName};
 use flight::Flight;
 use grid::Grid;
 
@@ -23,13 +25,14 @@ const MEMBER: u64 = 0;
 
 /// Simulates a model with held inputs and writes the trajectory as CSV.
 ///
-/// The run starts at the trim of level flight at 7702.0808 ft/s and 85000 ft, for the chosen canard,
-/// and holds the trim's inputs. The airframe is unstable: off its trim it diverges within seconds.
+/// The run starts at the trim of level flight at 7702.0808 ft/s and 85000 ft in the chosen condition,
+/// and holds the trim's inputs. com, com_rigid and dcom are deterministic (Runge-Kutta of order 4),
+/// sdcom, sdcom_printed and sdcom_gust stochastic (Euler-Maruyama, Ito).
+/// The airframe is unstable: off its trim it diverges within seconds.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Model: dcom is deterministic (Runge-Kutta of order 4), sdcom stochastic (Euler-Maruyama, Ito)
-    #[arg(long)]
-    model: ModelName,
+    #[command(flatten)]
+    condition: Condition,
 
     /// End of the simulation in s; the last step is shortened to end there
     #[arg(long, value_name = "S", value_parser = grid::positive, allow_negative_numbers = true)]
@@ -39,7 +42,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "S", value_parser = grid::positive, allow_negative_numbers = true)]
     dt: f64,
 
-    /// Seed of the noise of sdcom: the same seed gives the same numbers on every machine
+    /// Drive dcom with its noise too (Euler-Maruyama, Ito)
+    #[arg(long)]
+    stochastic: bool,
+
+    /// Seed of the noise: the same seed gives the same numbers on every machine
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
@@ -53,15 +60,6 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
     initial: Vec<String>,
 
-    /// Canard: slaved to the elevator (delta_c is then an offset), free (delta_c is an input) or none
-    /// [default: as the table has it]
-    #[arg(long)]
-    canard: Option<Canard>,
-
-    /// Earth: flat, or spherical with gravity that falls with altitude [default: as the table has it]
-    #[arg(long)]
-    earth: Option<Earth>,
-
     /// CSV file to write; it is replaced when the run has succeeded, and else left as it was
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -71,47 +69,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum ModelName {
-    Dcom,
-    Sdcom,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Canard {
-    Slaved,
-    Free,
-    None,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Earth {
-    Flat,
-    Spherical,
-}
-
-impl Arguments {
-    /// The table's parameters with what the command line chooses.
-    fn parameters(&self) -> dcom::Parameters<f64> {
-        let mut parameters = dcom::NOMINAL;
-        if let Some(canard) = self.canard {
-            parameters.canard_slaving = f64::from(u8::from(canard == Canard::Slaved));
-        }
-        if let Some(earth) = self.earth {
-            parameters.spherical_earth = f64::from(u8::from(earth == Earth::Spherical));
-        }
-        parameters
-    }
-
-    /// Whether there is a canard for delta_c to move.
-    fn has_canard(&self) -> bool {
-        match self.canard {
-            Some(canard) => canard != Canard::None,
-            None => dcom::NOMINAL.canard_slaving != 0.0,
-        }
-    }
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -119,37 +76,47 @@ impl Arguments {
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if the
 /// trim or the simulation fails. The output file is then as it was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let grid = Grid::new(arguments.t_end, arguments.dt)?;
-    let parameters = arguments.parameters();
-    match arguments.model {
-        ModelName::Dcom => {
-            let model = dcom::Model::new(&parameters);
-            let flight = Flight {
-                name: "dcom",
-                model: &model,
-                state_bounds: dcom::STATE_BOUNDS,
-                input_bounds: dcom::INPUT_BOUNDS,
-                seed: None,
-            };
-            flight.simulate(arguments, &grid, |x, u, step| {
-                Rk4::new(grid.step_length(step)).step(&model, x, u)
-            })
-        }
-        ModelName::Sdcom => {
-            let model = sdcom::Model::new(&parameters);
-            let channels = <sdcom::Noise<f64> as Vector<f64>>::LEN;
-            let mut wiener = WienerSource::new(arguments.seed, MEMBER, channels);
-            let flight = Flight {
-                name: "sdcom",
-                model: &model,
-                state_bounds: sdcom::STATE_BOUNDS,
-                input_bounds: sdcom::INPUT_BOUNDS,
-                seed: Some(arguments.seed),
-            };
-            flight.simulate(arguments, &grid, |x, u, step| {
-                let dt = grid.step_length(step);
-                EulerMaruyama::new(dt).step(&model, x, u, &wiener.increments(step, dt))
-            })
-        }
+    match arguments.condition.model {
+        ModelName::Com => calm::<com::Model<f64>>(arguments),
+        ModelName::ComRigid => calm::<com_rigid::Model<f64>>(arguments),
+        ModelName::Dcom if arguments.stochastic => noisy::<dcom::Model<f64>>(arguments),
+        ModelName::Dcom => calm::<dcom::Model<f64>>(arguments),
+        ModelName::Sdcom => noisy::<sdcom::Model<f64>>(arguments),
+        ModelName::SdcomPrinted => noisy::<sdcom_printed::Model<f64>>(arguments),
+        ModelName::SdcomGust => noisy::<sdcom_gust::Model<f64>>(arguments),
     }
+}
+
+/// Without noise, by Runge-Kutta.
+fn calm<M: FlightModel>(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.stochastic {
+        return Err(Failure::Request(format!(
+            "--stochastic: {} has no noise; dcom has, and the sdcom models always fly with theirs",
+            M::NAME
+        )));
+    }
+    let grid = Grid::new(arguments.t_end, arguments.dt)?;
+    let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
+    let flight = Flight {
+        vehicle: &vehicle,
+        seed: None,
+    };
+    flight.simulate(arguments, &grid, |x, u, step| {
+        Rk4::new(grid.step_length(step)).step(&vehicle.model, x, u)
+    })
+}
+
+/// With noise, by Euler-Maruyama.
+fn noisy<M: FlightModel + StochasticModel>(arguments: &Arguments) -> Result<(), Failure> {
+    let grid = Grid::new(arguments.t_end, arguments.dt)?;
+    let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
+    let mut wiener = WienerSource::new(arguments.seed, MEMBER, M::Noise::LEN);
+    let flight = Flight {
+        vehicle: &vehicle,
+        seed: Some(arguments.seed),
+    };
+    flight.simulate(arguments, &grid, |x, u, step| {
+        let dt = grid.step_length(step);
+        EulerMaruyama::new(dt).step(&vehicle.model, x, u, &wiener.increments(step, dt))
+    })
 }

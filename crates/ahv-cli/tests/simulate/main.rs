@@ -2,5 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+mod conditions;
 mod faults;
 mod runs;
+mod si;

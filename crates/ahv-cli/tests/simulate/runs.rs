@@ -2,14 +2,9 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::Output;
 
-use crate::bench::{Bench, DCOM, stderr, with};
+use crate::bench::{Bench, DCOM, json, stderr, with};
 use serde_json::Value;
-
-fn json(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("JSON on stdout")
-}
 
 const SDCOM: [&str; 6] = ["--model", "sdcom", "--t-end", "0.5", "--dt", "0.01"];
 
@@ -41,6 +36,9 @@ fn a_trimmed_flight_stays_at_its_trim() {
 
     let json = json(&output);
     assert_eq!(json["model"], "dcom");
+    assert_eq!(json["set"], "section5.1");
+    assert_eq!(json["choices"]["canard"], "none");
+    assert_eq!(json["unit_system"], "ft-slug-s-rad");
     assert_eq!(json["steps"], 50);
     assert_eq!(json["seed"], Value::Null);
     assert_eq!(json["left_validity_box"], Value::Null);
@@ -65,44 +63,6 @@ fn the_seed_decides_the_noise() {
     assert_ne!(zero, one);
     bench.succeed(&SDCOM);
     assert_eq!(bench.text(), zero, "the default seed is 0");
-}
-
-#[test]
-fn the_canard_decides_the_trim() {
-    let bench = Bench::new();
-    let alpha = |arguments: &[&str]| {
-        bench.succeed(&with(&DCOM, arguments));
-        bench.rows()[0][4].to_degrees()
-    };
-    let none = alpha(&[]);
-    assert!((alpha(&["--canard", "slaved"]) - 3.6558).abs() < 1e-4);
-    assert_eq!(alpha(&["--canard", "free"]), none);
-    assert_ne!(
-        alpha(&["--canard", "free", "--input", "delta_c=2deg"]),
-        none
-    );
-    bench.fail(
-        &with(&DCOM, &["--input", "delta_c=2deg"]),
-        2,
-        &["there is none", "--canard free"],
-    );
-}
-
-#[test]
-fn the_earth_decides_the_trim() {
-    let bench = Bench::new();
-    let alpha = |arguments: &[&str]| {
-        bench.succeed(&with(&DCOM, arguments));
-        bench.rows()[0][4].to_degrees()
-    };
-    let flat = alpha(&[]);
-    assert_eq!(alpha(&["--earth", "flat"]), flat);
-    // The curvature carries 9.6 % of the weight.
-    let spherical = alpha(&["--earth", "spherical"]);
-    assert!(
-        (1.2..1.3).contains(&spherical),
-        "{spherical} deg, flat {flat} deg"
-    );
 }
 
 #[test]

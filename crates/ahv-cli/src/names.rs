@@ -1,0 +1,42 @@
+//! Names that a person types.
+
+/// Similarity above which an unknown name is taken for a slip of a known one.
+const SIMILAR: f64 = 0.7;
+
+/// What to say of an unknown `name` of a `kind` of thing: the known ones, and the one that was perhaps meant.
+pub(crate) fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
+    let all = known.join(", ");
+    let nearest = known
+        .iter()
+        .map(|known| (strsim::jaro_winkler(&name.to_lowercase(), known), known))
+        .filter(|&(similarity, _)| similarity > SIMILAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    match nearest {
+        Some((_, nearest)) => {
+            format!("unknown {kind} `{name}`; did you mean `{nearest}`? Known: {all}")
+        }
+        None => format!("unknown {kind} `{name}`; known: {all}"),
+    }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub(crate) fn list(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => (*only).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::list;
+
+    #[test]
+    fn names_are_listed() {
+        assert_eq!(list(&[]), "");
+        assert_eq!(list(&["a"]), "a");
+        assert_eq!(list(&["a", "b"]), "a and b");
+        assert_eq!(list(&["a", "b", "c"]), "a, b and c");
+    }
+}
