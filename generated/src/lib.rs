@@ -2,9 +2,9 @@
 
 //! Models of a flexible air-breathing hypersonic vehicle, generated from tables of curve-fitted coefficients.
 //!
-//! Units are foot, slug, second and radian; forces, mass and inertia are per unit of vehicle width. Every function is generic over the scalar
-//! ([`ahv_core::Real`]), has no branches and no heap, and follows IEEE arithmetic: outside a model's domain
-//! (velocity > 0) a result may be infinite or NaN.
+//! Units are foot, slug, second and radian; forces, mass and inertia are per unit of vehicle width.
+//! Every function is generic over the scalar ([`ahv_core::Real`]), has no branches and no heap, and follows IEEE
+//! arithmetic: outside a model's domain (velocity > 0) a result may be infinite or NaN.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -24,7 +24,7 @@ pub mod dcom;
 #[rustfmt::skip]
 pub mod sdcom;
 
-/// SDCOM_PRINTED: stochastic decoupled control-oriented model, the paper's truncated form without its misprints, eq. (24)-(35).
+/// SDCOM_PRINTED: stochastic decoupled control-oriented model as printed, without its misprints, eq. (24)-(35).
 #[rustfmt::skip]
 pub mod sdcom_printed;
 

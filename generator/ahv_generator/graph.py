@@ -38,6 +38,7 @@ class Graph:
         # Of a name: what its expression mentions, and the leaves that it depends on in the end.
         self._names: dict[str, list[str]] = {}
         self._leaves: dict[str, frozenset[str]] = {}
+        self._partials: dict[tuple[str, str], ca.SX] = {}
         self._derivatives: dict[tuple[str, str], ca.SX] = {}
         # Of a derivative: its order, and the symbols above and below the bar.
         self._derived: dict[str, tuple[int, str, str]] = {}
@@ -69,9 +70,10 @@ class Graph:
 
     def derivative(self, expr: ca.SX, variable: str) -> ca.SX:
         """The total derivative of `expr` with respect to a leaf; 0 where it is structurally zero."""
-        return self._chained(expr, self._names_in(expr), variable)
+        return self._chained(expr, self._names_in(expr), variable, None)
 
-    def _chained(self, expr: ca.SX, names: list[str], variable: str) -> ca.SX:
+    def _chained(self, expr: ca.SX, names: list[str], variable: str, of: Quantity | None) -> ca.SX:
+        """The chain rule over `names`; `of` is the quantity whose definition `expr` is, if it is one."""
         total = ca.SX(0)
         for name in names:
             if variable not in self._leaves[name]:
@@ -82,8 +84,28 @@ class Graph:
             partial = ca.jacobian(expr, self.symbols[name])
             if partial.nnz() == 0:
                 continue
+            if of is not None and name in self.quantities:
+                partial = self._partial(of, name, partial, variable)
             total = total + partial * inner
         return total
+
+    def _partial(self, of: Quantity, name: str, partial: ca.SX, variable: str) -> ca.SX:
+        """The partial derivative of a quantity by another: by a name of its own where it is a sum, to be used again."""
+        own = f"slope_of_{of.name}_in_{name}"
+        if _is_product(partial) or not _is_basic(of.name) or len(own) > _LONGEST:
+            return partial
+        key = (of.name, name)
+        if key not in self._partials:
+            self._partials[key] = self.define(
+                own,
+                partial,
+                symbol=rf"\left.\frac{{\partial {of.symbol}}}{{\partial {self.quantities[name].symbol}}}\right|",
+                unit=units.quotient(of.unit, self.units[name]),
+                doc=f"partial derivative of {of.doc} with respect to {self.quantities[name].doc}",
+                equation="",
+                section=self._section_of(variable),
+            )
+        return self._partials[key]
 
     def _derivative_of(self, name: str, variable: str) -> ca.SX:
         if name == variable:
@@ -93,7 +115,7 @@ class Graph:
             return ca.SX(0)
         key = (name, variable)
         if key not in self._derivatives:
-            total = self._chained(quantity.expr, self._names[name], variable)
+            total = self._chained(quantity.expr, self._names[name], variable, quantity)
             plain = _is_plain(total, variable, self.quantities)
             self._derivatives[key] = total if plain else self._define_derivative(quantity, variable, total)
         return self._derivatives[key]
@@ -114,11 +136,13 @@ class Graph:
             unit=units.quotient(quantity.unit, self.units[variable]),
             doc=f"derivative of {of} {'and' if order else 'with respect to'} {plain}",
             equation="",
-            section=f"Derivatives with respect to {self._section_of(variable, plain)}",
+            section=self._section_of(variable),
         )
 
-    def _section_of(self, variable: str, plain: str) -> str:
-        return "parameters" if variable.startswith("p.") else plain
+    def _section_of(self, variable: str) -> str:
+        return (
+            f"Derivatives with respect to {'parameters' if variable.startswith('p.') else variable.rpartition('.')[2]}"
+        )
 
     def _latex(self, variable: str) -> str:
         return self.latex.get(variable, rf"\mathrm{{{variable.rpartition('.')[2]}}}".replace("_", r"\_"))
@@ -148,6 +172,15 @@ def _is_plain(expr: ca.SX, variable: str, quantities: Mapping[str, Quantity]) ->
 
 def _is_derivative(name: str) -> bool:
     return re.match(r"d\d?_", name) is not None
+
+
+def _is_basic(name: str) -> bool:
+    """Whether a quantity is neither a derivative nor a slope."""
+    return not _is_derivative(name) and not name.startswith("slope_of_")
+
+
+# A longer name of a slope would not be read.
+_LONGEST = 44
 
 
 _PRODUCT = (ca.OP_MUL, ca.OP_NEG, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV, ca.OP_POW, ca.OP_CONSTPOW)

@@ -37,6 +37,8 @@ _SET_NAME = re.compile(r"[a-z][a-z0-9._-]*")
 _SET_LETTERS = "lower-case letters, digits, `.`, `_`, `-`"
 # A set becomes a constant of the generated code; these stand beside it.
 _CONSTANTS = ("nominal", "provenance", "sets", "unit_system", "validity", "state_bounds", "input_bounds")
+# Of this name is the file beside the IRs that holds the audit of the printed equations.
+_AUDIT = "audit"
 # What law (4) divides by.
 _DIVISOR = "c_l_delta_c"
 
@@ -146,8 +148,9 @@ class _Reader:
             if self.header and key not in self.header:
                 self.faults.key(("table",), f"`{key}` is missing in `[table]`")
         name = self.header.get("name", "table")
-        if not (isinstance(name, str) and name.isidentifier() and name == name.lower()):
-            self.faults.value(("table", "name"), "`name` must be a lower-case identifier")
+        if not (isinstance(name, str) and name.isidentifier() and name == name.lower()) or name == _AUDIT:
+            message = f"`name` must be a lower-case identifier other than `{_AUDIT}`"
+            self.faults.value(("table", "name"), message)
         elif name == "audit":
             self.faults.value(("table", "name"), "`audit` is the name of the paper's audit; choose another")
         system = self.header.get("units", units.IMPERIAL)

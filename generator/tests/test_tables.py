@@ -61,6 +61,8 @@ CASES = [
     ("min = -5.0, max = 5.0", "min = 5.0, max = -5.0", ("validity", "gamma", "min"), "below", None),
     ('gamma = { min = -5.0, max = 5.0, unit = "deg" }', 'gamma = { min = -5.0, max = 5.0, unit = "ft" }',
      ("validity", "gamma", "unit"), "does not fit", None),
+    ('name = "dcom"', 'name = "DCOM"', ("table", "name"), "lower-case identifier", None),
+    ('name = "dcom"', 'name = "audit"', ("table", "name"), "other than `audit`", None),
     # choices
     ('canard = "none"', 'canrad = "none"', ("choices", "canrad"), "unknown choice", "`canard`"),
     ('canard = "none"', "", ("choices",), "`canard` is missing", "`free`, `slaved`, `none`"),

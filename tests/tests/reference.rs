@@ -54,6 +54,9 @@ fn generated_functions_match_casadi() {
                     own <= BAR,
                     "CasADi's {model} {label} is {own} away from the oracle"
                 );
+                if reference.high.is_nan() {
+                    continue; // outside the domain
+                }
                 let apart = (ours[label] - value).abs();
                 let allowed = 2.0 * BAR * f64::EPSILON * reference.magnitude;
                 assert!(
@@ -85,7 +88,7 @@ fn single_precision_agrees_with_double() {
                 // The exponent of the density amplifies a rounding by up to 8.
                 let allowed = 64.0 * f64::from(f32::EPSILON) * reference.magnitude + 1e-30;
                 assert!(
-                    apart <= allowed,
+                    apart <= allowed || reference.high.is_nan(),
                     "{model} {label}: {} against {}",
                     single[label],
                     double[label]
@@ -102,8 +105,12 @@ fn no_generated_function_is_left_out() {
         let point = points(model).remove(0);
         let first = |label: &String| label.split('.').next().unwrap_or_default().to_owned();
         let tested: BTreeSet<String> = point.outputs.keys().map(first).collect();
+        // A function that is zero all over has no entries: additive noise has no L^j b^k.
         let evaluated = evaluate::<f64>(model, &point.inputs);
-        let evaluated: BTreeSet<String> = evaluated.keys().map(first).collect();
+        let evaluated = evaluated
+            .iter()
+            .filter(|(label, value)| **value != 0.0 || point.outputs.contains_key(*label));
+        let evaluated: BTreeSet<String> = evaluated.map(|(label, _)| first(label)).collect();
         assert_eq!(tested, evaluated, "vectors of {model}");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ahv_core::{DifferentiableModel, Model, StochasticModel, Vector};
+use ahv_core::{DifferentiableModel, Vector};
 use ahv_tests::evaluate::vector;
 use ahv_tests::vectors::{Point, read_oracle};
 
@@ -48,30 +48,56 @@ fn check_drift<M: DifferentiableModel<Scalar = f64>>(point: &Point, ours: &M, th
     for (i, row) in M::State::NAMES.iter().enumerate() {
         let by = M::State::SI_FACTORS[i];
         let label = format!("drift.{row}");
-        close(&label, drift.get(i).unwrap(), by, converted.get(i).unwrap(), size(point, &label));
+        close(
+            &label,
+            drift.get(i).unwrap(),
+            by,
+            converted.get(i).unwrap(),
+            size(point, &label),
+        );
         for (j, column) in M::State::NAMES.iter().enumerate() {
             let label = format!("jacobians.state.{row}.{column}");
-            let (slope, other) = (a.get(i).unwrap().get(j).unwrap(), c.get(i).unwrap().get(j).unwrap());
-            close(&label, slope, by / M::State::SI_FACTORS[j], other, size(point, &label));
+            let (slope, other) = (
+                a.get(i).unwrap().get(j).unwrap(),
+                c.get(i).unwrap().get(j).unwrap(),
+            );
+            close(
+                &label,
+                slope,
+                by / M::State::SI_FACTORS[j],
+                other,
+                size(point, &label),
+            );
         }
         for (j, column) in M::Input::NAMES.iter().enumerate() {
             let label = format!("jacobians.input.{row}.{column}");
-            let (slope, other) = (b.get(i).unwrap().get(j).unwrap(), d.get(i).unwrap().get(j).unwrap());
-            close(&label, slope, by / M::Input::SI_FACTORS[j], other, size(point, &label));
+            let (slope, other) = (
+                b.get(i).unwrap().get(j).unwrap(),
+                d.get(i).unwrap().get(j).unwrap(),
+            );
+            close(
+                &label,
+                slope,
+                by / M::Input::SI_FACTORS[j],
+                other,
+                size(point, &label),
+            );
         }
     }
 }
 
 /// Entries of the diffusion are rates times the root of a second, which no system changes.
-fn check_diffusion<M: StochasticModel<Scalar = f64>>(point: &Point, ours: &M, theirs: &M) {
-    let x: M::State = vector("state", &point.inputs);
-    let u: M::Input = vector("input", &point.inputs);
-    let (g, h) = (ours.diffusion(&x, &u), theirs.diffusion(&in_si(x), &in_si(u)));
-    for (i, row) in M::State::NAMES.iter().enumerate() {
-        for (j, column) in M::Noise::NAMES.iter().enumerate() {
+fn check_diffusion<S: Vector<f64>, N: Vector<f64>>(
+    point: &Point,
+    ours: &impl Vector<N>,
+    theirs: &impl Vector<N>,
+) {
+    for (i, row) in S::NAMES.iter().enumerate() {
+        let (g, h) = (ours.get(i).unwrap(), theirs.get(i).unwrap());
+        for (j, column) in N::NAMES.iter().enumerate() {
             let label = format!("diffusion.{row}.{column}");
-            let (entry, other) = (g.get(i).unwrap().get(j).unwrap(), h.get(i).unwrap().get(j).unwrap());
-            close(&label, entry, M::State::SI_FACTORS[i], other, size(point, &label));
+            let (entry, other) = (g.get(j).unwrap(), h.get(j).unwrap());
+            close(&label, entry, S::SI_FACTORS[i], other, size(point, &label));
         }
     }
 }
@@ -80,12 +106,18 @@ macro_rules! check_model {
     ($model:ident $(, $diffusion:ident)?) => {
         #[test]
         fn $model() {
+            use ahv_models::$model as model;
             for point in points(stringify!($model)) {
-                let parameters: ahv_models::$model::Parameters<f64> = vector("parameter", &point.inputs);
-                let ours = ahv_models::$model::Model::new(&parameters);
-                let theirs = ahv_models::$model::Model::new(&in_si(parameters));
-                check_drift(&point, &ours, &theirs);
-                $($diffusion(&point, &ours, &theirs);)?
+                let parameters: model::Parameters<f64> = vector("parameter", &point.inputs);
+                let (ours, theirs) = (parameters, in_si(parameters));
+                check_drift(&point, &model::Model::new(&ours), &model::Model::new(&theirs));
+                $({
+                    let x: model::State<f64> = vector("state", &point.inputs);
+                    let u: model::Input<f64> = vector("input", &point.inputs);
+                    let ours = model::$diffusion(&x, &u, &model::prepare(&ours));
+                    let theirs = model::$diffusion(&in_si(x), &in_si(u), &model::prepare(&theirs));
+                    check_diffusion::<model::State<f64>, model::Noise<f64>>(&point, &ours, &theirs);
+                })?
             }
         }
     };
@@ -93,11 +125,11 @@ macro_rules! check_model {
 
 check_model!(com);
 check_model!(com_rigid);
-check_model!(dcom, check_diffusion);
-check_model!(sdcom, check_diffusion);
-check_model!(sdcom_printed, check_diffusion);
-check_model!(sdcom_gust, check_diffusion);
-check_model!(flexible_mode, check_diffusion);
+check_model!(dcom, diffusion);
+check_model!(sdcom, diffusion);
+check_model!(sdcom_printed, diffusion);
+check_model!(sdcom_gust, diffusion);
+check_model!(flexible_mode, diffusion);
 
 /// The factors are the exact ones of foot and pound-force.
 #[test]

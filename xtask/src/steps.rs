@@ -3,7 +3,7 @@
 use std::process::Command;
 use std::time::Instant;
 
-use crate::{no_panic, python, shell};
+use crate::{audit, book, no_panic, python, shell};
 
 const XTASK: [&str; 2] = ["--manifest-path", "xtask/Cargo.toml"];
 const CONSUMER: [&str; 4] = [
@@ -25,7 +25,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 14] = [
+const STEPS: [Step; 16] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK, &[])
@@ -52,6 +52,9 @@ const STEPS: [Step; 14] = [
     ("cargo test", || {
         cargo(&["test", "--workspace", "--all-features"], &[], &[])
     }),
+    // As few points as a gate can wait for, in the profile that is built already.
+    ("audit", || audit(100, &[]).map(|()| Outcome::Passed)),
+    ("book", || book::run().map(|()| Outcome::Passed)),
     ("cargo test of xtask", || cargo(&["test"], &XTASK, &[])),
     ("consumer", || cargo(&["test"], &CONSUMER, &[])),
     ("consumer, no_std", || {

@@ -6,7 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 
 use crate::assignment::Assignments;
-use crate::failure::Failure;
+use crate::failure::{Failure, complain};
 use crate::names;
 use crate::units::Units;
 use crate::vehicle::{FlightModel, ModelName, for_model};
@@ -90,6 +90,12 @@ impl Condition {
                 options.find(|option| (choice.make)(parameters, option) == Some(parameters));
             (choice.name, chosen)
         });
+        if self.model == ModelName::SdcomPrinted {
+            complain(
+                "note: sdcom_printed is the paper's truncated form; what it leaves out (Delta f) can exceed the exact rate \
+                 itself, see generated/docs/sdcom_printed.md. The exact form is --model sdcom",
+            );
+        }
         Ok(Vehicle {
             model: M::with_parameters(&units.convert(parameters)),
             units,

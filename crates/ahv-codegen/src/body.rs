@@ -183,6 +183,12 @@ impl<'a> Scope<'a> {
         Some(format!("p.{field}"))
     }
 
+    /// Whether a node is a quantity that an equation defines; derivatives have none.
+    pub(crate) fn is_defined(&self, id: Id) -> bool {
+        let name = self.dag.name(id);
+        name.is_some_and(|position| !self.model.quantities[position].equation.is_empty())
+    }
+
     /// Binds everything that the roots need and returns the statements.
     pub(crate) fn write(&mut self, owner: &str, roots: &[Id]) -> Vec<Statement> {
         let mut counted = HashSet::new();

@@ -71,6 +71,13 @@ pub(crate) fn format_rust(path: &str, header: &str, text: &str) -> Result<String
             let listed = listed
                 .trim_end_matches("\")")
                 .replace('|', &format!("\n{indent}    "));
+            let first = listed.lines().next().map_or(0, |line| line.chars().count());
+            // A long name leaves no room for the first addend beside it.
+            let start = if indent.len() + start.len() + first < WIDTH {
+                start.to_owned()
+            } else {
+                format!("{}\n{indent}    ", start.trim_end())
+            };
             out += &format!("{indent}{start}{listed}{end}\n");
         } else {
             if starts_item(indent, code, previous) {

@@ -425,34 +425,28 @@ impl<'a> ModelEmitter<'a> {
 
     /// The dense form of a compressed function.
     fn dense(&self, function: &ir::Function, shapes: &[Shape<'_>]) -> FunctionText {
-        let mut zeros = Zeros::new();
-        let (mut lists, mut outputs, mut results) = (Vec::new(), Vec::new(), Vec::new());
-        for (output, shape) in function.outputs.iter().zip(shapes) {
-            let names = shape.entry_names();
-            lists.push(format!("[{}]", names.join(", ")));
-            results.push(shape.result());
-            outputs.push((output.name.clone(), shape.dense(&names, &mut zeros)));
-        }
-        // A result that is zero all over is the last zero itself.
-        if let ([(_, result)], Some((name, of, component))) = (outputs.as_mut_slice(), zeros.last())
-            && result == name
-        {
-            *result = format!("{of}::splat({component})");
-            zeros.pop();
-        }
+        let results: Vec<String> = shapes.iter().map(Shape::result).collect();
+        let call = format!("{}(x, u, p)", values_name(function));
+        let named = function.outputs.iter().map(|output| output.name.clone());
+        let values: Vec<String> = match shapes {
+            [_] => vec![call.clone()],
+            _ => named.collect(),
+        };
+        let source = (shapes.len() > 1).then(|| format!("let {} = {call};", tuple(&values)));
+        let dense: Vec<String> = shapes
+            .iter()
+            .zip(&values)
+            .map(|(shape, values)| shape.scattered(values))
+            .collect();
         FunctionText {
             name: function.name.clone(),
             docs: summary(function),
             arguments: arguments(|kind| kind != Kind::Noise, &BTreeSet::new()),
             result: tuple(&results),
-            source: Some(format!(
-                "let {} = {}(x, u, p);",
-                tuple(&lists),
-                values_name(function)
-            )),
+            source,
             statements: Vec::new(),
-            zeros,
-            outputs,
+            zeros: Zeros::new(),
+            outputs: vec![(String::new(), tuple(&dense))],
         }
     }
 }

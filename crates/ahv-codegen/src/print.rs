@@ -66,7 +66,7 @@ pub(crate) fn reference(scope: &mut Scope<'_>, id: Id) -> String {
 /// The definition of a node, whether or not it has a name.
 pub(crate) fn definition(scope: &mut Scope<'_>, id: Id) -> Value {
     if let Node::Sum(terms) = scope.dag.node(id).clone() {
-        let addends = spell_sum(scope, terms);
+        let addends = spell_sum(scope, terms, scope.is_defined(id));
         if addends.len() >= LISTED && addends.iter().all(|a| a.chars().count() <= WIDEST) {
             return Value::Addends(addends);
         }
@@ -123,7 +123,7 @@ fn spell(scope: &mut Scope<'_>, id: Id) -> (String, Binding) {
             };
             (format!("{argument}.{name}"), Binding::Atom)
         }
-        Node::Sum(terms) => (spell_sum(scope, terms).join(" "), Binding::Sum),
+        Node::Sum(terms) => (spell_sum(scope, terms, false).join(" "), Binding::Sum),
         Node::Product(coefficient, factors) => spell_product(scope, coefficient, &factors),
         Node::Power(base, -1) => {
             scope.cost.divisions += 1;
@@ -155,9 +155,19 @@ fn spell(scope: &mut Scope<'_>, id: Id) -> (String, Binding) {
     }
 }
 
-fn spell_sum(scope: &mut Scope<'_>, mut terms: Vec<(f64, Id)>) -> Vec<String> {
-    // A sum reads best from a positive addend; addition in another order is the same work.
-    if let Some(first) = terms.iter().position(|&(coefficient, _)| coefficient > 0.0) {
+fn spell_sum(
+    scope: &mut Scope<'_>,
+    mut terms: Vec<(f64, Id)>,
+    constant_first: bool,
+) -> Vec<String> {
+    // A sum reads best from a positive addend, a polynomial from its constant: a new monomial is then a line of its
+    // own wherever it stands. Addition in another order is the same work.
+    let positive = |&(coefficient, _): &(f64, Id)| coefficient > 0.0;
+    let constant = terms
+        .iter()
+        .position(|term| constant_first && positive(term) && scope.dag.is_parametric(term.1));
+    let positive = terms.iter().position(positive);
+    if let Some(first) = constant.or(positive) {
         let lead = terms.remove(first);
         terms.insert(0, lead);
     }

@@ -30,6 +30,13 @@ impl<'a> Shape<'a> {
     ) -> Result<Self, EmitError> {
         let mut bases = Vec::new();
         for name in &output.basis {
+            let variables = if name == "parameter" {
+                parameters
+            } else {
+                model.bases.get(name).ok_or_else(|| {
+                    EmitError::Mismatch(format!("model `{}` has no basis `{name}`", model.name))
+                })?
+            };
             let vector = match name.as_str() {
                 "state" => "State",
                 "input" => "Input",
@@ -37,14 +44,6 @@ impl<'a> Shape<'a> {
                 "parameter" => "Parameters",
                 "mode" => "",
                 _ => return Err(no_form(model, output)),
-            };
-            let variables = if name == "parameter" {
-                parameters
-            } else {
-                model
-                    .bases
-                    .get(name)
-                    .ok_or_else(|| no_form(model, output))?
             };
             bases.push(Basis {
                 name,
@@ -180,12 +179,17 @@ impl<'a> Shape<'a> {
             .map(|position| values[position].clone())
     }
 
-    /// Names for the entries of the compressed form.
-    pub(crate) fn entry_names(&self) -> Vec<String> {
-        let entries = self.output.entries.iter();
-        entries
-            .map(|entry| format!("{}_by_{}", entry.at[0], entry.at[1..].join("_")))
-            .collect()
+    /// The dense form as an expression of the compressed one.
+    pub(crate) fn scattered(&self, values: &str) -> String {
+        let method = if self.output.symmetric {
+            "symmetric"
+        } else {
+            "dense"
+        };
+        let pattern = self
+            .pattern()
+            .map_or_else(String::new, |pattern| pattern.name);
+        format!("{pattern}.{method}(&{values})")
     }
 
     /// The pattern of the compressed form, one entry a line: its name, its indices, its shape.

@@ -59,6 +59,13 @@ fn no_line_is_too_long_to_review_and_files_say_where_they_come_from() {
     assert!(wide.is_empty(), "too long:\n{}", wide.join("\n"));
 }
 
+/// The first line in which two texts differ.
+fn first_difference(ours: &str, theirs: &str) -> String {
+    let mut pairs = ours.lines().zip(theirs.lines());
+    let found = pairs.find(|(a, b)| a != b);
+    format!("{found:?}")
+}
+
 #[test]
 fn si_is_another_package_in_numbers_and_units_alone() {
     let options = |units: &str| Options {
@@ -67,7 +74,13 @@ fn si_is_another_package_in_numbers_and_units_alone() {
     };
     let plain = emit(&TABLES.map(table), &irs(), &Options::default()).unwrap();
     let same = emit(&TABLES.map(table), &irs(), &options("ft-slug-s-rad")).unwrap();
-    assert!(plain == same, "the system of the tables was named");
+    for (path, text) in &plain {
+        assert!(
+            *text == same[path],
+            "{path}: {}",
+            first_difference(text, &same[path])
+        );
+    }
     let si = emit(&TABLES.map(table), &irs(), &options("si")).unwrap();
     assert!(plain.keys().eq(si.keys()));
     // Without comments, the functions are the same: a unit of length does not change an equation.
@@ -80,7 +93,12 @@ fn si_is_another_package_in_numbers_and_units_alone() {
     for (path, text) in &plain {
         let numbers = ["nominal.rs", "parameters.rs", "mod.rs"];
         if path.ends_with(".rs") && !numbers.iter().any(|name| path.ends_with(name)) {
-            assert!(code(text) == code(&si[path]), "{path}");
+            let (ours, theirs) = (code(text).join("\n"), code(&si[path]).join("\n"));
+            assert!(
+                ours == theirs,
+                "{path}: {}",
+                first_difference(&ours, &theirs)
+            );
         }
     }
     for (path, text) in si.iter().filter(|(path, _)| path.ends_with("nominal.rs")) {

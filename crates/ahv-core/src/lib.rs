@@ -3,6 +3,8 @@
 //! * [`Real`]: the scalar, with elementary functions that give the same bits on every machine.
 //! * [`Vector`]: a vector whose components have names and units (a state, an input, a row of a Jacobian).
 //! * [`Model`], [`DifferentiableModel`], [`StochasticModel`]: what a generated model can do.
+//! * [`ItoCorrected`], [`DifferentiableNoise`], [`AdditiveNoise`], [`CommutativeNoise`], [`ColouredNoise`]: what schemes
+//!   for stochastic equations ask for.
 //! * [`Bounds`]: an interval of validity.
 //! * [`Pattern`]: where the entries of a compressed matrix stand.
 //! * [`NoiseClass`]: how a column of the diffusion depends on the state.
@@ -22,7 +24,10 @@ mod real;
 mod vector;
 
 pub use bounds::{Bounds, Outside, first_outside};
-pub use model::{DifferentiableModel, Model, StochasticModel};
+pub use model::{
+    AdditiveNoise, ColouredNoise, CommutativeNoise, DifferentiableModel, DifferentiableNoise,
+    ItoCorrected, Model, StochasticModel,
+};
 pub use noise::NoiseClass;
 pub use pattern::Pattern;
 pub use provenance::{Provenance, Status};

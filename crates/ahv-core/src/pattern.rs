@@ -1,5 +1,7 @@
 //! Where the entries of compressed matrices stand.
 
+use crate::{Real, Vector};
+
 /// The structurally non-zero entries of a matrix (`D` = 2) or of an array of more indices, in the order in which its
 /// compressed form holds them: row by row.
 ///
@@ -26,6 +28,43 @@ impl<const D: usize> Pattern<D> {
     /// Whether there is no entry.
     pub const fn is_empty(&self) -> bool {
         self.at.is_empty()
+    }
+}
+
+impl Pattern<2> {
+    /// The matrix, a vector of rows, whose structurally non-zero entries are `values`.
+    pub fn dense<R: Real, C: Vector<R>, M: Vector<C>>(&self, values: &[R]) -> M {
+        let mut entries = self.at.iter().zip(values).peekable();
+        M::from_fn(|i| {
+            C::from_fn(|j| {
+                let here = entries.next_if(|(at, _)| **at == [i, j]);
+                here.map_or(R::ZERO, |(_, value)| *value)
+            })
+        })
+    }
+}
+
+impl Pattern<3> {
+    /// The array, a vector of matrices, whose structurally non-zero entries are `values`.
+    pub fn dense<R: Real, D: Vector<R>, C: Vector<D>, M: Vector<C>>(&self, values: &[R]) -> M {
+        let mut entries = self.at.iter().zip(values).peekable();
+        M::from_fn(|i| {
+            C::from_fn(|j| {
+                D::from_fn(|k| {
+                    let here = entries.next_if(|(at, _)| **at == [i, j, k]);
+                    here.map_or(R::ZERO, |(_, value)| *value)
+                })
+            })
+        })
+    }
+
+    /// The same where entries stand for their mirror images in the last two indices too.
+    pub fn symmetric<R: Real, D: Vector<R>, C: Vector<D>, M: Vector<C>>(&self, values: &[R]) -> M {
+        let entry = |i, j: usize, k: usize| {
+            let position = self.at.binary_search(&[i, j.max(k), j.min(k)]).ok()?;
+            values.get(position).copied()
+        };
+        M::from_fn(|i| C::from_fn(|j| D::from_fn(|k| entry(i, j, k).unwrap_or(R::ZERO))))
     }
 }
 

@@ -36,37 +36,37 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
-    let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_0;
+        + p.t_alpha * x.alpha; // lb/ft
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e;
     let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_0;
-    let c_m = p.c_m_alpha_2 * alpha_2
+        + p.c_d_delta_e * u.delta_e;
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_0;
+        + p.c_m_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
 
     // Curve fits, (2)
-    let generalized_force_1 = p.n_1_alpha_2 * alpha_2
-        + p.n_1_alpha * x.alpha
-        + p.n_1_0; // (ft*slug)^0.5/s^2
+    let generalized_force_1 = p.n_1_0
+        + p.n_1_alpha_2 * alpha_2
+        + p.n_1_alpha * x.alpha; // (ft*slug)^0.5/s^2
 
     // Flexible modes, (1)
     let modal_load_1 = generalized_force_1
@@ -74,10 +74,10 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
         - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
 
     // Curve fits, (2)
-    let generalized_force_2 = p.n_2_alpha_2 * alpha_2
+    let generalized_force_2 = p.n_2_0
+        + p.n_2_alpha_2 * alpha_2
         + p.n_2_alpha * x.alpha
-        + p.n_2_delta_e * u.delta_e
-        + p.n_2_0; // (ft*slug)^0.5/s^2
+        + p.n_2_delta_e * u.delta_e; // (ft*slug)^0.5/s^2
 
     // Flexible modes, (1)
     let modal_load_2 = generalized_force_2

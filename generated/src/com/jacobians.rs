@@ -106,28 +106,28 @@ pub fn jacobians_values<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
-    let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_0;
+        + p.t_alpha * x.alpha; // lb/ft
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e;
     let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_0;
-    let c_m = p.c_m_alpha_2 * alpha_2
+        + p.c_d_delta_e * u.delta_e;
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_0;
+        + p.c_m_delta_e * u.delta_e;
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
@@ -293,160 +293,8 @@ pub fn jacobians<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
-    let (
-        [velocity_by_velocity,
-        velocity_by_altitude,
-        velocity_by_gamma,
-        velocity_by_alpha,
-        altitude_by_velocity,
-        altitude_by_gamma,
-        gamma_by_velocity,
-        gamma_by_altitude,
-        gamma_by_gamma,
-        gamma_by_alpha,
-        alpha_by_velocity,
-        alpha_by_altitude,
-        alpha_by_gamma,
-        alpha_by_alpha,
-        alpha_by_pitch_rate,
-        pitch_rate_by_velocity,
-        pitch_rate_by_altitude,
-        pitch_rate_by_alpha,
-        pitch_rate_by_eta_1,
-        pitch_rate_by_eta_dot_1,
-        pitch_rate_by_eta_2,
-        pitch_rate_by_eta_dot_2,
-        eta_1_by_eta_dot_1,
-        eta_dot_1_by_velocity,
-        eta_dot_1_by_altitude,
-        eta_dot_1_by_alpha,
-        eta_dot_1_by_eta_1,
-        eta_dot_1_by_eta_dot_1,
-        eta_dot_1_by_eta_2,
-        eta_dot_1_by_eta_dot_2,
-        eta_2_by_eta_dot_2,
-        eta_dot_2_by_velocity,
-        eta_dot_2_by_altitude,
-        eta_dot_2_by_alpha,
-        eta_dot_2_by_eta_1,
-        eta_dot_2_by_eta_dot_1,
-        eta_dot_2_by_eta_2,
-        eta_dot_2_by_eta_dot_2,
-        ],
-        [velocity_by_phi,
-        velocity_by_delta_e,
-        gamma_by_phi,
-        gamma_by_delta_e,
-        alpha_by_phi,
-        alpha_by_delta_e,
-        pitch_rate_by_phi,
-        pitch_rate_by_delta_e,
-        eta_dot_1_by_phi,
-        eta_dot_1_by_delta_e,
-        eta_dot_2_by_phi,
-        eta_dot_2_by_delta_e,
-        ],
-    ) = jacobians_values(x, u, p);
-
-    // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    let state = State {
-        velocity: State {
-            velocity: velocity_by_velocity,
-            altitude: velocity_by_altitude,
-            gamma: velocity_by_gamma,
-            alpha: velocity_by_alpha,
-            ..no_state
-        },
-        altitude: State {
-            velocity: altitude_by_velocity,
-            gamma: altitude_by_gamma,
-            ..no_state
-        },
-        gamma: State {
-            velocity: gamma_by_velocity,
-            altitude: gamma_by_altitude,
-            gamma: gamma_by_gamma,
-            alpha: gamma_by_alpha,
-            ..no_state
-        },
-        alpha: State {
-            velocity: alpha_by_velocity,
-            altitude: alpha_by_altitude,
-            gamma: alpha_by_gamma,
-            alpha: alpha_by_alpha,
-            pitch_rate: alpha_by_pitch_rate,
-            ..no_state
-        },
-        pitch_rate: State {
-            velocity: pitch_rate_by_velocity,
-            altitude: pitch_rate_by_altitude,
-            alpha: pitch_rate_by_alpha,
-            eta_1: pitch_rate_by_eta_1,
-            eta_dot_1: pitch_rate_by_eta_dot_1,
-            eta_2: pitch_rate_by_eta_2,
-            eta_dot_2: pitch_rate_by_eta_dot_2,
-            ..no_state
-        },
-        eta_1: State {
-            eta_dot_1: eta_1_by_eta_dot_1,
-            ..no_state
-        },
-        eta_dot_1: State {
-            velocity: eta_dot_1_by_velocity,
-            altitude: eta_dot_1_by_altitude,
-            alpha: eta_dot_1_by_alpha,
-            eta_1: eta_dot_1_by_eta_1,
-            eta_dot_1: eta_dot_1_by_eta_dot_1,
-            eta_2: eta_dot_1_by_eta_2,
-            eta_dot_2: eta_dot_1_by_eta_dot_2,
-            ..no_state
-        },
-        eta_2: State {
-            eta_dot_2: eta_2_by_eta_dot_2,
-            ..no_state
-        },
-        eta_dot_2: State {
-            velocity: eta_dot_2_by_velocity,
-            altitude: eta_dot_2_by_altitude,
-            alpha: eta_dot_2_by_alpha,
-            eta_1: eta_dot_2_by_eta_1,
-            eta_dot_1: eta_dot_2_by_eta_dot_1,
-            eta_2: eta_dot_2_by_eta_2,
-            eta_dot_2: eta_dot_2_by_eta_dot_2,
-            ..no_state
-        },
-    };
-    let input = State {
-        velocity: Input {
-            phi: velocity_by_phi,
-            delta_e: velocity_by_delta_e,
-        },
-        gamma: Input {
-            phi: gamma_by_phi,
-            delta_e: gamma_by_delta_e,
-        },
-        alpha: Input {
-            phi: alpha_by_phi,
-            delta_e: alpha_by_delta_e,
-        },
-        pitch_rate: Input {
-            phi: pitch_rate_by_phi,
-            delta_e: pitch_rate_by_delta_e,
-        },
-        eta_dot_1: Input {
-            phi: eta_dot_1_by_phi,
-            delta_e: eta_dot_1_by_delta_e,
-        },
-        eta_dot_2: Input {
-            phi: eta_dot_2_by_phi,
-            delta_e: eta_dot_2_by_delta_e,
-        },
-        ..no_state_input
-    };
-    (state, input)
+    let (state, input) = jacobians_values(x, u, p);
+    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
@@ -485,37 +333,37 @@ pub fn drift_and_jacobians<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
-    let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_0;
+        + p.t_alpha * x.alpha; // lb/ft
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e;
     let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_0;
-    let c_m = p.c_m_alpha_2 * alpha_2
+        + p.c_d_delta_e * u.delta_e;
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_0;
+        + p.c_m_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
 
     // Curve fits, (2)
-    let generalized_force_1 = p.n_1_alpha_2 * alpha_2
-        + p.n_1_alpha * x.alpha
-        + p.n_1_0; // (ft*slug)^0.5/s^2
+    let generalized_force_1 = p.n_1_0
+        + p.n_1_alpha_2 * alpha_2
+        + p.n_1_alpha * x.alpha; // (ft*slug)^0.5/s^2
 
     // Flexible modes, (1)
     let modal_load_1 = generalized_force_1
@@ -523,10 +371,10 @@ pub fn drift_and_jacobians<R: Real>(
         - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
 
     // Curve fits, (2)
-    let generalized_force_2 = p.n_2_alpha_2 * alpha_2
+    let generalized_force_2 = p.n_2_0
+        + p.n_2_alpha_2 * alpha_2
         + p.n_2_alpha * x.alpha
-        + p.n_2_delta_e * u.delta_e
-        + p.n_2_0; // (ft*slug)^0.5/s^2
+        + p.n_2_delta_e * u.delta_e; // (ft*slug)^0.5/s^2
 
     // Flexible modes, (1)
     let modal_load_2 = generalized_force_2

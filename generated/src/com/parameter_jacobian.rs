@@ -3,7 +3,7 @@
 //! Functions of COM. Units are foot, slug, second and radian.
 
 use super::{Input, ParameterJacobian, Parameters, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
 pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
@@ -201,37 +201,37 @@ pub fn parameter_jacobian_values<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
-    let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_0;
+        + p.t_alpha * x.alpha; // lb/ft
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e;
     let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_0;
-    let c_m = p.c_m_alpha_2 * alpha_2
+        + p.c_d_delta_e * u.delta_e;
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_0;
+        + p.c_m_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
 
     // Curve fits, (2)
-    let generalized_force_1 = p.n_1_alpha_2 * alpha_2
-        + p.n_1_alpha * x.alpha
-        + p.n_1_0; // (ft*slug)^0.5/s^2
+    let generalized_force_1 = p.n_1_0
+        + p.n_1_alpha_2 * alpha_2
+        + p.n_1_alpha * x.alpha; // (ft*slug)^0.5/s^2
 
     // Flexible modes, (1)
     let modal_load_1 = generalized_force_1
@@ -239,10 +239,10 @@ pub fn parameter_jacobian_values<R: Real>(
         - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
 
     // Curve fits, (2)
-    let generalized_force_2 = p.n_2_alpha_2 * alpha_2
+    let generalized_force_2 = p.n_2_0
+        + p.n_2_alpha_2 * alpha_2
         + p.n_2_alpha * x.alpha
-        + p.n_2_delta_e * u.delta_e
-        + p.n_2_0; // (ft*slug)^0.5/s^2
+        + p.n_2_delta_e * u.delta_e; // (ft*slug)^0.5/s^2
 
     // Flexible modes, (1)
     let modal_load_2 = generalized_force_2
@@ -290,13 +290,13 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_eta_acceleration_1_d_h_s = -p.psi_1 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_eta_acceleration_2_d_h_s = -p.psi_2 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
     let radius_ratio_2 = radius_ratio * radius_ratio;
-    let d_radius_ratio_d_r_e = radius_ratio_2 * x.altitude * p.earth_curvature_over_r_e; // 1/ft
-    let d_gravity_d_r_e = p.two_g * radius_ratio * d_radius_ratio_d_r_e; // 1/s^2
-    let d_velocity_rate_d_r_e = -sin_gamma * d_gravity_d_r_e; // 1/s^2
-    let velocity_radius_ratio_over_r_e = x.velocity * radius_ratio * p.inv_r_e;
-    let d_gravity_turn_d_r_e = p.earth_curvature
-        * (velocity_radius_ratio_over_r_e - x.velocity * d_radius_ratio_d_r_e)
-        + d_gravity_d_r_e * inv_velocity; // 1/s/ft
+    let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
+    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
+        * inv_velocity;
+    let d_gravity_turn_d_r_e = p.inv_r_e
+        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+            + x.velocity * p.earth_curvature_2
+                * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_modal_load_1_d_omega_1 = -(x.eta_dot_1 * p.two_zeta_1
         + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
@@ -326,13 +326,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_eta_acceleration_1_d_psi_2 = -p.psi_1 * d_pitch_acceleration_d_psi_2; // 1/s^2
     let d_eta_acceleration_2_d_psi_2 = -(pitch_acceleration
         + p.psi_2 * d_pitch_acceleration_d_psi_2); // 1/s^2
-    let d_radius_ratio_d_spherical_earth = -radius_ratio_2 * x.altitude * p.inv_r_e;
-    let d_gravity_d_spherical_earth = p.two_g * radius_ratio
-        * d_radius_ratio_d_spherical_earth; // ft/s^2
-    let d_velocity_rate_d_spherical_earth = -sin_gamma * d_gravity_d_spherical_earth; // ft/s^2
-    let d_gravity_turn_d_spherical_earth = d_gravity_d_spherical_earth * inv_velocity
-        - velocity_radius_ratio_over_r_e
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_spherical_earth; // 1/s
+    let d_gravity_turn_d_spherical_earth = p.inv_r_e
+        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_eta_acceleration_1_d_n_1_alpha_2 = alpha_2
         + p.psi_1_2_over_effective_inertia * alpha_2; // rad^2
@@ -355,8 +351,10 @@ pub fn parameter_jacobian_values<R: Real>(
         d_velocity_rate_d_h_0,
         d_velocity_rate_d_h_s,
         -sin_gamma * radius_ratio_2,
-        d_velocity_rate_d_r_e,
-        d_velocity_rate_d_spherical_earth,
+        sin_gamma * p.two_g_earth_curvature_over_r_e * radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
+        sin_gamma * p.minus_two_g_over_r_e * radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
         cos_alpha * u.phi * alpha_3 * p.inv_m,
         cos_alpha * u.phi * alpha_2 * p.inv_m,
         cos_alpha * u.phi * x.alpha * p.inv_m,
@@ -514,228 +512,5 @@ pub fn parameter_jacobian<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ParameterJacobian<R> {
-    let [velocity_by_m, velocity_by_s, velocity_by_rho_0, velocity_by_h_0,
-    velocity_by_h_s, velocity_by_g, velocity_by_r_e, velocity_by_spherical_earth,
-    velocity_by_t_phi_alpha_3, velocity_by_t_phi_alpha_2, velocity_by_t_phi_alpha,
-    velocity_by_t_phi, velocity_by_t_alpha_3, velocity_by_t_alpha_2, velocity_by_t_alpha,
-    velocity_by_t_0, velocity_by_c_d_alpha_2, velocity_by_c_d_alpha,
-    velocity_by_c_d_delta_e_2, velocity_by_c_d_delta_e, velocity_by_c_d_0, gamma_by_m,
-    gamma_by_s, gamma_by_rho_0, gamma_by_h_0, gamma_by_h_s, gamma_by_g, gamma_by_r_e,
-    gamma_by_spherical_earth, gamma_by_t_phi_alpha_3, gamma_by_t_phi_alpha_2,
-    gamma_by_t_phi_alpha, gamma_by_t_phi, gamma_by_t_alpha_3, gamma_by_t_alpha_2,
-    gamma_by_t_alpha, gamma_by_t_0, gamma_by_c_l_alpha, gamma_by_c_l_delta_e,
-    gamma_by_c_l_0, alpha_by_m, alpha_by_s, alpha_by_rho_0, alpha_by_h_0, alpha_by_h_s,
-    alpha_by_g, alpha_by_r_e, alpha_by_spherical_earth, alpha_by_t_phi_alpha_3,
-    alpha_by_t_phi_alpha_2, alpha_by_t_phi_alpha, alpha_by_t_phi, alpha_by_t_alpha_3,
-    alpha_by_t_alpha_2, alpha_by_t_alpha, alpha_by_t_0, alpha_by_c_l_alpha,
-    alpha_by_c_l_delta_e, alpha_by_c_l_0, pitch_rate_by_i_yy, pitch_rate_by_s,
-    pitch_rate_by_c_bar, pitch_rate_by_z_t, pitch_rate_by_rho_0, pitch_rate_by_h_0,
-    pitch_rate_by_h_s, pitch_rate_by_omega_1, pitch_rate_by_omega_2,
-    pitch_rate_by_zeta_1, pitch_rate_by_zeta_2, pitch_rate_by_psi_1, pitch_rate_by_psi_2,
-    pitch_rate_by_t_phi_alpha_3, pitch_rate_by_t_phi_alpha_2, pitch_rate_by_t_phi_alpha,
-    pitch_rate_by_t_phi, pitch_rate_by_t_alpha_3, pitch_rate_by_t_alpha_2,
-    pitch_rate_by_t_alpha, pitch_rate_by_t_0, pitch_rate_by_c_m_alpha_2,
-    pitch_rate_by_c_m_alpha, pitch_rate_by_c_m_delta_e, pitch_rate_by_c_m_0,
-    pitch_rate_by_n_1_alpha_2, pitch_rate_by_n_1_alpha, pitch_rate_by_n_1_0,
-    pitch_rate_by_n_2_alpha_2, pitch_rate_by_n_2_alpha, pitch_rate_by_n_2_delta_e,
-    pitch_rate_by_n_2_0, eta_dot_1_by_i_yy, eta_dot_1_by_s, eta_dot_1_by_c_bar,
-    eta_dot_1_by_z_t, eta_dot_1_by_rho_0, eta_dot_1_by_h_0, eta_dot_1_by_h_s,
-    eta_dot_1_by_omega_1, eta_dot_1_by_omega_2, eta_dot_1_by_zeta_1, eta_dot_1_by_zeta_2,
-    eta_dot_1_by_psi_1, eta_dot_1_by_psi_2, eta_dot_1_by_t_phi_alpha_3,
-    eta_dot_1_by_t_phi_alpha_2, eta_dot_1_by_t_phi_alpha, eta_dot_1_by_t_phi,
-    eta_dot_1_by_t_alpha_3, eta_dot_1_by_t_alpha_2, eta_dot_1_by_t_alpha,
-    eta_dot_1_by_t_0, eta_dot_1_by_c_m_alpha_2, eta_dot_1_by_c_m_alpha,
-    eta_dot_1_by_c_m_delta_e, eta_dot_1_by_c_m_0, eta_dot_1_by_n_1_alpha_2,
-    eta_dot_1_by_n_1_alpha, eta_dot_1_by_n_1_0, eta_dot_1_by_n_2_alpha_2,
-    eta_dot_1_by_n_2_alpha, eta_dot_1_by_n_2_delta_e, eta_dot_1_by_n_2_0,
-    eta_dot_2_by_i_yy, eta_dot_2_by_s, eta_dot_2_by_c_bar, eta_dot_2_by_z_t,
-    eta_dot_2_by_rho_0, eta_dot_2_by_h_0, eta_dot_2_by_h_s, eta_dot_2_by_omega_1,
-    eta_dot_2_by_omega_2, eta_dot_2_by_zeta_1, eta_dot_2_by_zeta_2, eta_dot_2_by_psi_1,
-    eta_dot_2_by_psi_2, eta_dot_2_by_t_phi_alpha_3, eta_dot_2_by_t_phi_alpha_2,
-    eta_dot_2_by_t_phi_alpha, eta_dot_2_by_t_phi, eta_dot_2_by_t_alpha_3,
-    eta_dot_2_by_t_alpha_2, eta_dot_2_by_t_alpha, eta_dot_2_by_t_0,
-    eta_dot_2_by_c_m_alpha_2, eta_dot_2_by_c_m_alpha, eta_dot_2_by_c_m_delta_e,
-    eta_dot_2_by_c_m_0, eta_dot_2_by_n_1_alpha_2, eta_dot_2_by_n_1_alpha,
-    eta_dot_2_by_n_1_0, eta_dot_2_by_n_2_alpha_2, eta_dot_2_by_n_2_alpha,
-    eta_dot_2_by_n_2_delta_e, eta_dot_2_by_n_2_0] = parameter_jacobian_values(x, u, p);
-
-    // Result
-    let no_parameter = Parameters::splat(R::ZERO);
-    let no_state_parameter = State::splat(no_parameter);
-    State {
-        velocity: Parameters {
-            m: velocity_by_m,
-            s: velocity_by_s,
-            rho_0: velocity_by_rho_0,
-            h_0: velocity_by_h_0,
-            h_s: velocity_by_h_s,
-            g: velocity_by_g,
-            r_e: velocity_by_r_e,
-            spherical_earth: velocity_by_spherical_earth,
-            t_phi_alpha_3: velocity_by_t_phi_alpha_3,
-            t_phi_alpha_2: velocity_by_t_phi_alpha_2,
-            t_phi_alpha: velocity_by_t_phi_alpha,
-            t_phi: velocity_by_t_phi,
-            t_alpha_3: velocity_by_t_alpha_3,
-            t_alpha_2: velocity_by_t_alpha_2,
-            t_alpha: velocity_by_t_alpha,
-            t_0: velocity_by_t_0,
-            c_d_alpha_2: velocity_by_c_d_alpha_2,
-            c_d_alpha: velocity_by_c_d_alpha,
-            c_d_delta_e_2: velocity_by_c_d_delta_e_2,
-            c_d_delta_e: velocity_by_c_d_delta_e,
-            c_d_0: velocity_by_c_d_0,
-            ..no_parameter
-        },
-        gamma: Parameters {
-            m: gamma_by_m,
-            s: gamma_by_s,
-            rho_0: gamma_by_rho_0,
-            h_0: gamma_by_h_0,
-            h_s: gamma_by_h_s,
-            g: gamma_by_g,
-            r_e: gamma_by_r_e,
-            spherical_earth: gamma_by_spherical_earth,
-            t_phi_alpha_3: gamma_by_t_phi_alpha_3,
-            t_phi_alpha_2: gamma_by_t_phi_alpha_2,
-            t_phi_alpha: gamma_by_t_phi_alpha,
-            t_phi: gamma_by_t_phi,
-            t_alpha_3: gamma_by_t_alpha_3,
-            t_alpha_2: gamma_by_t_alpha_2,
-            t_alpha: gamma_by_t_alpha,
-            t_0: gamma_by_t_0,
-            c_l_alpha: gamma_by_c_l_alpha,
-            c_l_delta_e: gamma_by_c_l_delta_e,
-            c_l_0: gamma_by_c_l_0,
-            ..no_parameter
-        },
-        alpha: Parameters {
-            m: alpha_by_m,
-            s: alpha_by_s,
-            rho_0: alpha_by_rho_0,
-            h_0: alpha_by_h_0,
-            h_s: alpha_by_h_s,
-            g: alpha_by_g,
-            r_e: alpha_by_r_e,
-            spherical_earth: alpha_by_spherical_earth,
-            t_phi_alpha_3: alpha_by_t_phi_alpha_3,
-            t_phi_alpha_2: alpha_by_t_phi_alpha_2,
-            t_phi_alpha: alpha_by_t_phi_alpha,
-            t_phi: alpha_by_t_phi,
-            t_alpha_3: alpha_by_t_alpha_3,
-            t_alpha_2: alpha_by_t_alpha_2,
-            t_alpha: alpha_by_t_alpha,
-            t_0: alpha_by_t_0,
-            c_l_alpha: alpha_by_c_l_alpha,
-            c_l_delta_e: alpha_by_c_l_delta_e,
-            c_l_0: alpha_by_c_l_0,
-            ..no_parameter
-        },
-        pitch_rate: Parameters {
-            i_yy: pitch_rate_by_i_yy,
-            s: pitch_rate_by_s,
-            c_bar: pitch_rate_by_c_bar,
-            z_t: pitch_rate_by_z_t,
-            rho_0: pitch_rate_by_rho_0,
-            h_0: pitch_rate_by_h_0,
-            h_s: pitch_rate_by_h_s,
-            omega_1: pitch_rate_by_omega_1,
-            omega_2: pitch_rate_by_omega_2,
-            zeta_1: pitch_rate_by_zeta_1,
-            zeta_2: pitch_rate_by_zeta_2,
-            psi_1: pitch_rate_by_psi_1,
-            psi_2: pitch_rate_by_psi_2,
-            t_phi_alpha_3: pitch_rate_by_t_phi_alpha_3,
-            t_phi_alpha_2: pitch_rate_by_t_phi_alpha_2,
-            t_phi_alpha: pitch_rate_by_t_phi_alpha,
-            t_phi: pitch_rate_by_t_phi,
-            t_alpha_3: pitch_rate_by_t_alpha_3,
-            t_alpha_2: pitch_rate_by_t_alpha_2,
-            t_alpha: pitch_rate_by_t_alpha,
-            t_0: pitch_rate_by_t_0,
-            c_m_alpha_2: pitch_rate_by_c_m_alpha_2,
-            c_m_alpha: pitch_rate_by_c_m_alpha,
-            c_m_delta_e: pitch_rate_by_c_m_delta_e,
-            c_m_0: pitch_rate_by_c_m_0,
-            n_1_alpha_2: pitch_rate_by_n_1_alpha_2,
-            n_1_alpha: pitch_rate_by_n_1_alpha,
-            n_1_0: pitch_rate_by_n_1_0,
-            n_2_alpha_2: pitch_rate_by_n_2_alpha_2,
-            n_2_alpha: pitch_rate_by_n_2_alpha,
-            n_2_delta_e: pitch_rate_by_n_2_delta_e,
-            n_2_0: pitch_rate_by_n_2_0,
-            ..no_parameter
-        },
-        eta_dot_1: Parameters {
-            i_yy: eta_dot_1_by_i_yy,
-            s: eta_dot_1_by_s,
-            c_bar: eta_dot_1_by_c_bar,
-            z_t: eta_dot_1_by_z_t,
-            rho_0: eta_dot_1_by_rho_0,
-            h_0: eta_dot_1_by_h_0,
-            h_s: eta_dot_1_by_h_s,
-            omega_1: eta_dot_1_by_omega_1,
-            omega_2: eta_dot_1_by_omega_2,
-            zeta_1: eta_dot_1_by_zeta_1,
-            zeta_2: eta_dot_1_by_zeta_2,
-            psi_1: eta_dot_1_by_psi_1,
-            psi_2: eta_dot_1_by_psi_2,
-            t_phi_alpha_3: eta_dot_1_by_t_phi_alpha_3,
-            t_phi_alpha_2: eta_dot_1_by_t_phi_alpha_2,
-            t_phi_alpha: eta_dot_1_by_t_phi_alpha,
-            t_phi: eta_dot_1_by_t_phi,
-            t_alpha_3: eta_dot_1_by_t_alpha_3,
-            t_alpha_2: eta_dot_1_by_t_alpha_2,
-            t_alpha: eta_dot_1_by_t_alpha,
-            t_0: eta_dot_1_by_t_0,
-            c_m_alpha_2: eta_dot_1_by_c_m_alpha_2,
-            c_m_alpha: eta_dot_1_by_c_m_alpha,
-            c_m_delta_e: eta_dot_1_by_c_m_delta_e,
-            c_m_0: eta_dot_1_by_c_m_0,
-            n_1_alpha_2: eta_dot_1_by_n_1_alpha_2,
-            n_1_alpha: eta_dot_1_by_n_1_alpha,
-            n_1_0: eta_dot_1_by_n_1_0,
-            n_2_alpha_2: eta_dot_1_by_n_2_alpha_2,
-            n_2_alpha: eta_dot_1_by_n_2_alpha,
-            n_2_delta_e: eta_dot_1_by_n_2_delta_e,
-            n_2_0: eta_dot_1_by_n_2_0,
-            ..no_parameter
-        },
-        eta_dot_2: Parameters {
-            i_yy: eta_dot_2_by_i_yy,
-            s: eta_dot_2_by_s,
-            c_bar: eta_dot_2_by_c_bar,
-            z_t: eta_dot_2_by_z_t,
-            rho_0: eta_dot_2_by_rho_0,
-            h_0: eta_dot_2_by_h_0,
-            h_s: eta_dot_2_by_h_s,
-            omega_1: eta_dot_2_by_omega_1,
-            omega_2: eta_dot_2_by_omega_2,
-            zeta_1: eta_dot_2_by_zeta_1,
-            zeta_2: eta_dot_2_by_zeta_2,
-            psi_1: eta_dot_2_by_psi_1,
-            psi_2: eta_dot_2_by_psi_2,
-            t_phi_alpha_3: eta_dot_2_by_t_phi_alpha_3,
-            t_phi_alpha_2: eta_dot_2_by_t_phi_alpha_2,
-            t_phi_alpha: eta_dot_2_by_t_phi_alpha,
-            t_phi: eta_dot_2_by_t_phi,
-            t_alpha_3: eta_dot_2_by_t_alpha_3,
-            t_alpha_2: eta_dot_2_by_t_alpha_2,
-            t_alpha: eta_dot_2_by_t_alpha,
-            t_0: eta_dot_2_by_t_0,
-            c_m_alpha_2: eta_dot_2_by_c_m_alpha_2,
-            c_m_alpha: eta_dot_2_by_c_m_alpha,
-            c_m_delta_e: eta_dot_2_by_c_m_delta_e,
-            c_m_0: eta_dot_2_by_c_m_0,
-            n_1_alpha_2: eta_dot_2_by_n_1_alpha_2,
-            n_1_alpha: eta_dot_2_by_n_1_alpha,
-            n_1_0: eta_dot_2_by_n_1_0,
-            n_2_alpha_2: eta_dot_2_by_n_2_alpha_2,
-            n_2_alpha: eta_dot_2_by_n_2_alpha,
-            n_2_delta_e: eta_dot_2_by_n_2_delta_e,
-            n_2_0: eta_dot_2_by_n_2_0,
-            ..no_parameter
-        },
-        ..no_state_parameter
-    }
+    PARAMETER_JACOBIAN_PATTERN.dense(&parameter_jacobian_values(x, u, p))
 }

@@ -35,9 +35,9 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -
 #[inline]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
-    p.c_l_alpha * x.alpha
+    p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.c_l_delta_e * u.delta_e
-        + p.c_l_0
 }
 
 /// Drag coefficient, eq. (3). Unit: 1.
@@ -49,11 +49,11 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let alpha_2 = x.alpha * x.alpha;
     let delta_e_2 = u.delta_e * u.delta_e;
 
-    p.c_d_alpha_2 * alpha_2
+    p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
-        + p.c_d_0
 }
 
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
@@ -64,10 +64,10 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
 
-    p.c_m_alpha_2 * alpha_2
+    p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
-        + p.c_m_0
 }
 
 /// Thrust, eq. (3). Unit: lb/ft.
@@ -78,16 +78,16 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
+        + p.t_phi_alpha * x.alpha; // lb/ft
 
-    thrust_phi * u.phi
+    p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
         + p.t_alpha * x.alpha
-        + p.t_0
 }
 
 /// Lift, eq. (2). Unit: lb/ft.
@@ -103,9 +103,9 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Curve fits, (3)
-    let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_0;
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     reference_force * c_l
@@ -126,11 +126,11 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_0;
+        + p.c_d_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     reference_force * c_d
@@ -151,19 +151,19 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
-    let c_m = p.c_m_alpha_2 * alpha_2
+        + p.t_alpha * x.alpha; // lb/ft
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_0;
+        + p.c_m_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     p.z_t * thrust + reference_force * p.c_bar * c_m

@@ -3,7 +3,7 @@
 //! Functions of COM_RIGID. Units are foot, slug, second and radian.
 
 use super::{Hessian, Input, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`Hessian`] stand.
 pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
@@ -78,28 +78,28 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
-    let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_0;
+        + p.t_alpha * x.alpha; // lb/ft
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e;
     let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_0;
-    let c_m = p.c_m_alpha_2 * alpha_2
+        + p.c_d_delta_e * u.delta_e;
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_0;
+        + p.c_m_delta_e * u.delta_e;
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
@@ -327,141 +327,5 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
 #[inline]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
-    let [velocity_by_velocity_velocity, velocity_by_altitude_velocity,
-    velocity_by_altitude_altitude, velocity_by_gamma_altitude, velocity_by_gamma_gamma,
-    velocity_by_alpha_velocity, velocity_by_alpha_altitude, velocity_by_alpha_alpha,
-    altitude_by_gamma_velocity, altitude_by_gamma_gamma, gamma_by_velocity_velocity,
-    gamma_by_altitude_velocity, gamma_by_altitude_altitude, gamma_by_gamma_velocity,
-    gamma_by_gamma_altitude, gamma_by_gamma_gamma, gamma_by_alpha_velocity,
-    gamma_by_alpha_altitude, gamma_by_alpha_alpha, alpha_by_velocity_velocity,
-    alpha_by_altitude_velocity, alpha_by_altitude_altitude, alpha_by_gamma_velocity,
-    alpha_by_gamma_altitude, alpha_by_gamma_gamma, alpha_by_alpha_velocity,
-    alpha_by_alpha_altitude, alpha_by_alpha_alpha, pitch_rate_by_velocity_velocity,
-    pitch_rate_by_altitude_velocity, pitch_rate_by_altitude_altitude,
-    pitch_rate_by_alpha_velocity, pitch_rate_by_alpha_altitude, pitch_rate_by_alpha_alpha,
-    ] = hessian_values(x, u, p);
-
-    // Result
-    let no_state = State::splat(R::ZERO);
-    let no_state_state = State::splat(no_state);
-    State {
-        velocity: State {
-            velocity: State {
-                velocity: velocity_by_velocity_velocity,
-                altitude: velocity_by_altitude_velocity,
-                alpha: velocity_by_alpha_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: velocity_by_altitude_velocity,
-                altitude: velocity_by_altitude_altitude,
-                gamma: velocity_by_gamma_altitude,
-                alpha: velocity_by_alpha_altitude,
-                ..no_state
-            },
-            gamma: State {
-                altitude: velocity_by_gamma_altitude,
-                gamma: velocity_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: velocity_by_alpha_velocity,
-                altitude: velocity_by_alpha_altitude,
-                alpha: velocity_by_alpha_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        altitude: State {
-            velocity: State {
-                gamma: altitude_by_gamma_velocity,
-                ..no_state
-            },
-            gamma: State {
-                velocity: altitude_by_gamma_velocity,
-                gamma: altitude_by_gamma_gamma,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        gamma: State {
-            velocity: State {
-                velocity: gamma_by_velocity_velocity,
-                altitude: gamma_by_altitude_velocity,
-                gamma: gamma_by_gamma_velocity,
-                alpha: gamma_by_alpha_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: gamma_by_altitude_velocity,
-                altitude: gamma_by_altitude_altitude,
-                gamma: gamma_by_gamma_altitude,
-                alpha: gamma_by_alpha_altitude,
-                ..no_state
-            },
-            gamma: State {
-                velocity: gamma_by_gamma_velocity,
-                altitude: gamma_by_gamma_altitude,
-                gamma: gamma_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: gamma_by_alpha_velocity,
-                altitude: gamma_by_alpha_altitude,
-                alpha: gamma_by_alpha_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        alpha: State {
-            velocity: State {
-                velocity: alpha_by_velocity_velocity,
-                altitude: alpha_by_altitude_velocity,
-                gamma: alpha_by_gamma_velocity,
-                alpha: alpha_by_alpha_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: alpha_by_altitude_velocity,
-                altitude: alpha_by_altitude_altitude,
-                gamma: alpha_by_gamma_altitude,
-                alpha: alpha_by_alpha_altitude,
-                ..no_state
-            },
-            gamma: State {
-                velocity: alpha_by_gamma_velocity,
-                altitude: alpha_by_gamma_altitude,
-                gamma: alpha_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: alpha_by_alpha_velocity,
-                altitude: alpha_by_alpha_altitude,
-                alpha: alpha_by_alpha_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        pitch_rate: State {
-            velocity: State {
-                velocity: pitch_rate_by_velocity_velocity,
-                altitude: pitch_rate_by_altitude_velocity,
-                alpha: pitch_rate_by_alpha_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: pitch_rate_by_altitude_velocity,
-                altitude: pitch_rate_by_altitude_altitude,
-                alpha: pitch_rate_by_alpha_altitude,
-                ..no_state
-            },
-            alpha: State {
-                velocity: pitch_rate_by_alpha_velocity,
-                altitude: pitch_rate_by_alpha_altitude,
-                alpha: pitch_rate_by_alpha_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-    }
+    HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
 }

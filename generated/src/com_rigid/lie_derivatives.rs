@@ -30,21 +30,21 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
+        + p.t_alpha * x.alpha; // lb/ft
     let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_0;
+        + p.c_d_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     let drag = reference_force * c_d; // lb/ft
@@ -73,10 +73,10 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
+        + p.t_phi_alpha * x.alpha; // lb/ft
 
     // Derivatives with respect to phi
     let d_path_force_d_phi = cos_alpha * thrust_phi; // lb/ft
@@ -121,18 +121,18 @@ pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
-    let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_0;
+        + p.t_alpha * x.alpha; // lb/ft
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e;
 
     // Motion, (1)
     let force_turn = turn_factor * c_l + thrust * sin_alpha * inverse_momentum; // rad/s
@@ -160,10 +160,10 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
+        + p.t_phi_alpha * x.alpha; // lb/ft
 
     // Derivatives with respect to phi
     let d_force_turn_d_phi = inverse_momentum * sin_alpha * thrust_phi; // rad/s
@@ -217,24 +217,24 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
-    let thrust = thrust_phi * u.phi
+        + p.t_phi_alpha * x.alpha; // lb/ft
+    let thrust = p.t_0
+        + thrust_phi * u.phi
         + p.t_alpha_3 * alpha_3
         + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
-        + p.t_0; // lb/ft
-    let c_l = p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
-        + p.c_l_0;
+        + p.t_alpha * x.alpha; // lb/ft
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
+        + p.c_l_delta_e * u.delta_e;
     let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_0;
+        + p.c_d_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     let drag = reference_force * c_d; // lb/ft
@@ -276,10 +276,10 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi_alpha_3 * alpha_3
+    let thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * alpha_3
         + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha
-        + p.t_phi; // lb/ft
+        + p.t_phi_alpha * x.alpha; // lb/ft
 
     // Derivatives with respect to gamma
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad

@@ -66,15 +66,15 @@ pub fn diffusion_values<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
@@ -104,8 +104,10 @@ pub fn diffusion_values<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + p.c_l_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + p.c_l_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad
@@ -142,59 +144,7 @@ pub fn diffusion_values<R: Real>(
 /// and w_q are derivatives of the drift; the modes are driven as in (17), eq. (17).
 #[inline]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    let [velocity_by_w_gamma, velocity_by_w_alpha, altitude_by_w_gamma, gamma_by_w_gamma,
-    gamma_by_w_alpha, alpha_by_w_gamma, alpha_by_w_alpha, alpha_by_w_q,
-    pitch_rate_by_w_alpha, eta_dot_1_by_w_alpha, eta_dot_1_by_xi_1, eta_dot_2_by_w_alpha,
-    eta_dot_2_by_xi_1, eta_dot_2_by_xi_2, eta_dot_3_by_w_alpha, eta_dot_3_by_xi_1,
-    eta_dot_3_by_xi_3] = diffusion_values(x, u, p);
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let no_state_noise = State::splat(no_noise);
-    State {
-        velocity: Noise {
-            w_gamma: velocity_by_w_gamma,
-            w_alpha: velocity_by_w_alpha,
-            ..no_noise
-        },
-        altitude: Noise {
-            w_gamma: altitude_by_w_gamma,
-            ..no_noise
-        },
-        gamma: Noise {
-            w_gamma: gamma_by_w_gamma,
-            w_alpha: gamma_by_w_alpha,
-            ..no_noise
-        },
-        alpha: Noise {
-            w_gamma: alpha_by_w_gamma,
-            w_alpha: alpha_by_w_alpha,
-            w_q: alpha_by_w_q,
-            ..no_noise
-        },
-        pitch_rate: Noise {
-            w_alpha: pitch_rate_by_w_alpha,
-            ..no_noise
-        },
-        eta_dot_1: Noise {
-            w_alpha: eta_dot_1_by_w_alpha,
-            xi_1: eta_dot_1_by_xi_1,
-            ..no_noise
-        },
-        eta_dot_2: Noise {
-            w_alpha: eta_dot_2_by_w_alpha,
-            xi_1: eta_dot_2_by_xi_1,
-            xi_2: eta_dot_2_by_xi_2,
-            ..no_noise
-        },
-        eta_dot_3: Noise {
-            w_alpha: eta_dot_3_by_w_alpha,
-            xi_1: eta_dot_3_by_xi_1,
-            xi_3: eta_dot_3_by_xi_3,
-            ..no_noise
-        },
-        ..no_state_noise
-    }
+    DIFFUSION_PATTERN.dense(&diffusion_values(x, u, p))
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (17).
@@ -235,42 +185,42 @@ pub fn drift_and_diffusion<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * x.eta_1
         + p.c_l_eta_2 * x.eta_2
         + p.c_l_eta_3 * x.eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * x.eta_1
         + p.c_d_eta_2 * x.eta_2
         + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_alpha_2 * alpha_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * x.eta_1
         + p.c_m_eta_2 * x.eta_2
         + p.c_m_eta_3 * x.eta_3;
@@ -279,23 +229,24 @@ pub fn drift_and_diffusion<R: Real>(
     let thrust = reference_force * c_t; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Curve fits, (3)
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -304,7 +255,7 @@ pub fn drift_and_diffusion<R: Real>(
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
+    let force_turn = turn_factor * normal_coefficient; // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
     let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
@@ -344,8 +295,10 @@ pub fn drift_and_diffusion<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + p.c_l_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + p.c_l_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad
@@ -455,15 +408,15 @@ pub fn noise_increment<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
@@ -493,8 +446,10 @@ pub fn noise_increment<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + p.c_l_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + p.c_l_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad

@@ -3,7 +3,7 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{Hessian, Input, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`Hessian`] stand.
 pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
@@ -133,65 +133,66 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * x.eta_1
         + p.c_l_eta_2 * x.eta_2
         + p.c_l_eta_3 * x.eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * x.eta_1
         + p.c_d_eta_2 * x.eta_2
         + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_alpha_2 * alpha_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * x.eta_1
         + p.c_m_eta_2 * x.eta_2
         + p.c_m_eta_3 * x.eta_3;
 
     // Forces and moment, (2)
     let thrust = reference_force * c_t; // lb/ft
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Curve fits, (3)
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
@@ -228,10 +229,22 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + u.phi * d_c_t_phi_d_alpha; // 1/rad
     let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
     let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + p.c_l_alpha; // 1/rad
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
     let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+
+    // Derivatives with respect to eta_1
+    let d_normal_coefficient_d_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
+
+    // Derivatives with respect to eta_2
+    let d_normal_coefficient_d_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
+
+    // Derivatives with respect to eta_3
+    let d_normal_coefficient_d_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
 
     // Derivatives with respect to parameters
     let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
@@ -384,8 +397,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * d_radius_ratio_d_altitude + inv_velocity_2 * d_gravity_d_altitude); // 1/ft^2
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * d_density_d_altitude; // 1/ft^2
-    let c_l_plus_c_t_sin_alpha = c_l + c_t * sin_alpha;
-    let d2_force_turn_d_velocity_d_altitude = c_l_plus_c_t_sin_alpha
+    let d2_force_turn_d_velocity_d_altitude = normal_coefficient
         * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
     let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
         - cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
@@ -395,26 +407,20 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_velocity_d_alpha_term_1 = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + p.c_l_alpha;
     let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * d2_force_turn_d_velocity_d_alpha_term_1; // 1/ft
+        * d_normal_coefficient_d_alpha; // 1/ft
 
     // Derivatives with respect to eta_1
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
     let d2_force_turn_d_velocity_d_eta_1 = d_turn_factor_d_velocity
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
+        * d_normal_coefficient_d_eta_1; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
     let d2_force_turn_d_velocity_d_eta_2 = d_turn_factor_d_velocity
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
+        * d_normal_coefficient_d_eta_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
     let d2_force_turn_d_velocity_d_eta_3 = d_turn_factor_d_velocity
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
+        * d_normal_coefficient_d_eta_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
     let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
@@ -422,7 +428,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
     let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_force_turn_d_altitude_d_altitude = c_l_plus_c_t_sin_alpha
+    let d2_force_turn_d_altitude_d_altitude = normal_coefficient
         * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
         - cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
@@ -433,37 +439,45 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to alpha
     let d2_force_turn_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * d2_force_turn_d_velocity_d_alpha_term_1; // 1/s/ft
+        * d_normal_coefficient_d_alpha; // 1/s/ft
 
     // Derivatives with respect to eta_1
     let d2_force_turn_d_altitude_d_eta_1 = d_turn_factor_d_altitude
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
+        * d_normal_coefficient_d_eta_1; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
     let d2_force_turn_d_altitude_d_eta_2 = d_turn_factor_d_altitude
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
+        * d_normal_coefficient_d_eta_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
     let d2_force_turn_d_altitude_d_eta_3 = d_turn_factor_d_altitude
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
+        * d_normal_coefficient_d_eta_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to gamma
     let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
     let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
+        + sin_alpha * d2_c_t_d_alpha_d_alpha
+        + c_t * d_cos_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha = turn_factor
-        * (R::TWO * d_c_t_d_alpha * cos_alpha + sin_alpha * d2_c_t_d_alpha_d_alpha
-            + c_t * d_cos_alpha_d_alpha); // 1/s/rad
+        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to eta_1
-    let d2_force_turn_d_alpha_d_eta_1 = cos_alpha * turn_factor * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_eta_1 = turn_factor
+        * d2_normal_coefficient_d_alpha_d_eta_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_force_turn_d_alpha_d_eta_2 = cos_alpha * turn_factor * p.c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_eta_2 = turn_factor
+        * d2_normal_coefficient_d_alpha_d_eta_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_force_turn_d_alpha_d_eta_3 = cos_alpha * turn_factor * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_eta_3 = turn_factor
+        * d2_normal_coefficient_d_alpha_d_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to velocity
     let d2_pitching_moment_d_velocity_d_velocity = p.c_bar_s * c_m * density
@@ -691,328 +705,5 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
 #[inline]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
-    let [velocity_by_velocity_velocity, velocity_by_altitude_velocity,
-    velocity_by_altitude_altitude, velocity_by_gamma_altitude, velocity_by_gamma_gamma,
-    velocity_by_alpha_velocity, velocity_by_alpha_altitude, velocity_by_alpha_alpha,
-    velocity_by_eta_1_velocity, velocity_by_eta_1_altitude, velocity_by_eta_1_alpha,
-    velocity_by_eta_2_velocity, velocity_by_eta_2_altitude, velocity_by_eta_2_alpha,
-    velocity_by_eta_3_velocity, velocity_by_eta_3_altitude, velocity_by_eta_3_alpha,
-    altitude_by_gamma_velocity, altitude_by_gamma_gamma, gamma_by_velocity_velocity,
-    gamma_by_altitude_velocity, gamma_by_altitude_altitude, gamma_by_gamma_velocity,
-    gamma_by_gamma_altitude, gamma_by_gamma_gamma, gamma_by_alpha_velocity,
-    gamma_by_alpha_altitude, gamma_by_alpha_alpha, gamma_by_eta_1_velocity,
-    gamma_by_eta_1_altitude, gamma_by_eta_1_alpha, gamma_by_eta_2_velocity,
-    gamma_by_eta_2_altitude, gamma_by_eta_2_alpha, gamma_by_eta_3_velocity,
-    gamma_by_eta_3_altitude, gamma_by_eta_3_alpha, alpha_by_velocity_velocity,
-    alpha_by_altitude_velocity, alpha_by_altitude_altitude, alpha_by_gamma_velocity,
-    alpha_by_gamma_altitude, alpha_by_gamma_gamma, alpha_by_alpha_velocity,
-    alpha_by_alpha_altitude, alpha_by_alpha_alpha, alpha_by_eta_1_velocity,
-    alpha_by_eta_1_altitude, alpha_by_eta_1_alpha, alpha_by_eta_2_velocity,
-    alpha_by_eta_2_altitude, alpha_by_eta_2_alpha, alpha_by_eta_3_velocity,
-    alpha_by_eta_3_altitude, alpha_by_eta_3_alpha, pitch_rate_by_velocity_velocity,
-    pitch_rate_by_altitude_velocity, pitch_rate_by_altitude_altitude,
-    pitch_rate_by_alpha_velocity, pitch_rate_by_alpha_altitude,
-    pitch_rate_by_alpha_alpha, pitch_rate_by_eta_1_velocity,
-    pitch_rate_by_eta_1_altitude, pitch_rate_by_eta_2_velocity,
-    pitch_rate_by_eta_2_altitude, pitch_rate_by_eta_3_velocity,
-    pitch_rate_by_eta_3_altitude, eta_dot_1_by_velocity_velocity,
-    eta_dot_1_by_altitude_velocity, eta_dot_1_by_altitude_altitude,
-    eta_dot_1_by_alpha_velocity, eta_dot_1_by_alpha_altitude, eta_dot_1_by_alpha_alpha,
-    eta_dot_2_by_velocity_velocity, eta_dot_2_by_altitude_velocity,
-    eta_dot_2_by_altitude_altitude, eta_dot_2_by_alpha_velocity,
-    eta_dot_2_by_alpha_altitude, eta_dot_2_by_alpha_alpha,
-    eta_dot_3_by_velocity_velocity, eta_dot_3_by_altitude_velocity,
-    eta_dot_3_by_altitude_altitude, eta_dot_3_by_alpha_velocity,
-    eta_dot_3_by_alpha_altitude, eta_dot_3_by_alpha_alpha] = hessian_values(x, u, p);
-
-    // Result
-    let no_state = State::splat(R::ZERO);
-    let no_state_state = State::splat(no_state);
-    let no_state_state_state = State::splat(no_state_state);
-    State {
-        velocity: State {
-            velocity: State {
-                velocity: velocity_by_velocity_velocity,
-                altitude: velocity_by_altitude_velocity,
-                alpha: velocity_by_alpha_velocity,
-                eta_1: velocity_by_eta_1_velocity,
-                eta_2: velocity_by_eta_2_velocity,
-                eta_3: velocity_by_eta_3_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: velocity_by_altitude_velocity,
-                altitude: velocity_by_altitude_altitude,
-                gamma: velocity_by_gamma_altitude,
-                alpha: velocity_by_alpha_altitude,
-                eta_1: velocity_by_eta_1_altitude,
-                eta_2: velocity_by_eta_2_altitude,
-                eta_3: velocity_by_eta_3_altitude,
-                ..no_state
-            },
-            gamma: State {
-                altitude: velocity_by_gamma_altitude,
-                gamma: velocity_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: velocity_by_alpha_velocity,
-                altitude: velocity_by_alpha_altitude,
-                alpha: velocity_by_alpha_alpha,
-                eta_1: velocity_by_eta_1_alpha,
-                eta_2: velocity_by_eta_2_alpha,
-                eta_3: velocity_by_eta_3_alpha,
-                ..no_state
-            },
-            eta_1: State {
-                velocity: velocity_by_eta_1_velocity,
-                altitude: velocity_by_eta_1_altitude,
-                alpha: velocity_by_eta_1_alpha,
-                ..no_state
-            },
-            eta_2: State {
-                velocity: velocity_by_eta_2_velocity,
-                altitude: velocity_by_eta_2_altitude,
-                alpha: velocity_by_eta_2_alpha,
-                ..no_state
-            },
-            eta_3: State {
-                velocity: velocity_by_eta_3_velocity,
-                altitude: velocity_by_eta_3_altitude,
-                alpha: velocity_by_eta_3_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        altitude: State {
-            velocity: State {
-                gamma: altitude_by_gamma_velocity,
-                ..no_state
-            },
-            gamma: State {
-                velocity: altitude_by_gamma_velocity,
-                gamma: altitude_by_gamma_gamma,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        gamma: State {
-            velocity: State {
-                velocity: gamma_by_velocity_velocity,
-                altitude: gamma_by_altitude_velocity,
-                gamma: gamma_by_gamma_velocity,
-                alpha: gamma_by_alpha_velocity,
-                eta_1: gamma_by_eta_1_velocity,
-                eta_2: gamma_by_eta_2_velocity,
-                eta_3: gamma_by_eta_3_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: gamma_by_altitude_velocity,
-                altitude: gamma_by_altitude_altitude,
-                gamma: gamma_by_gamma_altitude,
-                alpha: gamma_by_alpha_altitude,
-                eta_1: gamma_by_eta_1_altitude,
-                eta_2: gamma_by_eta_2_altitude,
-                eta_3: gamma_by_eta_3_altitude,
-                ..no_state
-            },
-            gamma: State {
-                velocity: gamma_by_gamma_velocity,
-                altitude: gamma_by_gamma_altitude,
-                gamma: gamma_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: gamma_by_alpha_velocity,
-                altitude: gamma_by_alpha_altitude,
-                alpha: gamma_by_alpha_alpha,
-                eta_1: gamma_by_eta_1_alpha,
-                eta_2: gamma_by_eta_2_alpha,
-                eta_3: gamma_by_eta_3_alpha,
-                ..no_state
-            },
-            eta_1: State {
-                velocity: gamma_by_eta_1_velocity,
-                altitude: gamma_by_eta_1_altitude,
-                alpha: gamma_by_eta_1_alpha,
-                ..no_state
-            },
-            eta_2: State {
-                velocity: gamma_by_eta_2_velocity,
-                altitude: gamma_by_eta_2_altitude,
-                alpha: gamma_by_eta_2_alpha,
-                ..no_state
-            },
-            eta_3: State {
-                velocity: gamma_by_eta_3_velocity,
-                altitude: gamma_by_eta_3_altitude,
-                alpha: gamma_by_eta_3_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        alpha: State {
-            velocity: State {
-                velocity: alpha_by_velocity_velocity,
-                altitude: alpha_by_altitude_velocity,
-                gamma: alpha_by_gamma_velocity,
-                alpha: alpha_by_alpha_velocity,
-                eta_1: alpha_by_eta_1_velocity,
-                eta_2: alpha_by_eta_2_velocity,
-                eta_3: alpha_by_eta_3_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: alpha_by_altitude_velocity,
-                altitude: alpha_by_altitude_altitude,
-                gamma: alpha_by_gamma_altitude,
-                alpha: alpha_by_alpha_altitude,
-                eta_1: alpha_by_eta_1_altitude,
-                eta_2: alpha_by_eta_2_altitude,
-                eta_3: alpha_by_eta_3_altitude,
-                ..no_state
-            },
-            gamma: State {
-                velocity: alpha_by_gamma_velocity,
-                altitude: alpha_by_gamma_altitude,
-                gamma: alpha_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: alpha_by_alpha_velocity,
-                altitude: alpha_by_alpha_altitude,
-                alpha: alpha_by_alpha_alpha,
-                eta_1: alpha_by_eta_1_alpha,
-                eta_2: alpha_by_eta_2_alpha,
-                eta_3: alpha_by_eta_3_alpha,
-                ..no_state
-            },
-            eta_1: State {
-                velocity: alpha_by_eta_1_velocity,
-                altitude: alpha_by_eta_1_altitude,
-                alpha: alpha_by_eta_1_alpha,
-                ..no_state
-            },
-            eta_2: State {
-                velocity: alpha_by_eta_2_velocity,
-                altitude: alpha_by_eta_2_altitude,
-                alpha: alpha_by_eta_2_alpha,
-                ..no_state
-            },
-            eta_3: State {
-                velocity: alpha_by_eta_3_velocity,
-                altitude: alpha_by_eta_3_altitude,
-                alpha: alpha_by_eta_3_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        pitch_rate: State {
-            velocity: State {
-                velocity: pitch_rate_by_velocity_velocity,
-                altitude: pitch_rate_by_altitude_velocity,
-                alpha: pitch_rate_by_alpha_velocity,
-                eta_1: pitch_rate_by_eta_1_velocity,
-                eta_2: pitch_rate_by_eta_2_velocity,
-                eta_3: pitch_rate_by_eta_3_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: pitch_rate_by_altitude_velocity,
-                altitude: pitch_rate_by_altitude_altitude,
-                alpha: pitch_rate_by_alpha_altitude,
-                eta_1: pitch_rate_by_eta_1_altitude,
-                eta_2: pitch_rate_by_eta_2_altitude,
-                eta_3: pitch_rate_by_eta_3_altitude,
-                ..no_state
-            },
-            alpha: State {
-                velocity: pitch_rate_by_alpha_velocity,
-                altitude: pitch_rate_by_alpha_altitude,
-                alpha: pitch_rate_by_alpha_alpha,
-                ..no_state
-            },
-            eta_1: State {
-                velocity: pitch_rate_by_eta_1_velocity,
-                altitude: pitch_rate_by_eta_1_altitude,
-                ..no_state
-            },
-            eta_2: State {
-                velocity: pitch_rate_by_eta_2_velocity,
-                altitude: pitch_rate_by_eta_2_altitude,
-                ..no_state
-            },
-            eta_3: State {
-                velocity: pitch_rate_by_eta_3_velocity,
-                altitude: pitch_rate_by_eta_3_altitude,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        eta_dot_1: State {
-            velocity: State {
-                velocity: eta_dot_1_by_velocity_velocity,
-                altitude: eta_dot_1_by_altitude_velocity,
-                alpha: eta_dot_1_by_alpha_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: eta_dot_1_by_altitude_velocity,
-                altitude: eta_dot_1_by_altitude_altitude,
-                alpha: eta_dot_1_by_alpha_altitude,
-                ..no_state
-            },
-            alpha: State {
-                velocity: eta_dot_1_by_alpha_velocity,
-                altitude: eta_dot_1_by_alpha_altitude,
-                alpha: eta_dot_1_by_alpha_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        eta_dot_2: State {
-            velocity: State {
-                velocity: eta_dot_2_by_velocity_velocity,
-                altitude: eta_dot_2_by_altitude_velocity,
-                alpha: eta_dot_2_by_alpha_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: eta_dot_2_by_altitude_velocity,
-                altitude: eta_dot_2_by_altitude_altitude,
-                alpha: eta_dot_2_by_alpha_altitude,
-                ..no_state
-            },
-            alpha: State {
-                velocity: eta_dot_2_by_alpha_velocity,
-                altitude: eta_dot_2_by_alpha_altitude,
-                alpha: eta_dot_2_by_alpha_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        eta_dot_3: State {
-            velocity: State {
-                velocity: eta_dot_3_by_velocity_velocity,
-                altitude: eta_dot_3_by_altitude_velocity,
-                alpha: eta_dot_3_by_alpha_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: eta_dot_3_by_altitude_velocity,
-                altitude: eta_dot_3_by_altitude_altitude,
-                alpha: eta_dot_3_by_alpha_altitude,
-                ..no_state
-            },
-            alpha: State {
-                velocity: eta_dot_3_by_alpha_velocity,
-                altitude: eta_dot_3_by_alpha_altitude,
-                alpha: eta_dot_3_by_alpha_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        ..no_state_state_state
-    }
+    HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
 }

@@ -125,65 +125,66 @@ pub fn jacobians_values<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * x.eta_1
         + p.c_l_eta_2 * x.eta_2
         + p.c_l_eta_3 * x.eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * x.eta_1
         + p.c_d_eta_2 * x.eta_2
         + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_alpha_2 * alpha_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * x.eta_1
         + p.c_m_eta_2 * x.eta_2
         + p.c_m_eta_3 * x.eta_3;
 
     // Forces and moment, (2)
     let thrust = reference_force * c_t; // lb/ft
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Curve fits, (3)
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
@@ -196,8 +197,7 @@ pub fn jacobians_values<R: Real>(
     let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
         + p.earth_curvature * radius_ratio); // 1/ft
     let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let c_l_plus_c_t_sin_alpha = c_l + c_t * sin_alpha;
-    let d_force_turn_d_velocity = c_l_plus_c_t_sin_alpha * d_turn_factor_d_velocity; // rad/ft
+    let d_force_turn_d_velocity = normal_coefficient * d_turn_factor_d_velocity; // rad/ft
     let d_gamma_rate_d_velocity = d_force_turn_d_velocity
         - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar * c_m * d_reference_force_d_velocity
@@ -222,7 +222,7 @@ pub fn jacobians_values<R: Real>(
     let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
         - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
     let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_force_turn_d_altitude = c_l_plus_c_t_sin_alpha * d_turn_factor_d_altitude; // rad/s/ft
+    let d_force_turn_d_altitude = normal_coefficient * d_turn_factor_d_altitude; // rad/s/ft
     let d_gamma_rate_d_altitude = d_force_turn_d_altitude
         - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = p.c_bar * c_m * d_reference_force_d_altitude
@@ -254,8 +254,10 @@ pub fn jacobians_values<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + p.c_l_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + p.c_l_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad
@@ -268,25 +270,34 @@ pub fn jacobians_values<R: Real>(
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to eta_1
-    let d_path_force_d_eta_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_eta_1 = reference_force
+        * (d2_normal_coefficient_d_alpha_d_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_1 = turn_factor * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
+    let d_force_turn_d_eta_1 = turn_factor * d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_1 = reference_force
         * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d_path_force_d_eta_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_eta_2 = reference_force
+        * (d2_normal_coefficient_d_alpha_d_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_2 = turn_factor * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
+    let d_force_turn_d_eta_2 = turn_factor * d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_2 = reference_force
         * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d_path_force_d_eta_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_eta_3 = reference_force
+        * (d2_normal_coefficient_d_alpha_d_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_3 = turn_factor * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
+    let d_force_turn_d_eta_3 = turn_factor * d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_3 = reference_force
         * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -295,15 +306,17 @@ pub fn jacobians_values<R: Real>(
     let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
     let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_force_turn_d_phi = turn_factor * sin_alpha * c_t_phi; // rad/s
+    let d_normal_coefficient_d_phi = sin_alpha * c_t_phi;
+    let d_force_turn_d_phi = turn_factor * d_normal_coefficient_d_phi; // rad/s
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
     // Derivatives with respect to delta_e
-    let d_c_d_d_delta_e_term_1 = p.two_c_d_delta_c_2 * canard_deflection + p.c_d_delta_c;
+    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
+        + p.c_d_delta_c; // 1/rad
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
-        + d_c_d_d_delta_e_term_1 * p.canard_gain; // 1/rad
+        + slope_of_c_d_in_canard_deflection * p.canard_gain; // 1/rad
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_delta_e = turn_factor * p.elevator_lift; // 1/s
@@ -314,8 +327,8 @@ pub fn jacobians_values<R: Real>(
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to delta_c
-    let d_c_d_d_delta_c = d_c_d_d_delta_e_term_1 * p.canard_command; // 1/rad
-    let d_drag_d_delta_c = reference_force * d_c_d_d_delta_c; // lb/ft/rad
+    let d_drag_d_delta_c = reference_force * slope_of_c_d_in_canard_deflection
+        * p.canard_command; // lb/ft/rad
     let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_delta_c = turn_factor * p.c_l_delta_c_canard_command; // 1/s
     let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c_canard_command
@@ -409,203 +422,8 @@ pub fn jacobians<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
-    let (
-        [velocity_by_velocity,
-        velocity_by_altitude,
-        velocity_by_gamma,
-        velocity_by_alpha,
-        velocity_by_eta_1,
-        velocity_by_eta_2,
-        velocity_by_eta_3,
-        altitude_by_velocity,
-        altitude_by_gamma,
-        gamma_by_velocity,
-        gamma_by_altitude,
-        gamma_by_gamma,
-        gamma_by_alpha,
-        gamma_by_eta_1,
-        gamma_by_eta_2,
-        gamma_by_eta_3,
-        alpha_by_velocity,
-        alpha_by_altitude,
-        alpha_by_gamma,
-        alpha_by_alpha,
-        alpha_by_pitch_rate,
-        alpha_by_eta_1,
-        alpha_by_eta_2,
-        alpha_by_eta_3,
-        pitch_rate_by_velocity,
-        pitch_rate_by_altitude,
-        pitch_rate_by_alpha,
-        pitch_rate_by_eta_1,
-        pitch_rate_by_eta_2,
-        pitch_rate_by_eta_3,
-        eta_1_by_eta_dot_1,
-        eta_dot_1_by_velocity,
-        eta_dot_1_by_altitude,
-        eta_dot_1_by_alpha,
-        eta_dot_1_by_eta_1,
-        eta_dot_1_by_eta_dot_1,
-        eta_2_by_eta_dot_2,
-        eta_dot_2_by_velocity,
-        eta_dot_2_by_altitude,
-        eta_dot_2_by_alpha,
-        eta_dot_2_by_eta_2,
-        eta_dot_2_by_eta_dot_2,
-        eta_3_by_eta_dot_3,
-        eta_dot_3_by_velocity,
-        eta_dot_3_by_altitude,
-        eta_dot_3_by_alpha,
-        eta_dot_3_by_eta_3,
-        eta_dot_3_by_eta_dot_3,
-        ],
-        [velocity_by_phi,
-        velocity_by_delta_e,
-        velocity_by_delta_c,
-        gamma_by_phi,
-        gamma_by_delta_e,
-        gamma_by_delta_c,
-        alpha_by_phi,
-        alpha_by_delta_e,
-        alpha_by_delta_c,
-        pitch_rate_by_phi,
-        pitch_rate_by_delta_e,
-        pitch_rate_by_delta_c,
-        eta_dot_1_by_delta_e,
-        eta_dot_1_by_delta_c,
-        eta_dot_2_by_delta_e,
-        eta_dot_2_by_delta_c,
-        eta_dot_3_by_delta_e,
-        eta_dot_3_by_delta_c,
-        ],
-    ) = jacobians_values(x, u, p);
-
-    // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    let state = State {
-        velocity: State {
-            velocity: velocity_by_velocity,
-            altitude: velocity_by_altitude,
-            gamma: velocity_by_gamma,
-            alpha: velocity_by_alpha,
-            eta_1: velocity_by_eta_1,
-            eta_2: velocity_by_eta_2,
-            eta_3: velocity_by_eta_3,
-            ..no_state
-        },
-        altitude: State {
-            velocity: altitude_by_velocity,
-            gamma: altitude_by_gamma,
-            ..no_state
-        },
-        gamma: State {
-            velocity: gamma_by_velocity,
-            altitude: gamma_by_altitude,
-            gamma: gamma_by_gamma,
-            alpha: gamma_by_alpha,
-            eta_1: gamma_by_eta_1,
-            eta_2: gamma_by_eta_2,
-            eta_3: gamma_by_eta_3,
-            ..no_state
-        },
-        alpha: State {
-            velocity: alpha_by_velocity,
-            altitude: alpha_by_altitude,
-            gamma: alpha_by_gamma,
-            alpha: alpha_by_alpha,
-            pitch_rate: alpha_by_pitch_rate,
-            eta_1: alpha_by_eta_1,
-            eta_2: alpha_by_eta_2,
-            eta_3: alpha_by_eta_3,
-            ..no_state
-        },
-        pitch_rate: State {
-            velocity: pitch_rate_by_velocity,
-            altitude: pitch_rate_by_altitude,
-            alpha: pitch_rate_by_alpha,
-            eta_1: pitch_rate_by_eta_1,
-            eta_2: pitch_rate_by_eta_2,
-            eta_3: pitch_rate_by_eta_3,
-            ..no_state
-        },
-        eta_1: State {
-            eta_dot_1: eta_1_by_eta_dot_1,
-            ..no_state
-        },
-        eta_dot_1: State {
-            velocity: eta_dot_1_by_velocity,
-            altitude: eta_dot_1_by_altitude,
-            alpha: eta_dot_1_by_alpha,
-            eta_1: eta_dot_1_by_eta_1,
-            eta_dot_1: eta_dot_1_by_eta_dot_1,
-            ..no_state
-        },
-        eta_2: State {
-            eta_dot_2: eta_2_by_eta_dot_2,
-            ..no_state
-        },
-        eta_dot_2: State {
-            velocity: eta_dot_2_by_velocity,
-            altitude: eta_dot_2_by_altitude,
-            alpha: eta_dot_2_by_alpha,
-            eta_2: eta_dot_2_by_eta_2,
-            eta_dot_2: eta_dot_2_by_eta_dot_2,
-            ..no_state
-        },
-        eta_3: State {
-            eta_dot_3: eta_3_by_eta_dot_3,
-            ..no_state
-        },
-        eta_dot_3: State {
-            velocity: eta_dot_3_by_velocity,
-            altitude: eta_dot_3_by_altitude,
-            alpha: eta_dot_3_by_alpha,
-            eta_3: eta_dot_3_by_eta_3,
-            eta_dot_3: eta_dot_3_by_eta_dot_3,
-            ..no_state
-        },
-    };
-    let input = State {
-        velocity: Input {
-            phi: velocity_by_phi,
-            delta_e: velocity_by_delta_e,
-            delta_c: velocity_by_delta_c,
-        },
-        gamma: Input {
-            phi: gamma_by_phi,
-            delta_e: gamma_by_delta_e,
-            delta_c: gamma_by_delta_c,
-        },
-        alpha: Input {
-            phi: alpha_by_phi,
-            delta_e: alpha_by_delta_e,
-            delta_c: alpha_by_delta_c,
-        },
-        pitch_rate: Input {
-            phi: pitch_rate_by_phi,
-            delta_e: pitch_rate_by_delta_e,
-            delta_c: pitch_rate_by_delta_c,
-        },
-        eta_dot_1: Input {
-            delta_e: eta_dot_1_by_delta_e,
-            delta_c: eta_dot_1_by_delta_c,
-            ..no_input
-        },
-        eta_dot_2: Input {
-            delta_e: eta_dot_2_by_delta_e,
-            delta_c: eta_dot_2_by_delta_c,
-            ..no_input
-        },
-        eta_dot_3: Input {
-            delta_e: eta_dot_3_by_delta_e,
-            delta_c: eta_dot_3_by_delta_c,
-            ..no_input
-        },
-        ..no_state_input
-    };
-    (state, input)
+    let (state, input) = jacobians_values(x, u, p);
+    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
@@ -647,42 +465,42 @@ pub fn drift_and_jacobians<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * x.eta_1
         + p.c_l_eta_2 * x.eta_2
         + p.c_l_eta_3 * x.eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * x.eta_1
         + p.c_d_eta_2 * x.eta_2
         + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_alpha_2 * alpha_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * x.eta_1
         + p.c_m_eta_2 * x.eta_2
         + p.c_m_eta_3 * x.eta_3;
@@ -691,23 +509,24 @@ pub fn drift_and_jacobians<R: Real>(
     let thrust = reference_force * c_t; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Curve fits, (3)
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -716,8 +535,7 @@ pub fn drift_and_jacobians<R: Real>(
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let c_l_plus_c_t_sin_alpha = c_l + c_t * sin_alpha;
-    let force_turn = turn_factor * c_l_plus_c_t_sin_alpha; // rad/s
+    let force_turn = turn_factor * normal_coefficient; // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
     let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
@@ -746,7 +564,7 @@ pub fn drift_and_jacobians<R: Real>(
     let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
         + p.earth_curvature * radius_ratio); // 1/ft
     let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let d_force_turn_d_velocity = c_l_plus_c_t_sin_alpha * d_turn_factor_d_velocity; // rad/ft
+    let d_force_turn_d_velocity = normal_coefficient * d_turn_factor_d_velocity; // rad/ft
     let d_gamma_rate_d_velocity = d_force_turn_d_velocity
         - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar * c_m * d_reference_force_d_velocity
@@ -771,7 +589,7 @@ pub fn drift_and_jacobians<R: Real>(
     let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
         - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
     let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_force_turn_d_altitude = c_l_plus_c_t_sin_alpha * d_turn_factor_d_altitude; // rad/s/ft
+    let d_force_turn_d_altitude = normal_coefficient * d_turn_factor_d_altitude; // rad/s/ft
     let d_gamma_rate_d_altitude = d_force_turn_d_altitude
         - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = p.c_bar * c_m * d_reference_force_d_altitude
@@ -803,8 +621,10 @@ pub fn drift_and_jacobians<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + p.c_l_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + p.c_l_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad
@@ -817,25 +637,34 @@ pub fn drift_and_jacobians<R: Real>(
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to eta_1
-    let d_path_force_d_eta_1 = reference_force * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_eta_1 = reference_force
+        * (d2_normal_coefficient_d_alpha_d_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_1 = turn_factor * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
+    let d_force_turn_d_eta_1 = turn_factor * d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_1 = reference_force
         * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d_path_force_d_eta_2 = reference_force * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_eta_2 = reference_force
+        * (d2_normal_coefficient_d_alpha_d_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_2 = turn_factor * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
+    let d_force_turn_d_eta_2 = turn_factor * d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_2 = reference_force
         * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d_path_force_d_eta_3 = reference_force * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_eta_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_eta_3 = reference_force
+        * (d2_normal_coefficient_d_alpha_d_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_3 = turn_factor * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
+    let d_force_turn_d_eta_3 = turn_factor * d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_eta_3 = reference_force
         * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -844,15 +673,17 @@ pub fn drift_and_jacobians<R: Real>(
     let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
     let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_force_turn_d_phi = turn_factor * sin_alpha * c_t_phi; // rad/s
+    let d_normal_coefficient_d_phi = sin_alpha * c_t_phi;
+    let d_force_turn_d_phi = turn_factor * d_normal_coefficient_d_phi; // rad/s
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
     // Derivatives with respect to delta_e
-    let d_c_d_d_delta_e_term_1 = p.two_c_d_delta_c_2 * canard_deflection + p.c_d_delta_c;
+    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
+        + p.c_d_delta_c; // 1/rad
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
-        + d_c_d_d_delta_e_term_1 * p.canard_gain; // 1/rad
+        + slope_of_c_d_in_canard_deflection * p.canard_gain; // 1/rad
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_delta_e = turn_factor * p.elevator_lift; // 1/s
@@ -863,8 +694,8 @@ pub fn drift_and_jacobians<R: Real>(
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to delta_c
-    let d_c_d_d_delta_c = d_c_d_d_delta_e_term_1 * p.canard_command; // 1/rad
-    let d_drag_d_delta_c = reference_force * d_c_d_d_delta_c; // lb/ft/rad
+    let d_drag_d_delta_c = reference_force * slope_of_c_d_in_canard_deflection
+        * p.canard_command; // lb/ft/rad
     let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_delta_c = turn_factor * p.c_l_delta_c_canard_command; // 1/s
     let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c_canard_command

@@ -3,7 +3,7 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{Input, Noise, NoiseDerivatives, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`NoiseDerivatives`] stand.
 pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
@@ -77,15 +77,15 @@ pub fn noise_derivatives_values<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
@@ -136,10 +136,10 @@ pub fn noise_derivatives_values<R: Real>(
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha_term_1 = c_t * cos_alpha
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
         + sin_alpha * d_c_t_d_alpha
-        + p.c_l_alpha;
-    let d_force_turn_d_alpha = turn_factor * d_force_turn_d_alpha_term_1; // 1/s
+        + p.c_l_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
@@ -187,7 +187,7 @@ pub fn noise_derivatives_values<R: Real>(
 
     // Derivatives with respect to alpha
     let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * d_force_turn_d_alpha_term_1; // 1/ft
+        * d_normal_coefficient_d_alpha; // 1/ft
 
     // Derivatives with respect to gamma
     let d2_gamma_rate_d_altitude_d_gamma = -d_gravity_turn_d_altitude
@@ -195,16 +195,18 @@ pub fn noise_derivatives_values<R: Real>(
 
     // Derivatives with respect to alpha
     let d2_force_turn_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * d_force_turn_d_alpha_term_1; // 1/s/ft
+        * d_normal_coefficient_d_alpha; // 1/s/ft
 
     // Derivatives with respect to gamma
     let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
     let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
+        + sin_alpha * d2_c_t_d_alpha_d_alpha
+        + c_t * d_cos_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha = turn_factor
-        * (R::TWO * d_c_t_d_alpha * cos_alpha + sin_alpha * d2_c_t_d_alpha_d_alpha
-            + c_t * d_cos_alpha_d_alpha); // 1/s/rad
+        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
     let d2_pitching_moment_d_velocity_d_alpha = d_reference_force_d_velocity * p.c_bar
         * d_c_m_d_alpha + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
     let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
@@ -321,151 +323,7 @@ pub fn noise_derivatives<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> NoiseDerivatives<R> {
-    let [velocity_by_w_gamma_w_gamma, velocity_by_w_gamma_w_alpha,
-    velocity_by_w_alpha_w_gamma, velocity_by_w_alpha_w_alpha, velocity_by_w_q_w_alpha,
-    altitude_by_w_gamma_w_gamma, altitude_by_w_alpha_w_gamma, gamma_by_w_gamma_w_gamma,
-    gamma_by_w_gamma_w_alpha, gamma_by_w_alpha_w_gamma, gamma_by_w_alpha_w_alpha,
-    gamma_by_w_q_w_alpha, alpha_by_w_gamma_w_gamma, alpha_by_w_gamma_w_alpha,
-    alpha_by_w_alpha_w_gamma, alpha_by_w_alpha_w_alpha, alpha_by_w_q_w_alpha,
-    pitch_rate_by_w_gamma_w_alpha, pitch_rate_by_w_alpha_w_alpha,
-    pitch_rate_by_w_q_w_alpha, eta_dot_1_by_w_gamma_w_alpha,
-    eta_dot_1_by_w_alpha_w_alpha, eta_dot_1_by_w_q_w_alpha, eta_dot_2_by_w_gamma_w_alpha,
-    eta_dot_2_by_w_alpha_w_alpha, eta_dot_2_by_w_q_w_alpha, eta_dot_3_by_w_gamma_w_alpha,
-    eta_dot_3_by_w_alpha_w_alpha, eta_dot_3_by_w_q_w_alpha] = noise_derivatives_values(
-        x,
-        u,
-        p,
-    );
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let no_noise_noise = Noise::splat(no_noise);
-    let no_state_noise_noise = State::splat(no_noise_noise);
-    State {
-        velocity: Noise {
-            w_gamma: Noise {
-                w_gamma: velocity_by_w_gamma_w_gamma,
-                w_alpha: velocity_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_gamma: velocity_by_w_alpha_w_gamma,
-                w_alpha: velocity_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: velocity_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        altitude: Noise {
-            w_gamma: Noise {
-                w_gamma: altitude_by_w_gamma_w_gamma,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_gamma: altitude_by_w_alpha_w_gamma,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        gamma: Noise {
-            w_gamma: Noise {
-                w_gamma: gamma_by_w_gamma_w_gamma,
-                w_alpha: gamma_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_gamma: gamma_by_w_alpha_w_gamma,
-                w_alpha: gamma_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: gamma_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        alpha: Noise {
-            w_gamma: Noise {
-                w_gamma: alpha_by_w_gamma_w_gamma,
-                w_alpha: alpha_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_gamma: alpha_by_w_alpha_w_gamma,
-                w_alpha: alpha_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: alpha_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        pitch_rate: Noise {
-            w_gamma: Noise {
-                w_alpha: pitch_rate_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: pitch_rate_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: pitch_rate_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        eta_dot_1: Noise {
-            w_gamma: Noise {
-                w_alpha: eta_dot_1_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: eta_dot_1_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: eta_dot_1_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        eta_dot_2: Noise {
-            w_gamma: Noise {
-                w_alpha: eta_dot_2_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: eta_dot_2_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: eta_dot_2_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        eta_dot_3: Noise {
-            w_gamma: Noise {
-                w_alpha: eta_dot_3_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: eta_dot_3_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: eta_dot_3_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        ..no_state_noise_noise
-    }
+    NOISE_DERIVATIVES_PATTERN.dense(&noise_derivatives_values(x, u, p))
 }
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (17).
@@ -498,15 +356,15 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
@@ -551,10 +409,10 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         + cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha_term_1 = c_t * cos_alpha
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
         + sin_alpha * d_c_t_d_alpha
-        + p.c_l_alpha;
-    let d_force_turn_d_alpha = turn_factor * d_force_turn_d_alpha_term_1; // 1/s
+        + p.c_l_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
@@ -592,7 +450,7 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
 
     // Derivatives with respect to alpha
     let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * d_force_turn_d_alpha_term_1; // 1/ft
+        * d_normal_coefficient_d_alpha; // 1/ft
 
     // Derivatives with respect to gamma
     let d2_gamma_rate_d_altitude_d_gamma = -d_gravity_turn_d_altitude
@@ -601,9 +459,11 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
     let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
+        + sin_alpha * d2_c_t_d_alpha_d_alpha
+        + c_t * d_cos_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha = turn_factor
-        * (R::TWO * d_c_t_d_alpha * cos_alpha + sin_alpha * d2_c_t_d_alpha_d_alpha
-            + c_t * d_cos_alpha_d_alpha); // 1/s/rad
+        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
     let d2_pitching_moment_d_velocity_d_alpha = d_reference_force_d_velocity * p.c_bar
         * d_c_m_d_alpha + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
     let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha

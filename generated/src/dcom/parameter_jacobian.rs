@@ -3,7 +3,7 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{Input, ParameterJacobian, Parameters, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
 pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
@@ -180,7 +180,7 @@ pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 473 operations: 66 additions, 402 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 477 operations: 66 additions, 406 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
@@ -212,42 +212,42 @@ pub fn parameter_jacobian_values<R: Real>(
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * x.eta_1
         + p.c_t_eta_2 * x.eta_2
         + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * x.eta_1
         + p.c_l_eta_2 * x.eta_2
         + p.c_l_eta_3 * x.eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * x.eta_1
         + p.c_d_eta_2 * x.eta_2
         + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_alpha_2 * alpha_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * x.eta_1
         + p.c_m_eta_2 * x.eta_2
         + p.c_m_eta_3 * x.eta_3;
@@ -256,23 +256,24 @@ pub fn parameter_jacobian_values<R: Real>(
     let thrust = reference_force * c_t; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Curve fits, (3)
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
@@ -282,21 +283,18 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
 
+    // Derivatives with respect to delta_e
+    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
+        + p.c_d_delta_c; // 1/rad
+
     // Derivatives with respect to parameters
-    let c_l_plus_c_t_sin_alpha = c_l + c_t * sin_alpha;
-    let d_force_turn_d_m = c_l_plus_c_t_sin_alpha * d_reference_force_d_velocity
-        * p.minus_half_inv_m_2; // rad*ft/s/slug
     let d_path_force_d_s = dynamic_pressure * (c_t * cos_alpha - c_d); // lb/ft^2
     let d_velocity_rate_d_s = d_path_force_d_s * p.inv_m; // 1/s^2
-    let d_force_turn_d_s = c_l_plus_c_t_sin_alpha * d_dynamic_pressure_d_velocity
-        * p.half_over_m; // rad/s/ft
     let d_pitching_moment_d_s = dynamic_pressure * (p.c_bar * c_m + p.z_t * c_t); // lb/ft
     let d_pitch_acceleration_d_s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
     let d_path_force_d_rho_0 = p.s * density_ratio
         * (R::HALF * cos_alpha * c_t * velocity_2 - R::HALF * c_d * velocity_2); // lb*ft^2/slug
     let d_velocity_rate_d_rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
-    let d_force_turn_d_rho_0 = c_l_plus_c_t_sin_alpha * p.half_s_over_m * x.velocity
-        * density_ratio; // rad*ft^3/s/slug
     let d_pitching_moment_d_rho_0 = p.s * density_ratio
         * (p.half_c_bar * c_m * velocity_2 + p.half_z_t * c_t * velocity_2); // lb*ft^3/slug
     let d_pitch_acceleration_d_rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
@@ -309,7 +307,7 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_h_0 = cos_alpha * d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
     let d_velocity_rate_d_h_0 = d_path_force_d_h_0 * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_force_turn_d_h_0 = c_l_plus_c_t_sin_alpha * d_turn_factor_d_h_0; // rad/s/ft
+    let d_force_turn_d_h_0 = normal_coefficient * d_turn_factor_d_h_0; // rad/s/ft
     let d_pitching_moment_d_h_0 = p.c_bar * c_m * d_reference_force_d_h_0
         + p.z_t * d_thrust_d_h_0; // lb/ft
     let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
@@ -325,7 +323,7 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_h_s = cos_alpha * d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
     let d_velocity_rate_d_h_s = d_path_force_d_h_s * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_force_turn_d_h_s = c_l_plus_c_t_sin_alpha * d_turn_factor_d_h_s; // rad/s/ft
+    let d_force_turn_d_h_s = normal_coefficient * d_turn_factor_d_h_s; // rad/s/ft
     let d_pitching_moment_d_h_s = p.c_bar * c_m * d_reference_force_d_h_s
         + p.z_t * d_thrust_d_h_s; // lb/ft
     let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
@@ -333,14 +331,14 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_generalized_force_2_d_h_s = c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_s = c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let radius_ratio_2 = radius_ratio * radius_ratio;
-    let d_radius_ratio_d_r_e = radius_ratio_2 * x.altitude * p.earth_curvature_over_r_e; // 1/ft
-    let d_gravity_d_r_e = p.two_g * radius_ratio * d_radius_ratio_d_r_e; // 1/s^2
-    let d_velocity_rate_d_r_e = -sin_gamma * d_gravity_d_r_e; // 1/s^2
-    let velocity_radius_ratio_over_r_e = x.velocity * radius_ratio * p.inv_r_e;
+    let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
     let inv_velocity = x.velocity.recip();
-    let d_gravity_turn_d_r_e = p.earth_curvature
-        * (velocity_radius_ratio_over_r_e - x.velocity * d_radius_ratio_d_r_e)
-        + d_gravity_d_r_e * inv_velocity; // 1/s/ft
+    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
+        * inv_velocity;
+    let d_gravity_turn_d_r_e = p.inv_r_e
+        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+            + x.velocity * p.earth_curvature_2
+                * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_eta_acceleration_1_d_omega_1 = -(x.eta_dot_1 * p.two_zeta_1
         + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
@@ -348,33 +346,12 @@ pub fn parameter_jacobian_values<R: Real>(
         + x.eta_2 * p.two_omega_2); // ft^0.5*slug^0.5/s/rad
     let d_eta_acceleration_3_d_omega_3 = -(x.eta_dot_3 * p.two_zeta_3
         + x.eta_3 * p.two_omega_3); // ft^0.5*slug^0.5/s/rad
-    let d_c_d_d_canard_command_term_1 = p.two_c_d_delta_c_2 * canard_deflection
-        + p.c_d_delta_c;
-    let d_c_d_d_canard_command = d_c_d_d_canard_command_term_1 * u.delta_c;
-    let d_drag_d_canard_command = reference_force * d_c_d_d_canard_command; // lb/ft
-    let d_velocity_rate_d_canard_command = -d_drag_d_canard_command * p.inv_m; // ft/s^2
-    let d_c_d_d_canard_slaving = -d_c_d_d_canard_command_term_1 * u.delta_e
-        * p.c_l_delta_e_over_c_l_delta_c;
-    let d_drag_d_canard_slaving = reference_force * d_c_d_d_canard_slaving; // lb/ft
-    let d_velocity_rate_d_canard_slaving = -d_drag_d_canard_slaving * p.inv_m; // ft/s^2
-    let d_radius_ratio_d_spherical_earth = -radius_ratio_2 * x.altitude * p.inv_r_e;
-    let d_gravity_d_spherical_earth = p.two_g * radius_ratio
-        * d_radius_ratio_d_spherical_earth; // ft/s^2
-    let d_velocity_rate_d_spherical_earth = -sin_gamma * d_gravity_d_spherical_earth; // ft/s^2
-    let d_gravity_turn_d_spherical_earth = d_gravity_d_spherical_earth * inv_velocity
-        - velocity_radius_ratio_over_r_e
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_spherical_earth; // 1/s
+    let d_gravity_turn_d_spherical_earth = p.inv_r_e
+        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-    let d_c_d_d_c_l_delta_e = -d_c_d_d_canard_command_term_1 * u.delta_e
-        * p.canard_slaving_over_c_l_delta_c; // rad
-    let d_drag_d_c_l_delta_e = reference_force * d_c_d_d_c_l_delta_e; // lb*rad/ft
-    let d_velocity_rate_d_c_l_delta_e = -d_drag_d_c_l_delta_e * p.inv_m; // ft*rad/s^2
     let d_c_l_d_c_l_delta_e = u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
     let d_force_turn_d_c_l_delta_e = turn_factor * d_c_l_d_c_l_delta_e; // rad^2/s
-    let d_c_d_d_c_l_delta_c = d_c_d_d_canard_command_term_1 * u.delta_e
-        * p.d_c_d_d_c_l_delta_c_constant_1; // rad
-    let d_drag_d_c_l_delta_c = reference_force * d_c_d_d_c_l_delta_c; // lb*rad/ft
-    let d_velocity_rate_d_c_l_delta_c = -d_drag_d_c_l_delta_c * p.inv_m; // ft*rad/s^2
     let reference_force_alpha_2 = reference_force * alpha_2;
     let reference_force_alpha = reference_force * x.alpha;
     let reference_force_delta_e = reference_force * u.delta_e;
@@ -387,10 +364,13 @@ pub fn parameter_jacobian_values<R: Real>(
         d_velocity_rate_d_h_0,
         d_velocity_rate_d_h_s,
         -sin_gamma * radius_ratio_2,
-        d_velocity_rate_d_r_e,
-        d_velocity_rate_d_canard_command,
-        d_velocity_rate_d_canard_slaving,
-        d_velocity_rate_d_spherical_earth,
+        sin_gamma * p.two_g_earth_curvature_over_r_e * radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
+        -reference_force * slope_of_c_d_in_canard_deflection * u.delta_c * p.inv_m,
+        reference_force * slope_of_c_d_in_canard_deflection * u.delta_e
+            * p.c_l_delta_e_over_c_l_delta_c_m,
+        sin_gamma * p.minus_two_g_over_r_e * radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
         cos_alpha * reference_force * u.phi * alpha_3 * p.inv_m,
         cos_alpha * reference_force * u.phi * alpha_2 * p.inv_m,
         cos_alpha * reference_force * u.phi * x.alpha * p.inv_m,
@@ -402,8 +382,10 @@ pub fn parameter_jacobian_values<R: Real>(
         cos_alpha * reference_force * x.eta_1 * p.inv_m,
         cos_alpha * reference_force * x.eta_2 * p.inv_m,
         cos_alpha * reference_force * x.eta_3 * p.inv_m,
-        d_velocity_rate_d_c_l_delta_e,
-        d_velocity_rate_d_c_l_delta_c,
+        reference_force * slope_of_c_d_in_canard_deflection * u.delta_e
+            * p.canard_slaving_over_c_l_delta_c_m,
+        -reference_force * slope_of_c_d_in_canard_deflection * u.delta_e
+            * p.parameter_jacobian_constant_1,
         -reference_force * alpha_2 * p.inv_m,
         -reference_force * x.alpha * p.inv_m,
         -reference_force * delta_e_2 * p.inv_m,
@@ -414,9 +396,9 @@ pub fn parameter_jacobian_values<R: Real>(
         -reference_force * x.eta_1 * p.inv_m,
         -reference_force * x.eta_2 * p.inv_m,
         -reference_force * x.eta_3 * p.inv_m,
-        d_force_turn_d_m,
-        d_force_turn_d_s,
-        d_force_turn_d_rho_0,
+        normal_coefficient * d_reference_force_d_velocity * p.minus_half_inv_m_2,
+        normal_coefficient * d_dynamic_pressure_d_velocity * p.half_over_m,
+        normal_coefficient * p.half_s_over_m * x.velocity * density_ratio,
         d_force_turn_d_h_0,
         d_force_turn_d_h_s,
         -cos_gamma * radius_ratio_2 * inv_velocity,
@@ -442,9 +424,9 @@ pub fn parameter_jacobian_values<R: Real>(
         turn_factor * x.eta_1,
         turn_factor * x.eta_2,
         turn_factor * x.eta_3,
-        -d_force_turn_d_m,
-        -d_force_turn_d_s,
-        -d_force_turn_d_rho_0,
+        normal_coefficient * d_reference_force_d_velocity * p.half_inv_m_2,
+        normal_coefficient * d_dynamic_pressure_d_velocity * p.minus_half_over_m,
+        normal_coefficient * p.minus_half_s_over_m * x.velocity * density_ratio,
         -d_force_turn_d_h_0,
         -d_force_turn_d_h_s,
         cos_gamma * radius_ratio_2 * inv_velocity,
@@ -478,7 +460,7 @@ pub fn parameter_jacobian_values<R: Real>(
         d_pitch_acceleration_d_h_0,
         d_pitch_acceleration_d_h_s,
         p.c_bar_c_m_delta_c_over_i_yy * reference_force * u.delta_c,
-        -p.parameter_jacobian_constant_1 * reference_force * u.delta_e,
+        -p.parameter_jacobian_constant_2 * reference_force * u.delta_e,
         p.z_t_over_i_yy * reference_force * u.phi * alpha_3,
         p.z_t_over_i_yy * reference_force * u.phi * alpha_2,
         p.z_t_over_i_yy * reference_force * u.phi * x.alpha,
@@ -490,8 +472,8 @@ pub fn parameter_jacobian_values<R: Real>(
         p.z_t_over_i_yy * reference_force * x.eta_1,
         p.z_t_over_i_yy * reference_force * x.eta_2,
         p.z_t_over_i_yy * reference_force * x.eta_3,
-        -p.parameter_jacobian_constant_2 * reference_force * u.delta_e,
-        p.parameter_jacobian_constant_3 * reference_force * u.delta_e,
+        -p.parameter_jacobian_constant_3 * reference_force * u.delta_e,
+        p.parameter_jacobian_constant_4 * reference_force * u.delta_e,
         p.c_bar_over_i_yy * reference_force * alpha_2,
         p.c_bar_over_i_yy * reference_force * x.alpha,
         p.c_bar_over_i_yy * reference_force * u.delta_e,
@@ -507,9 +489,9 @@ pub fn parameter_jacobian_values<R: Real>(
         d_eta_acceleration_1_d_omega_1,
         x.eta_dot_1 * p.minus_two_omega_1,
         reference_force * p.c_n_1_delta_c * u.delta_c,
-        -reference_force * p.parameter_jacobian_constant_4 * u.delta_e,
         -reference_force * p.parameter_jacobian_constant_5 * u.delta_e,
-        reference_force * p.parameter_jacobian_constant_6 * u.delta_e,
+        -reference_force * p.parameter_jacobian_constant_6 * u.delta_e,
+        reference_force * p.parameter_jacobian_constant_7 * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,
@@ -522,9 +504,9 @@ pub fn parameter_jacobian_values<R: Real>(
         d_eta_acceleration_2_d_omega_2,
         x.eta_dot_2 * p.minus_two_omega_2,
         reference_force * p.c_n_2_delta_c * u.delta_c,
-        -reference_force * p.parameter_jacobian_constant_7 * u.delta_e,
         -reference_force * p.parameter_jacobian_constant_8 * u.delta_e,
-        reference_force * p.parameter_jacobian_constant_9 * u.delta_e,
+        -reference_force * p.parameter_jacobian_constant_9 * u.delta_e,
+        reference_force * p.parameter_jacobian_constant_10 * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,
@@ -537,9 +519,9 @@ pub fn parameter_jacobian_values<R: Real>(
         d_eta_acceleration_3_d_omega_3,
         x.eta_dot_3 * p.minus_two_omega_3,
         reference_force * p.c_n_3_delta_c * u.delta_c,
-        -reference_force * p.parameter_jacobian_constant_10 * u.delta_e,
         -reference_force * p.parameter_jacobian_constant_11 * u.delta_e,
-        reference_force * p.parameter_jacobian_constant_12 * u.delta_e,
+        -reference_force * p.parameter_jacobian_constant_12 * u.delta_e,
+        reference_force * p.parameter_jacobian_constant_13 * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,
@@ -555,248 +537,5 @@ pub fn parameter_jacobian<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ParameterJacobian<R> {
-    let [velocity_by_m, velocity_by_s, velocity_by_rho_0, velocity_by_h_0,
-    velocity_by_h_s, velocity_by_g, velocity_by_r_e, velocity_by_canard_command,
-    velocity_by_canard_slaving, velocity_by_spherical_earth, velocity_by_c_t_phi_alpha_3,
-    velocity_by_c_t_phi_alpha_2, velocity_by_c_t_phi_alpha, velocity_by_c_t_phi,
-    velocity_by_c_t_alpha_3, velocity_by_c_t_alpha_2, velocity_by_c_t_alpha,
-    velocity_by_c_t_0, velocity_by_c_t_eta_1, velocity_by_c_t_eta_2,
-    velocity_by_c_t_eta_3, velocity_by_c_l_delta_e, velocity_by_c_l_delta_c,
-    velocity_by_c_d_alpha_2, velocity_by_c_d_alpha, velocity_by_c_d_delta_e_2,
-    velocity_by_c_d_delta_e, velocity_by_c_d_delta_c_2, velocity_by_c_d_delta_c,
-    velocity_by_c_d_0, velocity_by_c_d_eta_1, velocity_by_c_d_eta_2,
-    velocity_by_c_d_eta_3, gamma_by_m, gamma_by_s, gamma_by_rho_0, gamma_by_h_0,
-    gamma_by_h_s, gamma_by_g, gamma_by_r_e, gamma_by_canard_command,
-    gamma_by_canard_slaving, gamma_by_spherical_earth, gamma_by_c_t_phi_alpha_3,
-    gamma_by_c_t_phi_alpha_2, gamma_by_c_t_phi_alpha, gamma_by_c_t_phi,
-    gamma_by_c_t_alpha_3, gamma_by_c_t_alpha_2, gamma_by_c_t_alpha, gamma_by_c_t_0,
-    gamma_by_c_t_eta_1, gamma_by_c_t_eta_2, gamma_by_c_t_eta_3, gamma_by_c_l_alpha,
-    gamma_by_c_l_delta_e, gamma_by_c_l_delta_c, gamma_by_c_l_0, gamma_by_c_l_eta_1,
-    gamma_by_c_l_eta_2, gamma_by_c_l_eta_3, alpha_by_m, alpha_by_s, alpha_by_rho_0,
-    alpha_by_h_0, alpha_by_h_s, alpha_by_g, alpha_by_r_e, alpha_by_canard_command,
-    alpha_by_canard_slaving, alpha_by_spherical_earth, alpha_by_c_t_phi_alpha_3,
-    alpha_by_c_t_phi_alpha_2, alpha_by_c_t_phi_alpha, alpha_by_c_t_phi,
-    alpha_by_c_t_alpha_3, alpha_by_c_t_alpha_2, alpha_by_c_t_alpha, alpha_by_c_t_0,
-    alpha_by_c_t_eta_1, alpha_by_c_t_eta_2, alpha_by_c_t_eta_3, alpha_by_c_l_alpha,
-    alpha_by_c_l_delta_e, alpha_by_c_l_delta_c, alpha_by_c_l_0, alpha_by_c_l_eta_1,
-    alpha_by_c_l_eta_2, alpha_by_c_l_eta_3, pitch_rate_by_i_yy, pitch_rate_by_s,
-    pitch_rate_by_c_bar, pitch_rate_by_z_t, pitch_rate_by_rho_0, pitch_rate_by_h_0,
-    pitch_rate_by_h_s, pitch_rate_by_canard_command, pitch_rate_by_canard_slaving,
-    pitch_rate_by_c_t_phi_alpha_3, pitch_rate_by_c_t_phi_alpha_2,
-    pitch_rate_by_c_t_phi_alpha, pitch_rate_by_c_t_phi, pitch_rate_by_c_t_alpha_3,
-    pitch_rate_by_c_t_alpha_2, pitch_rate_by_c_t_alpha, pitch_rate_by_c_t_0,
-    pitch_rate_by_c_t_eta_1, pitch_rate_by_c_t_eta_2, pitch_rate_by_c_t_eta_3,
-    pitch_rate_by_c_l_delta_e, pitch_rate_by_c_l_delta_c, pitch_rate_by_c_m_alpha_2,
-    pitch_rate_by_c_m_alpha, pitch_rate_by_c_m_delta_e, pitch_rate_by_c_m_delta_c,
-    pitch_rate_by_c_m_0, pitch_rate_by_c_m_eta_1, pitch_rate_by_c_m_eta_2,
-    pitch_rate_by_c_m_eta_3, eta_dot_1_by_s, eta_dot_1_by_rho_0, eta_dot_1_by_h_0,
-    eta_dot_1_by_h_s, eta_dot_1_by_omega_1, eta_dot_1_by_zeta_1,
-    eta_dot_1_by_canard_command, eta_dot_1_by_canard_slaving, eta_dot_1_by_c_l_delta_e,
-    eta_dot_1_by_c_l_delta_c, eta_dot_1_by_c_n_1_alpha_2, eta_dot_1_by_c_n_1_alpha,
-    eta_dot_1_by_c_n_1_delta_e, eta_dot_1_by_c_n_1_delta_c, eta_dot_1_by_c_n_1_0,
-    eta_dot_2_by_s, eta_dot_2_by_rho_0, eta_dot_2_by_h_0, eta_dot_2_by_h_s,
-    eta_dot_2_by_omega_2, eta_dot_2_by_zeta_2, eta_dot_2_by_canard_command,
-    eta_dot_2_by_canard_slaving, eta_dot_2_by_c_l_delta_e, eta_dot_2_by_c_l_delta_c,
-    eta_dot_2_by_c_n_2_alpha_2, eta_dot_2_by_c_n_2_alpha, eta_dot_2_by_c_n_2_delta_e,
-    eta_dot_2_by_c_n_2_delta_c, eta_dot_2_by_c_n_2_0, eta_dot_3_by_s, eta_dot_3_by_rho_0,
-    eta_dot_3_by_h_0, eta_dot_3_by_h_s, eta_dot_3_by_omega_3, eta_dot_3_by_zeta_3,
-    eta_dot_3_by_canard_command, eta_dot_3_by_canard_slaving, eta_dot_3_by_c_l_delta_e,
-    eta_dot_3_by_c_l_delta_c, eta_dot_3_by_c_n_3_alpha_2, eta_dot_3_by_c_n_3_alpha,
-    eta_dot_3_by_c_n_3_delta_e, eta_dot_3_by_c_n_3_delta_c, eta_dot_3_by_c_n_3_0] = parameter_jacobian_values(
-        x,
-        u,
-        p,
-    );
-
-    // Result
-    let no_parameter = Parameters::splat(R::ZERO);
-    let no_state_parameter = State::splat(no_parameter);
-    State {
-        velocity: Parameters {
-            m: velocity_by_m,
-            s: velocity_by_s,
-            rho_0: velocity_by_rho_0,
-            h_0: velocity_by_h_0,
-            h_s: velocity_by_h_s,
-            g: velocity_by_g,
-            r_e: velocity_by_r_e,
-            canard_command: velocity_by_canard_command,
-            canard_slaving: velocity_by_canard_slaving,
-            spherical_earth: velocity_by_spherical_earth,
-            c_t_phi_alpha_3: velocity_by_c_t_phi_alpha_3,
-            c_t_phi_alpha_2: velocity_by_c_t_phi_alpha_2,
-            c_t_phi_alpha: velocity_by_c_t_phi_alpha,
-            c_t_phi: velocity_by_c_t_phi,
-            c_t_alpha_3: velocity_by_c_t_alpha_3,
-            c_t_alpha_2: velocity_by_c_t_alpha_2,
-            c_t_alpha: velocity_by_c_t_alpha,
-            c_t_0: velocity_by_c_t_0,
-            c_t_eta_1: velocity_by_c_t_eta_1,
-            c_t_eta_2: velocity_by_c_t_eta_2,
-            c_t_eta_3: velocity_by_c_t_eta_3,
-            c_l_delta_e: velocity_by_c_l_delta_e,
-            c_l_delta_c: velocity_by_c_l_delta_c,
-            c_d_alpha_2: velocity_by_c_d_alpha_2,
-            c_d_alpha: velocity_by_c_d_alpha,
-            c_d_delta_e_2: velocity_by_c_d_delta_e_2,
-            c_d_delta_e: velocity_by_c_d_delta_e,
-            c_d_delta_c_2: velocity_by_c_d_delta_c_2,
-            c_d_delta_c: velocity_by_c_d_delta_c,
-            c_d_0: velocity_by_c_d_0,
-            c_d_eta_1: velocity_by_c_d_eta_1,
-            c_d_eta_2: velocity_by_c_d_eta_2,
-            c_d_eta_3: velocity_by_c_d_eta_3,
-            ..no_parameter
-        },
-        gamma: Parameters {
-            m: gamma_by_m,
-            s: gamma_by_s,
-            rho_0: gamma_by_rho_0,
-            h_0: gamma_by_h_0,
-            h_s: gamma_by_h_s,
-            g: gamma_by_g,
-            r_e: gamma_by_r_e,
-            canard_command: gamma_by_canard_command,
-            canard_slaving: gamma_by_canard_slaving,
-            spherical_earth: gamma_by_spherical_earth,
-            c_t_phi_alpha_3: gamma_by_c_t_phi_alpha_3,
-            c_t_phi_alpha_2: gamma_by_c_t_phi_alpha_2,
-            c_t_phi_alpha: gamma_by_c_t_phi_alpha,
-            c_t_phi: gamma_by_c_t_phi,
-            c_t_alpha_3: gamma_by_c_t_alpha_3,
-            c_t_alpha_2: gamma_by_c_t_alpha_2,
-            c_t_alpha: gamma_by_c_t_alpha,
-            c_t_0: gamma_by_c_t_0,
-            c_t_eta_1: gamma_by_c_t_eta_1,
-            c_t_eta_2: gamma_by_c_t_eta_2,
-            c_t_eta_3: gamma_by_c_t_eta_3,
-            c_l_alpha: gamma_by_c_l_alpha,
-            c_l_delta_e: gamma_by_c_l_delta_e,
-            c_l_delta_c: gamma_by_c_l_delta_c,
-            c_l_0: gamma_by_c_l_0,
-            c_l_eta_1: gamma_by_c_l_eta_1,
-            c_l_eta_2: gamma_by_c_l_eta_2,
-            c_l_eta_3: gamma_by_c_l_eta_3,
-            ..no_parameter
-        },
-        alpha: Parameters {
-            m: alpha_by_m,
-            s: alpha_by_s,
-            rho_0: alpha_by_rho_0,
-            h_0: alpha_by_h_0,
-            h_s: alpha_by_h_s,
-            g: alpha_by_g,
-            r_e: alpha_by_r_e,
-            canard_command: alpha_by_canard_command,
-            canard_slaving: alpha_by_canard_slaving,
-            spherical_earth: alpha_by_spherical_earth,
-            c_t_phi_alpha_3: alpha_by_c_t_phi_alpha_3,
-            c_t_phi_alpha_2: alpha_by_c_t_phi_alpha_2,
-            c_t_phi_alpha: alpha_by_c_t_phi_alpha,
-            c_t_phi: alpha_by_c_t_phi,
-            c_t_alpha_3: alpha_by_c_t_alpha_3,
-            c_t_alpha_2: alpha_by_c_t_alpha_2,
-            c_t_alpha: alpha_by_c_t_alpha,
-            c_t_0: alpha_by_c_t_0,
-            c_t_eta_1: alpha_by_c_t_eta_1,
-            c_t_eta_2: alpha_by_c_t_eta_2,
-            c_t_eta_3: alpha_by_c_t_eta_3,
-            c_l_alpha: alpha_by_c_l_alpha,
-            c_l_delta_e: alpha_by_c_l_delta_e,
-            c_l_delta_c: alpha_by_c_l_delta_c,
-            c_l_0: alpha_by_c_l_0,
-            c_l_eta_1: alpha_by_c_l_eta_1,
-            c_l_eta_2: alpha_by_c_l_eta_2,
-            c_l_eta_3: alpha_by_c_l_eta_3,
-            ..no_parameter
-        },
-        pitch_rate: Parameters {
-            i_yy: pitch_rate_by_i_yy,
-            s: pitch_rate_by_s,
-            c_bar: pitch_rate_by_c_bar,
-            z_t: pitch_rate_by_z_t,
-            rho_0: pitch_rate_by_rho_0,
-            h_0: pitch_rate_by_h_0,
-            h_s: pitch_rate_by_h_s,
-            canard_command: pitch_rate_by_canard_command,
-            canard_slaving: pitch_rate_by_canard_slaving,
-            c_t_phi_alpha_3: pitch_rate_by_c_t_phi_alpha_3,
-            c_t_phi_alpha_2: pitch_rate_by_c_t_phi_alpha_2,
-            c_t_phi_alpha: pitch_rate_by_c_t_phi_alpha,
-            c_t_phi: pitch_rate_by_c_t_phi,
-            c_t_alpha_3: pitch_rate_by_c_t_alpha_3,
-            c_t_alpha_2: pitch_rate_by_c_t_alpha_2,
-            c_t_alpha: pitch_rate_by_c_t_alpha,
-            c_t_0: pitch_rate_by_c_t_0,
-            c_t_eta_1: pitch_rate_by_c_t_eta_1,
-            c_t_eta_2: pitch_rate_by_c_t_eta_2,
-            c_t_eta_3: pitch_rate_by_c_t_eta_3,
-            c_l_delta_e: pitch_rate_by_c_l_delta_e,
-            c_l_delta_c: pitch_rate_by_c_l_delta_c,
-            c_m_alpha_2: pitch_rate_by_c_m_alpha_2,
-            c_m_alpha: pitch_rate_by_c_m_alpha,
-            c_m_delta_e: pitch_rate_by_c_m_delta_e,
-            c_m_delta_c: pitch_rate_by_c_m_delta_c,
-            c_m_0: pitch_rate_by_c_m_0,
-            c_m_eta_1: pitch_rate_by_c_m_eta_1,
-            c_m_eta_2: pitch_rate_by_c_m_eta_2,
-            c_m_eta_3: pitch_rate_by_c_m_eta_3,
-            ..no_parameter
-        },
-        eta_dot_1: Parameters {
-            s: eta_dot_1_by_s,
-            rho_0: eta_dot_1_by_rho_0,
-            h_0: eta_dot_1_by_h_0,
-            h_s: eta_dot_1_by_h_s,
-            omega_1: eta_dot_1_by_omega_1,
-            zeta_1: eta_dot_1_by_zeta_1,
-            canard_command: eta_dot_1_by_canard_command,
-            canard_slaving: eta_dot_1_by_canard_slaving,
-            c_l_delta_e: eta_dot_1_by_c_l_delta_e,
-            c_l_delta_c: eta_dot_1_by_c_l_delta_c,
-            c_n_1_alpha_2: eta_dot_1_by_c_n_1_alpha_2,
-            c_n_1_alpha: eta_dot_1_by_c_n_1_alpha,
-            c_n_1_delta_e: eta_dot_1_by_c_n_1_delta_e,
-            c_n_1_delta_c: eta_dot_1_by_c_n_1_delta_c,
-            c_n_1_0: eta_dot_1_by_c_n_1_0,
-            ..no_parameter
-        },
-        eta_dot_2: Parameters {
-            s: eta_dot_2_by_s,
-            rho_0: eta_dot_2_by_rho_0,
-            h_0: eta_dot_2_by_h_0,
-            h_s: eta_dot_2_by_h_s,
-            omega_2: eta_dot_2_by_omega_2,
-            zeta_2: eta_dot_2_by_zeta_2,
-            canard_command: eta_dot_2_by_canard_command,
-            canard_slaving: eta_dot_2_by_canard_slaving,
-            c_l_delta_e: eta_dot_2_by_c_l_delta_e,
-            c_l_delta_c: eta_dot_2_by_c_l_delta_c,
-            c_n_2_alpha_2: eta_dot_2_by_c_n_2_alpha_2,
-            c_n_2_alpha: eta_dot_2_by_c_n_2_alpha,
-            c_n_2_delta_e: eta_dot_2_by_c_n_2_delta_e,
-            c_n_2_delta_c: eta_dot_2_by_c_n_2_delta_c,
-            c_n_2_0: eta_dot_2_by_c_n_2_0,
-            ..no_parameter
-        },
-        eta_dot_3: Parameters {
-            s: eta_dot_3_by_s,
-            rho_0: eta_dot_3_by_rho_0,
-            h_0: eta_dot_3_by_h_0,
-            h_s: eta_dot_3_by_h_s,
-            omega_3: eta_dot_3_by_omega_3,
-            zeta_3: eta_dot_3_by_zeta_3,
-            canard_command: eta_dot_3_by_canard_command,
-            canard_slaving: eta_dot_3_by_canard_slaving,
-            c_l_delta_e: eta_dot_3_by_c_l_delta_e,
-            c_l_delta_c: eta_dot_3_by_c_l_delta_c,
-            c_n_3_alpha_2: eta_dot_3_by_c_n_3_alpha_2,
-            c_n_3_alpha: eta_dot_3_by_c_n_3_alpha,
-            c_n_3_delta_e: eta_dot_3_by_c_n_3_delta_e,
-            c_n_3_delta_c: eta_dot_3_by_c_n_3_delta_c,
-            c_n_3_0: eta_dot_3_by_c_n_3_0,
-            ..no_parameter
-        },
-        ..no_state_parameter
-    }
+    PARAMETER_JACOBIAN_PATTERN.dense(&parameter_jacobian_values(x, u, p))
 }

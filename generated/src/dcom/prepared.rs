@@ -212,25 +212,35 @@ pub struct Prepared<R> {
     pub inv_m_2: R,
     /// `inv_h_s * inv_h_s`.
     pub inv_h_s_2: R,
-    /// `earth_curvature * inv_r_e`.
-    pub earth_curvature_over_r_e: R,
-    /// `c_l_delta_e * inv_c_l_delta_c`.
-    pub c_l_delta_e_over_c_l_delta_c: R,
-    /// `1 / r_e`.
-    pub inv_r_e: R,
-    /// `canard_slaving * inv_c_l_delta_c`.
-    pub canard_slaving_over_c_l_delta_c: R,
-    /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-    pub d_c_d_d_c_l_delta_c_constant_1: R,
+    /// `2 * g * earth_curvature * inv_r_e`.
+    pub two_g_earth_curvature_over_r_e: R,
+    /// `c_l_delta_e * inv_c_l_delta_c * inv_m`.
+    pub c_l_delta_e_over_c_l_delta_c_m: R,
+    /// `R::from_f64(-2.0) * g * inv_r_e`.
+    pub minus_two_g_over_r_e: R,
+    /// `canard_slaving * inv_c_l_delta_c * inv_m`.
+    pub canard_slaving_over_c_l_delta_c_m: R,
+    /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_m`.
+    pub parameter_jacobian_constant_1: R,
     /// `R::from_f64(-0.5) * inv_m_2`.
     pub minus_half_inv_m_2: R,
     /// `R::HALF * inv_m`.
     pub half_over_m: R,
+    /// `1 / r_e`.
+    pub inv_r_e: R,
+    /// `earth_curvature * earth_curvature`.
+    pub earth_curvature_2: R,
     /// Coefficient of delta_e in C_L, 1/rad.
     pub c_l_delta_e: R,
     /// Derivative of lift coefficient per elevator deflection that the slaved canard leaves with respect to
     /// c_l_delta_e, dimensionless.
     pub d_elevator_lift_d_c_l_delta_e: R,
+    /// `R::HALF * inv_m_2`.
+    pub half_inv_m_2: R,
+    /// `R::from_f64(-0.5) * inv_m`.
+    pub minus_half_over_m: R,
+    /// `R::from_f64(-0.5) * s * inv_m`.
+    pub minus_half_s_over_m: R,
     /// `R::HALF * c_bar`.
     pub half_c_bar: R,
     /// `R::HALF * z_t`.
@@ -238,13 +248,13 @@ pub struct Prepared<R> {
     /// `c_bar * c_m_delta_c * inv_i_yy`.
     pub c_bar_c_m_delta_c_over_i_yy: R,
     /// `c_bar * c_m_delta_c * c_l_delta_e * inv_c_l_delta_c * inv_i_yy`.
-    pub parameter_jacobian_constant_1: R,
+    pub parameter_jacobian_constant_2: R,
     /// `z_t * inv_i_yy`.
     pub z_t_over_i_yy: R,
     /// `c_bar * c_m_delta_c * canard_slaving * inv_c_l_delta_c * inv_i_yy`.
-    pub parameter_jacobian_constant_2: R,
-    /// `c_bar * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy`.
     pub parameter_jacobian_constant_3: R,
+    /// `c_bar * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy`.
+    pub parameter_jacobian_constant_4: R,
     /// `c_bar * inv_i_yy`.
     pub c_bar_over_i_yy: R,
     /// `R::HALF * s`.
@@ -256,11 +266,11 @@ pub struct Prepared<R> {
     /// `R::from_f64(-2.0) * omega_1`.
     pub minus_two_omega_1: R,
     /// `c_n_1_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_4: R,
-    /// `c_n_1_delta_c * canard_slaving * inv_c_l_delta_c`.
     pub parameter_jacobian_constant_5: R,
-    /// `c_n_1_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    /// `c_n_1_delta_c * canard_slaving * inv_c_l_delta_c`.
     pub parameter_jacobian_constant_6: R,
+    /// `c_n_1_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    pub parameter_jacobian_constant_7: R,
     /// `2 * zeta_2`.
     pub two_zeta_2: R,
     /// `2 * omega_2`.
@@ -268,11 +278,11 @@ pub struct Prepared<R> {
     /// `R::from_f64(-2.0) * omega_2`.
     pub minus_two_omega_2: R,
     /// `c_n_2_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_7: R,
-    /// `c_n_2_delta_c * canard_slaving * inv_c_l_delta_c`.
     pub parameter_jacobian_constant_8: R,
-    /// `c_n_2_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    /// `c_n_2_delta_c * canard_slaving * inv_c_l_delta_c`.
     pub parameter_jacobian_constant_9: R,
+    /// `c_n_2_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    pub parameter_jacobian_constant_10: R,
     /// `2 * zeta_3`.
     pub two_zeta_3: R,
     /// `2 * omega_3`.
@@ -280,11 +290,11 @@ pub struct Prepared<R> {
     /// `R::from_f64(-2.0) * omega_3`.
     pub minus_two_omega_3: R,
     /// `c_n_3_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_10: R,
-    /// `c_n_3_delta_c * canard_slaving * inv_c_l_delta_c`.
     pub parameter_jacobian_constant_11: R,
-    /// `c_n_3_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    /// `c_n_3_delta_c * canard_slaving * inv_c_l_delta_c`.
     pub parameter_jacobian_constant_12: R,
+    /// `c_n_3_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
+    pub parameter_jacobian_constant_13: R,
     /// `2 * earth_curvature_2`.
     pub two_earth_curvature_2: R,
     /// `R::from_f64(6.0) * c_t_alpha_3`.
@@ -341,7 +351,7 @@ pub struct Prepared<R> {
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 138 operations: 10 additions, 122 multiplications, 5 divisions, 1 sqrt.
+/// 149 operations: 10 additions, 133 multiplications, 5 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
@@ -485,52 +495,57 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_n_3_delta_c_canard_command: p.c_n_3_delta_c * p.canard_command,
         inv_m_2,
         inv_h_s_2,
-        earth_curvature_over_r_e: earth_curvature * inv_r_e,
-        c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
-        inv_r_e,
-        canard_slaving_over_c_l_delta_c: p.canard_slaving * inv_c_l_delta_c,
-        d_c_d_d_c_l_delta_c_constant_1: p.canard_slaving * p.c_l_delta_e
-            * inv_c_l_delta_c_2,
+        two_g_earth_curvature_over_r_e: R::TWO * p.g * earth_curvature * inv_r_e,
+        c_l_delta_e_over_c_l_delta_c_m: p.c_l_delta_e * inv_c_l_delta_c * inv_m,
+        minus_two_g_over_r_e: R::from_f64(-2.0) * p.g * inv_r_e,
+        canard_slaving_over_c_l_delta_c_m: p.canard_slaving * inv_c_l_delta_c * inv_m,
+        parameter_jacobian_constant_1: p.canard_slaving * p.c_l_delta_e
+            * inv_c_l_delta_c_2 * inv_m,
         minus_half_inv_m_2: R::from_f64(-0.5) * inv_m_2,
         half_over_m: R::HALF * inv_m,
+        inv_r_e,
+        earth_curvature_2,
         c_l_delta_e: p.c_l_delta_e,
         d_elevator_lift_d_c_l_delta_e,
+        half_inv_m_2: R::HALF * inv_m_2,
+        minus_half_over_m: R::from_f64(-0.5) * inv_m,
+        minus_half_s_over_m: R::from_f64(-0.5) * p.s * inv_m,
         half_c_bar: R::HALF * p.c_bar,
         half_z_t: R::HALF * p.z_t,
         c_bar_c_m_delta_c_over_i_yy: p.c_bar * p.c_m_delta_c * inv_i_yy,
-        parameter_jacobian_constant_1: p.c_bar * p.c_m_delta_c * p.c_l_delta_e
+        parameter_jacobian_constant_2: p.c_bar * p.c_m_delta_c * p.c_l_delta_e
             * inv_c_l_delta_c * inv_i_yy,
         z_t_over_i_yy: p.z_t * inv_i_yy,
-        parameter_jacobian_constant_2: p.c_bar * p.c_m_delta_c * p.canard_slaving
-            * inv_c_l_delta_c * inv_i_yy,
         parameter_jacobian_constant_3: p.c_bar * p.c_m_delta_c * p.canard_slaving
+            * inv_c_l_delta_c * inv_i_yy,
+        parameter_jacobian_constant_4: p.c_bar * p.c_m_delta_c * p.canard_slaving
             * p.c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy,
         c_bar_over_i_yy: p.c_bar * inv_i_yy,
         half_s: R::HALF * p.s,
         two_zeta_1: R::TWO * p.zeta_1,
         two_omega_1: R::TWO * p.omega_1,
         minus_two_omega_1: R::from_f64(-2.0) * p.omega_1,
-        parameter_jacobian_constant_4: p.c_n_1_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
-        parameter_jacobian_constant_5: p.c_n_1_delta_c * p.canard_slaving
+        parameter_jacobian_constant_5: p.c_n_1_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
+        parameter_jacobian_constant_6: p.c_n_1_delta_c * p.canard_slaving
             * inv_c_l_delta_c,
-        parameter_jacobian_constant_6: p.c_n_1_delta_c * p.canard_slaving * p.c_l_delta_e
+        parameter_jacobian_constant_7: p.c_n_1_delta_c * p.canard_slaving * p.c_l_delta_e
             * inv_c_l_delta_c_2,
         two_zeta_2: R::TWO * p.zeta_2,
         two_omega_2: R::TWO * p.omega_2,
         minus_two_omega_2: R::from_f64(-2.0) * p.omega_2,
-        parameter_jacobian_constant_7: p.c_n_2_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
-        parameter_jacobian_constant_8: p.c_n_2_delta_c * p.canard_slaving
+        parameter_jacobian_constant_8: p.c_n_2_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
+        parameter_jacobian_constant_9: p.c_n_2_delta_c * p.canard_slaving
             * inv_c_l_delta_c,
-        parameter_jacobian_constant_9: p.c_n_2_delta_c * p.canard_slaving * p.c_l_delta_e
-            * inv_c_l_delta_c_2,
+        parameter_jacobian_constant_10: p.c_n_2_delta_c * p.canard_slaving
+            * p.c_l_delta_e * inv_c_l_delta_c_2,
         two_zeta_3: R::TWO * p.zeta_3,
         two_omega_3: R::TWO * p.omega_3,
         minus_two_omega_3: R::from_f64(-2.0) * p.omega_3,
-        parameter_jacobian_constant_10: p.c_n_3_delta_c * p.c_l_delta_e
-            * inv_c_l_delta_c,
-        parameter_jacobian_constant_11: p.c_n_3_delta_c * p.canard_slaving
+        parameter_jacobian_constant_11: p.c_n_3_delta_c * p.c_l_delta_e
             * inv_c_l_delta_c,
         parameter_jacobian_constant_12: p.c_n_3_delta_c * p.canard_slaving
+            * inv_c_l_delta_c,
+        parameter_jacobian_constant_13: p.c_n_3_delta_c * p.canard_slaving
             * p.c_l_delta_e * inv_c_l_delta_c_2,
         two_earth_curvature_2: R::TWO * earth_curvature_2,
         six_c_t_alpha_3: R::from_f64(6.0) * p.c_t_alpha_3,

@@ -30,16 +30,7 @@ pub fn diffusion_values<R: Real>(
 /// share one white noise, eq. (17).
 #[inline]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    let [eta_dot_by_xi, chi_by_xi] = diffusion_values(x, u, p);
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let no_state_noise = State::splat(no_noise);
-    State {
-        eta_dot: Noise { xi: eta_dot_by_xi },
-        chi: Noise { xi: chi_by_xi },
-        ..no_state_noise
-    }
+    DIFFUSION_PATTERN.dense(&diffusion_values(x, u, p))
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (17).

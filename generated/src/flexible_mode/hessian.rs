@@ -3,7 +3,7 @@
 //! Functions of FLEXIBLE_MODE. Units are foot, slug, second and radian.
 
 use super::{Hessian, Input, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`Hessian`] stand.
 pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
@@ -28,10 +28,5 @@ pub fn hessian_values<R: Real>(
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (5).
 #[inline]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
-    let [] = hessian_values(x, u, p);
-
-    // Result
-    let no_state = State::splat(R::ZERO);
-    let no_state_state = State::splat(no_state);
-    State::splat(no_state_state)
+    HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
 }

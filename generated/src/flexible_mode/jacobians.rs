@@ -46,40 +46,8 @@ pub fn jacobians<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
-    let (
-        [eta_by_eta_dot,
-        eta_dot_by_eta,
-        eta_dot_by_eta_dot,
-        chi_by_chi,
-        ],
-        [eta_dot_by_force,
-        ],
-    ) = jacobians_values(x, u, p);
-
-    // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    let state = State {
-        eta: State {
-            eta_dot: eta_by_eta_dot,
-            ..no_state
-        },
-        eta_dot: State {
-            eta: eta_dot_by_eta,
-            eta_dot: eta_dot_by_eta_dot,
-            ..no_state
-        },
-        chi: State {
-            chi: chi_by_chi,
-            ..no_state
-        },
-    };
-    let input = State {
-        eta_dot: Input { force: eta_dot_by_force },
-        ..no_state_input
-    };
-    (state, input)
+    let (state, input) = jacobians_values(x, u, p);
+    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for

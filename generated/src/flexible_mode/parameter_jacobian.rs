@@ -3,7 +3,7 @@
 //! Functions of FLEXIBLE_MODE. Units are foot, slug, second and radian.
 
 use super::{Input, ParameterJacobian, Parameters, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
 pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
@@ -50,24 +50,5 @@ pub fn parameter_jacobian<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ParameterJacobian<R> {
-    let [eta_dot_by_omega, eta_dot_by_zeta, chi_by_omega, chi_by_zeta,
-    chi_by_moment_matching] = parameter_jacobian_values(x, u, p);
-
-    // Result
-    let no_parameter = Parameters::splat(R::ZERO);
-    let no_state_parameter = State::splat(no_parameter);
-    State {
-        eta_dot: Parameters {
-            omega: eta_dot_by_omega,
-            zeta: eta_dot_by_zeta,
-            ..no_parameter
-        },
-        chi: Parameters {
-            omega: chi_by_omega,
-            zeta: chi_by_zeta,
-            moment_matching: chi_by_moment_matching,
-            ..no_parameter
-        },
-        ..no_state_parameter
-    }
+    PARAMETER_JACOBIAN_PATTERN.dense(&parameter_jacobian_values(x, u, p))
 }

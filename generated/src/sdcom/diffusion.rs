@@ -66,21 +66,21 @@ pub fn diffusion_values<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -97,15 +97,15 @@ pub fn diffusion_values<R: Real>(
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
@@ -155,8 +155,10 @@ pub fn diffusion_values<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + d_c_l_d_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -188,53 +190,7 @@ pub fn diffusion_values<R: Real>(
 /// and w_q are derivatives of the drift, eq. (27).
 #[inline]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    let [velocity_by_w_gamma, velocity_by_w_alpha, altitude_by_w_gamma, gamma_by_w_gamma,
-    gamma_by_w_alpha, alpha_by_w_gamma, alpha_by_w_alpha, alpha_by_w_q,
-    pitch_rate_by_w_alpha, chi_1_by_xi_1, chi_2_by_xi_1, chi_2_by_xi_2, chi_3_by_xi_1,
-    chi_3_by_xi_3] = diffusion_values(x, u, p);
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    State {
-        velocity: Noise {
-            w_gamma: velocity_by_w_gamma,
-            w_alpha: velocity_by_w_alpha,
-            ..no_noise
-        },
-        altitude: Noise {
-            w_gamma: altitude_by_w_gamma,
-            ..no_noise
-        },
-        gamma: Noise {
-            w_gamma: gamma_by_w_gamma,
-            w_alpha: gamma_by_w_alpha,
-            ..no_noise
-        },
-        alpha: Noise {
-            w_gamma: alpha_by_w_gamma,
-            w_alpha: alpha_by_w_alpha,
-            w_q: alpha_by_w_q,
-            ..no_noise
-        },
-        pitch_rate: Noise {
-            w_alpha: pitch_rate_by_w_alpha,
-            ..no_noise
-        },
-        chi_1: Noise {
-            xi_1: chi_1_by_xi_1,
-            ..no_noise
-        },
-        chi_2: Noise {
-            xi_1: chi_2_by_xi_1,
-            xi_2: chi_2_by_xi_2,
-            ..no_noise
-        },
-        chi_3: Noise {
-            xi_1: chi_3_by_xi_1,
-            xi_3: chi_3_by_xi_3,
-            ..no_noise
-        },
-    }
+    DIFFUSION_PATTERN.dense(&diffusion_values(x, u, p))
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (27).
@@ -274,21 +230,21 @@ pub fn drift_and_diffusion<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -305,42 +261,42 @@ pub fn drift_and_diffusion<R: Real>(
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_alpha_2 * alpha_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * eta_1
         + p.c_m_eta_2 * eta_2
         + p.c_m_eta_3 * eta_3;
@@ -349,10 +305,11 @@ pub fn drift_and_diffusion<R: Real>(
     let thrust = reference_force * c_t; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
+    let force_turn = turn_factor * normal_coefficient; // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
     let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
@@ -406,8 +363,10 @@ pub fn drift_and_diffusion<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + d_c_l_d_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -510,21 +469,21 @@ pub fn noise_increment<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -541,15 +500,15 @@ pub fn noise_increment<R: Real>(
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
@@ -599,8 +558,10 @@ pub fn noise_increment<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + d_c_l_d_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha

@@ -33,21 +33,21 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -64,27 +64,27 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3;
@@ -121,10 +121,10 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
+        + p.c_t_phi_alpha * x.alpha;
 
     // Derivatives with respect to phi
     let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
@@ -142,10 +142,11 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
         + p.c_t_eta_2 * d_eta_static_2_d_delta_e
         + p.c_t_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_thrust_d_delta_e = reference_force * d_c_t_d_delta_e; // lb/ft/rad
-    let d_c_d_d_delta_e_term_1 = p.two_c_d_delta_c_2 * canard_deflection + p.c_d_delta_c;
+    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
+        + p.c_d_delta_c; // 1/rad
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
-        + d_c_d_d_delta_e_term_1 * p.canard_gain
+        + slope_of_c_d_in_canard_deflection * p.canard_gain
         + p.c_d_eta_1 * d_eta_static_1_d_delta_e
         + p.c_d_eta_2 * d_eta_static_2_d_delta_e
         + p.c_d_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
@@ -167,7 +168,7 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
         + p.c_t_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_thrust_d_delta_c = reference_force * d_c_t_d_delta_c; // lb/ft/rad
-    let d_c_d_d_delta_c = d_c_d_d_delta_e_term_1 * p.canard_command
+    let d_c_d_d_delta_c = slope_of_c_d_in_canard_deflection * p.canard_command
         + p.c_d_eta_1 * d_eta_static_1_d_delta_c
         + p.c_d_eta_2 * d_eta_static_2_d_delta_c
         + p.c_d_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
@@ -215,21 +216,21 @@ pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -246,28 +247,31 @@ pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
 
+    // Forces and moment, (1)
+    let normal_coefficient = c_l + c_t * sin_alpha;
+
     // Motion, (1)
-    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
+    let force_turn = turn_factor * normal_coefficient; // rad/s
 
     force_turn - gravity_turn * cos_gamma
 }
@@ -293,13 +297,14 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
+        + p.c_t_phi_alpha * x.alpha;
 
     // Derivatives with respect to phi
-    let d_force_turn_d_phi = turn_factor * sin_alpha * c_t_phi; // rad/s
+    let d_normal_coefficient_d_phi = sin_alpha * c_t_phi;
+    let d_force_turn_d_phi = turn_factor * d_normal_coefficient_d_phi; // rad/s
 
     // Derivatives with respect to delta_e
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
@@ -315,8 +320,8 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
         + p.c_l_eta_1 * d_eta_static_1_d_delta_e
         + p.c_l_eta_2 * d_eta_static_2_d_delta_e
         + p.c_l_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
-    let d_force_turn_d_delta_e = turn_factor
-        * (sin_alpha * d_c_t_d_delta_e + d_c_l_d_delta_e); // 1/s
+    let d_normal_coefficient_d_delta_e = sin_alpha * d_c_t_d_delta_e + d_c_l_d_delta_e; // 1/rad
+    let d_force_turn_d_delta_e = turn_factor * d_normal_coefficient_d_delta_e; // 1/s
 
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = reference_force
@@ -335,8 +340,8 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
         + p.c_l_eta_1 * d_eta_static_1_d_delta_c
         + p.c_l_eta_2 * d_eta_static_2_d_delta_c
         + p.c_l_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
-    let d_force_turn_d_delta_c = turn_factor
-        * (sin_alpha * d_c_t_d_delta_c + d_c_l_d_delta_c); // 1/s
+    let d_normal_coefficient_d_delta_c = sin_alpha * d_c_t_d_delta_c + d_c_l_d_delta_c; // 1/rad
+    let d_force_turn_d_delta_c = turn_factor * d_normal_coefficient_d_delta_c; // 1/s
 
     Input {
         phi: d_force_turn_d_phi,
@@ -390,21 +395,21 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -421,34 +426,34 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3;
@@ -456,10 +461,11 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Forces and moment, (2)
     let thrust = reference_force * c_t; // lb/ft
     let drag = reference_force * c_d; // lb/ft
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
+    let force_turn = turn_factor * normal_coefficient; // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
 
@@ -496,10 +502,10 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
+        + p.c_t_phi_alpha * x.alpha;
 
     // Derivatives with respect to gamma
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
@@ -508,7 +514,8 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
     let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
     let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
     let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_force_turn_d_phi = turn_factor * sin_alpha * c_t_phi; // rad/s
+    let d_normal_coefficient_d_phi = sin_alpha * c_t_phi;
+    let d_force_turn_d_phi = turn_factor * d_normal_coefficient_d_phi; // rad/s
 
     // Derivatives with respect to delta_e
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
@@ -521,10 +528,11 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
         + p.c_t_eta_2 * d_eta_static_2_d_delta_e
         + p.c_t_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_thrust_d_delta_e = reference_force * d_c_t_d_delta_e; // lb/ft/rad
-    let d_c_d_d_delta_e_term_1 = p.two_c_d_delta_c_2 * canard_deflection + p.c_d_delta_c;
+    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
+        + p.c_d_delta_c; // 1/rad
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
-        + d_c_d_d_delta_e_term_1 * p.canard_gain
+        + slope_of_c_d_in_canard_deflection * p.canard_gain
         + p.c_d_eta_1 * d_eta_static_1_d_delta_e
         + p.c_d_eta_2 * d_eta_static_2_d_delta_e
         + p.c_d_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
@@ -535,8 +543,8 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
         + p.c_l_eta_1 * d_eta_static_1_d_delta_e
         + p.c_l_eta_2 * d_eta_static_2_d_delta_e
         + p.c_l_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
-    let d_force_turn_d_delta_e = turn_factor
-        * (sin_alpha * d_c_t_d_delta_e + d_c_l_d_delta_e); // 1/s
+    let d_normal_coefficient_d_delta_e = sin_alpha * d_c_t_d_delta_e + d_c_l_d_delta_e; // 1/rad
+    let d_force_turn_d_delta_e = turn_factor * d_normal_coefficient_d_delta_e; // 1/s
 
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = reference_force
@@ -552,7 +560,7 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
         + p.c_t_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_thrust_d_delta_c = reference_force * d_c_t_d_delta_c; // lb/ft/rad
-    let d_c_d_d_delta_c = d_c_d_d_delta_e_term_1 * p.canard_command
+    let d_c_d_d_delta_c = slope_of_c_d_in_canard_deflection * p.canard_command
         + p.c_d_eta_1 * d_eta_static_1_d_delta_c
         + p.c_d_eta_2 * d_eta_static_2_d_delta_c
         + p.c_d_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
@@ -563,8 +571,8 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
         + p.c_l_eta_1 * d_eta_static_1_d_delta_c
         + p.c_l_eta_2 * d_eta_static_2_d_delta_c
         + p.c_l_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
-    let d_force_turn_d_delta_c = turn_factor
-        * (sin_alpha * d_c_t_d_delta_c + d_c_l_d_delta_c); // 1/s
+    let d_normal_coefficient_d_delta_c = sin_alpha * d_c_t_d_delta_c + d_c_l_d_delta_c; // 1/rad
+    let d_force_turn_d_delta_c = turn_factor * d_normal_coefficient_d_delta_c; // 1/s
 
     // Derivatives with respect to phi
     let d_altitude_acceleration_d_phi = sin_gamma * d_velocity_rate_d_phi

@@ -3,7 +3,7 @@
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
 use super::{Input, Noise, NoiseDerivatives, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`NoiseDerivatives`] stand.
 pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
@@ -80,21 +80,21 @@ pub fn noise_derivatives_values<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -111,15 +111,15 @@ pub fn noise_derivatives_values<R: Real>(
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
@@ -210,10 +210,10 @@ pub fn noise_derivatives_values<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_force_turn_d_alpha_term_1 = c_t * cos_alpha
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
         + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha;
-    let d_force_turn_d_alpha = turn_factor * d_force_turn_d_alpha_term_1; // 1/s
+        + d_c_l_d_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -335,6 +335,12 @@ pub fn noise_derivatives_values<R: Real>(
     let d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    let d2_normal_coefficient_d_velocity_d_alpha = d_c_t_d_velocity * cos_alpha
+        + sin_alpha * d2_c_t_d_velocity_d_alpha
+        + d2_c_l_d_velocity_d_alpha; // s/ft/rad
+    let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
+        * d_normal_coefficient_d_alpha
+        + turn_factor * d2_normal_coefficient_d_velocity_d_alpha; // 1/ft
 
     // Derivatives with respect to gamma
     let d2_gamma_rate_d_altitude_d_gamma = -d_gravity_turn_d_altitude
@@ -344,6 +350,12 @@ pub fn noise_derivatives_values<R: Real>(
     let d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_altitude_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_altitude_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    let d2_normal_coefficient_d_altitude_d_alpha = d_c_t_d_altitude * cos_alpha
+        + sin_alpha * d2_c_t_d_altitude_d_alpha
+        + d2_c_l_d_altitude_d_alpha; // 1/ft/rad
+    let d2_force_turn_d_altitude_d_alpha = d_turn_factor_d_altitude
+        * d_normal_coefficient_d_alpha
+        + turn_factor * d2_normal_coefficient_d_altitude_d_alpha; // 1/s/ft
 
     // Derivatives with respect to gamma
     let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
@@ -353,18 +365,27 @@ pub fn noise_derivatives_values<R: Real>(
     let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
+        + sin_alpha * d2_c_t_d_alpha_d_alpha
+        + c_t * d_cos_alpha_d_alpha
+        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha = turn_factor
-        * (R::TWO * d_c_t_d_alpha * cos_alpha + sin_alpha * d2_c_t_d_alpha_d_alpha
-            + c_t * d_cos_alpha_d_alpha + d2_c_l_d_alpha_d_alpha); // 1/s/rad
+        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
-    let d2_force_turn_d_alpha_d_chi_1 = cos_alpha * turn_factor * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_chi_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_chi_1 = turn_factor
+        * d2_normal_coefficient_d_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_force_turn_d_alpha_d_chi_2 = cos_alpha * turn_factor * p.c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_chi_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_chi_2 = turn_factor
+        * d2_normal_coefficient_d_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_force_turn_d_alpha_d_chi_3 = cos_alpha * turn_factor * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+    let d2_normal_coefficient_d_alpha_d_chi_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_chi_3 = turn_factor
+        * d2_normal_coefficient_d_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha
     let d2_c_m_d_velocity_d_alpha = p.c_m_eta_1 * d2_eta_static_1_d_velocity_d_alpha
@@ -393,29 +414,17 @@ pub fn noise_derivatives_values<R: Real>(
         + p.c_bar * reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d2_force_turn_d_alpha_d_velocity = turn_factor
-        * (cos_alpha * d_c_t_d_velocity + sin_alpha * d2_c_t_d_velocity_d_alpha
-            + d2_c_l_d_velocity_d_alpha)
-        + d_force_turn_d_alpha_term_1 * d_turn_factor_d_velocity; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d2_force_turn_d_alpha_d_altitude = turn_factor
-        * (cos_alpha * d_c_t_d_altitude + sin_alpha * d2_c_t_d_altitude_d_alpha
-            + d2_c_l_d_altitude_d_alpha)
-        + d_force_turn_d_alpha_term_1 * d_turn_factor_d_altitude; // 1/s/ft
     let noise_derivatives_term_1 = d2_gamma_rate_d_velocity_d_gamma * d_velocity_rate_d_gamma
         + d2_gamma_rate_d_altitude_d_gamma * d_altitude_rate_d_gamma
         + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma;
-    let noise_derivatives_term_2 = d2_force_turn_d_alpha_d_velocity
+    let noise_derivatives_term_2 = d2_force_turn_d_velocity_d_alpha
         * d_velocity_rate_d_gamma;
-    let noise_derivatives_term_3 = d2_force_turn_d_alpha_d_altitude
+    let noise_derivatives_term_3 = d2_force_turn_d_altitude_d_alpha
         * d_altitude_rate_d_gamma;
     let noise_derivatives_term_4 = d2_force_turn_d_alpha_d_alpha * d_gamma_rate_d_gamma;
     let noise_derivatives_term_5 = d2_gamma_rate_d_velocity_d_gamma
         * d_velocity_rate_d_alpha + d2_gamma_rate_d_gamma_d_gamma * d_force_turn_d_alpha;
-    let noise_derivatives_term_6 = d2_force_turn_d_alpha_d_velocity
+    let noise_derivatives_term_6 = d2_force_turn_d_velocity_d_alpha
         * d_velocity_rate_d_alpha;
     let noise_derivatives_term_7 = d2_force_turn_d_alpha_d_alpha * d_force_turn_d_alpha;
     let noise_derivatives_term_8 = p.shared_noise
@@ -487,135 +496,7 @@ pub fn noise_derivatives<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> NoiseDerivatives<R> {
-    let [velocity_by_w_gamma_w_gamma, velocity_by_w_gamma_w_alpha,
-    velocity_by_w_alpha_w_gamma, velocity_by_w_alpha_w_alpha, velocity_by_w_q_w_alpha,
-    velocity_by_xi_1_w_alpha, velocity_by_xi_2_w_alpha, velocity_by_xi_3_w_alpha,
-    altitude_by_w_gamma_w_gamma, altitude_by_w_alpha_w_gamma, gamma_by_w_gamma_w_gamma,
-    gamma_by_w_gamma_w_alpha, gamma_by_w_alpha_w_gamma, gamma_by_w_alpha_w_alpha,
-    gamma_by_w_q_w_alpha, gamma_by_xi_1_w_alpha, gamma_by_xi_2_w_alpha,
-    gamma_by_xi_3_w_alpha, alpha_by_w_gamma_w_gamma, alpha_by_w_gamma_w_alpha,
-    alpha_by_w_alpha_w_gamma, alpha_by_w_alpha_w_alpha, alpha_by_w_q_w_alpha,
-    alpha_by_xi_1_w_alpha, alpha_by_xi_2_w_alpha, alpha_by_xi_3_w_alpha,
-    pitch_rate_by_w_gamma_w_alpha, pitch_rate_by_w_alpha_w_alpha,
-    pitch_rate_by_w_q_w_alpha] = noise_derivatives_values(x, u, p);
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let no_noise_noise = Noise::splat(no_noise);
-    let no_state_noise_noise = State::splat(no_noise_noise);
-    State {
-        velocity: Noise {
-            w_gamma: Noise {
-                w_gamma: velocity_by_w_gamma_w_gamma,
-                w_alpha: velocity_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_gamma: velocity_by_w_alpha_w_gamma,
-                w_alpha: velocity_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: velocity_by_w_q_w_alpha,
-                ..no_noise
-            },
-            xi_1: Noise {
-                w_alpha: velocity_by_xi_1_w_alpha,
-                ..no_noise
-            },
-            xi_2: Noise {
-                w_alpha: velocity_by_xi_2_w_alpha,
-                ..no_noise
-            },
-            xi_3: Noise {
-                w_alpha: velocity_by_xi_3_w_alpha,
-                ..no_noise
-            },
-        },
-        altitude: Noise {
-            w_gamma: Noise {
-                w_gamma: altitude_by_w_gamma_w_gamma,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_gamma: altitude_by_w_alpha_w_gamma,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        gamma: Noise {
-            w_gamma: Noise {
-                w_gamma: gamma_by_w_gamma_w_gamma,
-                w_alpha: gamma_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_gamma: gamma_by_w_alpha_w_gamma,
-                w_alpha: gamma_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: gamma_by_w_q_w_alpha,
-                ..no_noise
-            },
-            xi_1: Noise {
-                w_alpha: gamma_by_xi_1_w_alpha,
-                ..no_noise
-            },
-            xi_2: Noise {
-                w_alpha: gamma_by_xi_2_w_alpha,
-                ..no_noise
-            },
-            xi_3: Noise {
-                w_alpha: gamma_by_xi_3_w_alpha,
-                ..no_noise
-            },
-        },
-        alpha: Noise {
-            w_gamma: Noise {
-                w_gamma: alpha_by_w_gamma_w_gamma,
-                w_alpha: alpha_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_gamma: alpha_by_w_alpha_w_gamma,
-                w_alpha: alpha_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: alpha_by_w_q_w_alpha,
-                ..no_noise
-            },
-            xi_1: Noise {
-                w_alpha: alpha_by_xi_1_w_alpha,
-                ..no_noise
-            },
-            xi_2: Noise {
-                w_alpha: alpha_by_xi_2_w_alpha,
-                ..no_noise
-            },
-            xi_3: Noise {
-                w_alpha: alpha_by_xi_3_w_alpha,
-                ..no_noise
-            },
-        },
-        pitch_rate: Noise {
-            w_gamma: Noise {
-                w_alpha: pitch_rate_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: pitch_rate_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: pitch_rate_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        ..no_state_noise_noise
-    }
+    NOISE_DERIVATIVES_PATTERN.dense(&noise_derivatives_values(x, u, p))
 }
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
@@ -651,21 +532,21 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -682,15 +563,15 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
@@ -765,10 +646,10 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_force_turn_d_alpha_term_1 = c_t * cos_alpha
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
         + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha;
-    let d_force_turn_d_alpha = turn_factor * d_force_turn_d_alpha_term_1; // 1/s
+        + d_c_l_d_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
@@ -845,6 +726,12 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
     let d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    let d2_normal_coefficient_d_velocity_d_alpha = d_c_t_d_velocity * cos_alpha
+        + sin_alpha * d2_c_t_d_velocity_d_alpha
+        + d2_c_l_d_velocity_d_alpha; // s/ft/rad
+    let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
+        * d_normal_coefficient_d_alpha
+        + turn_factor * d2_normal_coefficient_d_velocity_d_alpha; // 1/ft
 
     // Derivatives with respect to gamma
     let d2_gamma_rate_d_altitude_d_gamma = -d_gravity_turn_d_altitude
@@ -856,9 +743,12 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
     let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
+        + sin_alpha * d2_c_t_d_alpha_d_alpha
+        + c_t * d_cos_alpha_d_alpha
+        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha = turn_factor
-        * (R::TWO * d_c_t_d_alpha * cos_alpha + sin_alpha * d2_c_t_d_alpha_d_alpha
-            + c_t * d_cos_alpha_d_alpha + d2_c_l_d_alpha_d_alpha); // 1/s/rad
+        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
     let d2_c_m_d_velocity_d_alpha = p.c_m_eta_1 * d2_eta_static_1_d_velocity_d_alpha
         + p.c_m_eta_2 * d2_eta_static_2_d_velocity_d_alpha
         + p.c_m_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
@@ -876,17 +766,11 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         + p.c_bar * reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d2_force_turn_d_alpha_d_velocity = turn_factor
-        * (cos_alpha * d_c_t_d_velocity + sin_alpha * d2_c_t_d_velocity_d_alpha
-            + d2_c_l_d_velocity_d_alpha)
-        + d_force_turn_d_alpha_term_1 * d_turn_factor_d_velocity; // 1/ft
     let ito_correction_term_1 = p.half_w_gamma_2
         * (d2_gamma_rate_d_velocity_d_gamma * d_velocity_rate_d_gamma
             + d2_gamma_rate_d_altitude_d_gamma * d_altitude_rate_d_gamma
             + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma);
-    let ito_correction_term_2 = d2_force_turn_d_alpha_d_velocity
+    let ito_correction_term_2 = d2_force_turn_d_velocity_d_alpha
         * d_velocity_rate_d_alpha;
     let ito_correction_term_3 = d2_force_turn_d_alpha_d_alpha * d_force_turn_d_alpha;
 

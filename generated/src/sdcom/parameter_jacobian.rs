@@ -3,7 +3,7 @@
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
 use super::{Input, ParameterJacobian, Parameters, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
 pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
@@ -216,7 +216,7 @@ pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 982 operations: 195 additions, 782 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 987 operations: 195 additions, 787 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
@@ -247,21 +247,21 @@ pub fn parameter_jacobian_values<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -278,42 +278,42 @@ pub fn parameter_jacobian_values<R: Real>(
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_alpha_2 * alpha_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * eta_1
         + p.c_m_eta_2 * eta_2
         + p.c_m_eta_3 * eta_3;
@@ -322,6 +322,7 @@ pub fn parameter_jacobian_values<R: Real>(
     let thrust = reference_force * c_t; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
@@ -332,18 +333,19 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
 
     // Derivatives with respect to chi_1
-    let d_force_turn_d_chi_1 = turn_factor * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_chi_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_force_turn_d_chi_2 = turn_factor * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_chi_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_force_turn_d_chi_3 = turn_factor * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
+    let d_normal_coefficient_d_chi_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
+
+    // Derivatives with respect to delta_e
+    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
+        + p.c_d_delta_c; // 1/rad
 
     // Derivatives with respect to parameters
-    let c_l_plus_c_t_sin_alpha = c_l + c_t * sin_alpha;
-    let d_force_turn_d_m = c_l_plus_c_t_sin_alpha * d_reference_force_d_velocity
-        * p.minus_half_inv_m_2; // rad*ft/s/slug
     let d_c_t_d_s = dynamic_pressure
         * (p.c_t_eta_1_inv_omega_1_2 * c_n_1 + p.c_t_eta_2_inv_omega_2_2 * c_n_2
             + p.c_t_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
@@ -357,8 +359,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_c_l_d_s = dynamic_pressure
         * (p.c_l_eta_1_inv_omega_1_2 * c_n_1 + p.c_l_eta_2_inv_omega_2_2 * c_n_2
             + p.c_l_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
-    let d_force_turn_d_s = turn_factor * (sin_alpha * d_c_t_d_s + d_c_l_d_s)
-        + c_l_plus_c_t_sin_alpha * d_dynamic_pressure_d_velocity * p.half_over_m; // rad/s/ft
+    let d_normal_coefficient_d_s = sin_alpha * d_c_t_d_s + d_c_l_d_s; // 1/ft
+    let d_force_turn_d_s = normal_coefficient * d_dynamic_pressure_d_velocity
+        * p.half_over_m + turn_factor * d_normal_coefficient_d_s; // rad/s/ft
     let d_c_m_d_s = dynamic_pressure
         * (p.c_m_eta_1_inv_omega_1_2 * c_n_1 + p.c_m_eta_2_inv_omega_2_2 * c_n_2
             + p.c_m_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
@@ -383,8 +386,9 @@ pub fn parameter_jacobian_values<R: Real>(
         * (p.half_c_l_eta_1_inv_omega_1_2 * c_n_1 * velocity_2
             + p.half_c_l_eta_2_inv_omega_2_2 * c_n_2 * velocity_2
             + p.half_c_l_eta_3_inv_omega_3_2 * c_n_3 * velocity_2); // ft^3/slug
-    let d_force_turn_d_rho_0 = turn_factor * (sin_alpha * d_c_t_d_rho_0 + d_c_l_d_rho_0)
-        + c_l_plus_c_t_sin_alpha * p.half_s_over_m * x.velocity * density_ratio; // rad*ft^3/s/slug
+    let d_normal_coefficient_d_rho_0 = sin_alpha * d_c_t_d_rho_0 + d_c_l_d_rho_0; // ft^3/slug
+    let d_force_turn_d_rho_0 = normal_coefficient * p.half_s_over_m * x.velocity
+        * density_ratio + turn_factor * d_normal_coefficient_d_rho_0; // rad*ft^3/s/slug
     let d_c_m_d_rho_0 = p.s * density_ratio
         * (p.half_c_m_eta_1_inv_omega_1_2 * c_n_1 * velocity_2
             + p.half_c_m_eta_2_inv_omega_2_2 * c_n_2 * velocity_2
@@ -417,8 +421,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_c_l_d_h_0 = p.c_l_eta_1 * d_eta_static_1_d_h_0
         + p.c_l_eta_2 * d_eta_static_2_d_h_0
         + p.c_l_eta_3 * d_eta_static_3_d_h_0; // 1/ft
-    let d_force_turn_d_h_0 = turn_factor * (sin_alpha * d_c_t_d_h_0 + d_c_l_d_h_0)
-        + c_l_plus_c_t_sin_alpha * d_turn_factor_d_h_0; // rad/s/ft
+    let d_normal_coefficient_d_h_0 = sin_alpha * d_c_t_d_h_0 + d_c_l_d_h_0; // 1/ft
+    let d_force_turn_d_h_0 = normal_coefficient * d_turn_factor_d_h_0
+        + turn_factor * d_normal_coefficient_d_h_0; // rad/s/ft
     let d_c_m_d_h_0 = p.c_m_eta_1 * d_eta_static_1_d_h_0
         + p.c_m_eta_2 * d_eta_static_2_d_h_0
         + p.c_m_eta_3 * d_eta_static_3_d_h_0; // 1/ft
@@ -450,8 +455,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_c_l_d_h_s = p.c_l_eta_1 * d_eta_static_1_d_h_s
         + p.c_l_eta_2 * d_eta_static_2_d_h_s
         + p.c_l_eta_3 * d_eta_static_3_d_h_s; // 1/ft
-    let d_force_turn_d_h_s = turn_factor * (sin_alpha * d_c_t_d_h_s + d_c_l_d_h_s)
-        + c_l_plus_c_t_sin_alpha * d_turn_factor_d_h_s; // rad/s/ft
+    let d_normal_coefficient_d_h_s = sin_alpha * d_c_t_d_h_s + d_c_l_d_h_s; // 1/ft
+    let d_force_turn_d_h_s = normal_coefficient * d_turn_factor_d_h_s
+        + turn_factor * d_normal_coefficient_d_h_s; // rad/s/ft
     let d_c_m_d_h_s = p.c_m_eta_1 * d_eta_static_1_d_h_s
         + p.c_m_eta_2 * d_eta_static_2_d_h_s
         + p.c_m_eta_3 * d_eta_static_3_d_h_s; // 1/ft
@@ -460,20 +466,21 @@ pub fn parameter_jacobian_values<R: Real>(
         + p.z_t * d_thrust_d_h_s; // lb/ft
     let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
     let radius_ratio_2 = radius_ratio * radius_ratio;
-    let d_radius_ratio_d_r_e = radius_ratio_2 * x.altitude * p.earth_curvature_over_r_e; // 1/ft
-    let d_gravity_d_r_e = p.two_g * radius_ratio * d_radius_ratio_d_r_e; // 1/s^2
-    let d_velocity_rate_d_r_e = -sin_gamma * d_gravity_d_r_e; // 1/s^2
-    let velocity_radius_ratio_over_r_e = x.velocity * radius_ratio * p.inv_r_e;
+    let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
     let inv_velocity = x.velocity.recip();
-    let d_gravity_turn_d_r_e = p.earth_curvature
-        * (velocity_radius_ratio_over_r_e - x.velocity * d_radius_ratio_d_r_e)
-        + d_gravity_d_r_e * inv_velocity; // 1/s/ft
+    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
+        * inv_velocity;
+    let d_gravity_turn_d_r_e = p.inv_r_e
+        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+            + x.velocity * p.earth_curvature_2
+                * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_path_force_d_omega_1 = reference_force * p.inv_omega_1 * eta_static_1
         * (R::TWO * p.c_d_eta_1 - cos_alpha * p.two_c_t_eta_1); // lb*s/ft/rad
     let d_velocity_rate_d_omega_1 = d_path_force_d_omega_1 * p.inv_m; // ft/s/rad
-    let d_force_turn_d_omega_1 = -turn_factor * p.inv_omega_1 * eta_static_1
-        * (sin_alpha * p.two_c_t_eta_1 + R::TWO * p.c_l_eta_1);
+    let d_normal_coefficient_d_omega_1 = -p.inv_omega_1 * eta_static_1
+        * (sin_alpha * p.two_c_t_eta_1 + R::TWO * p.c_l_eta_1); // s/rad
+    let d_force_turn_d_omega_1 = turn_factor * d_normal_coefficient_d_omega_1;
     let d_pitching_moment_d_omega_1 = -p.d_pitching_moment_d_omega_1_constant_1
         * reference_force * eta_static_1; // lb*s/rad
     let d_pitch_acceleration_d_omega_1 = d_pitching_moment_d_omega_1 * p.inv_i_yy; // 1/s
@@ -481,8 +488,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_omega_2 = reference_force * p.inv_omega_2 * eta_static_2
         * (R::TWO * p.c_d_eta_2 - cos_alpha * p.two_c_t_eta_2); // lb*s/ft/rad
     let d_velocity_rate_d_omega_2 = d_path_force_d_omega_2 * p.inv_m; // ft/s/rad
-    let d_force_turn_d_omega_2 = -turn_factor * p.inv_omega_2 * eta_static_2
-        * (sin_alpha * p.two_c_t_eta_2 + R::TWO * p.c_l_eta_2);
+    let d_normal_coefficient_d_omega_2 = -p.inv_omega_2 * eta_static_2
+        * (sin_alpha * p.two_c_t_eta_2 + R::TWO * p.c_l_eta_2); // s/rad
+    let d_force_turn_d_omega_2 = turn_factor * d_normal_coefficient_d_omega_2;
     let d_pitching_moment_d_omega_2 = -p.d_pitching_moment_d_omega_2_constant_1
         * reference_force * eta_static_2; // lb*s/rad
     let d_pitch_acceleration_d_omega_2 = d_pitching_moment_d_omega_2 * p.inv_i_yy; // 1/s
@@ -490,8 +498,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_omega_3 = reference_force * p.inv_omega_3 * eta_static_3
         * (R::TWO * p.c_d_eta_3 - cos_alpha * p.two_c_t_eta_3); // lb*s/ft/rad
     let d_velocity_rate_d_omega_3 = d_path_force_d_omega_3 * p.inv_m; // ft/s/rad
-    let d_force_turn_d_omega_3 = -turn_factor * p.inv_omega_3 * eta_static_3
-        * (sin_alpha * p.two_c_t_eta_3 + R::TWO * p.c_l_eta_3);
+    let d_normal_coefficient_d_omega_3 = -p.inv_omega_3 * eta_static_3
+        * (sin_alpha * p.two_c_t_eta_3 + R::TWO * p.c_l_eta_3); // s/rad
+    let d_force_turn_d_omega_3 = turn_factor * d_normal_coefficient_d_omega_3;
     let d_pitching_moment_d_omega_3 = -p.d_pitching_moment_d_omega_3_constant_1
         * reference_force * eta_static_3; // lb*s/rad
     let d_pitch_acceleration_d_omega_3 = d_pitching_moment_d_omega_3 * p.inv_i_yy; // 1/s
@@ -504,13 +513,11 @@ pub fn parameter_jacobian_values<R: Real>(
             + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
             + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c);
     let d_thrust_d_canard_command = reference_force * d_c_t_d_canard_command; // lb/ft
-    let d_c_d_d_canard_command_term_1 = p.two_c_d_delta_c_2 * canard_deflection
-        + p.c_d_delta_c;
     let d_c_d_d_canard_command = reference_force
         * (p.c_d_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_d_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
             + p.c_d_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c)
-        + d_c_d_d_canard_command_term_1 * u.delta_c;
+        + slope_of_c_d_in_canard_deflection * u.delta_c;
     let d_drag_d_canard_command = reference_force * d_c_d_d_canard_command; // lb/ft
     let d_path_force_d_canard_command = cos_alpha * d_thrust_d_canard_command
         - d_drag_d_canard_command; // lb/ft
@@ -520,8 +527,10 @@ pub fn parameter_jacobian_values<R: Real>(
             + p.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
             + p.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c)
         + p.c_l_delta_c * u.delta_c;
+    let d_normal_coefficient_d_canard_command = sin_alpha * d_c_t_d_canard_command
+        + d_c_l_d_canard_command;
     let d_force_turn_d_canard_command = turn_factor
-        * (sin_alpha * d_c_t_d_canard_command + d_c_l_d_canard_command); // rad/s
+        * d_normal_coefficient_d_canard_command; // rad/s
     let d_c_m_d_canard_command = reference_force
         * (p.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
@@ -541,7 +550,7 @@ pub fn parameter_jacobian_values<R: Real>(
         * (p.c_d_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
             + p.c_d_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
             + p.c_d_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e)
-        + d_c_d_d_canard_command_term_1 * u.delta_e;
+        + slope_of_c_d_in_canard_deflection * u.delta_e;
     let d_c_d_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * d_c_d_d_canard_slaving_term_1;
     let d_drag_d_canard_slaving = reference_force * d_c_d_d_canard_slaving; // lb/ft
@@ -560,8 +569,10 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_c_l_d_canard_slaving = -p.c_l_delta_e
         * (p.inv_c_l_delta_c * reference_force * d_c_l_d_canard_slaving_term_4
             + u.delta_e);
+    let d_normal_coefficient_d_canard_slaving = sin_alpha * d_c_t_d_canard_slaving
+        + d_c_l_d_canard_slaving;
     let d_force_turn_d_canard_slaving = turn_factor
-        * (sin_alpha * d_c_t_d_canard_slaving + d_c_l_d_canard_slaving); // rad/s
+        * d_normal_coefficient_d_canard_slaving; // rad/s
     let d_c_m_d_canard_slaving_term_1 = reference_force
         * (p.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
             + p.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
@@ -573,13 +584,9 @@ pub fn parameter_jacobian_values<R: Real>(
         * d_c_m_d_canard_slaving + p.z_t * d_thrust_d_canard_slaving; // lb
     let d_pitch_acceleration_d_canard_slaving = d_pitching_moment_d_canard_slaving
         * p.inv_i_yy; // rad/s^2
-    let d_radius_ratio_d_spherical_earth = -radius_ratio_2 * x.altitude * p.inv_r_e;
-    let d_gravity_d_spherical_earth = p.two_g * radius_ratio
-        * d_radius_ratio_d_spherical_earth; // ft/s^2
-    let d_velocity_rate_d_spherical_earth = -sin_gamma * d_gravity_d_spherical_earth; // ft/s^2
-    let d_gravity_turn_d_spherical_earth = d_gravity_d_spherical_earth * inv_velocity
-        - velocity_radius_ratio_over_r_e
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_spherical_earth; // 1/s
+    let d_gravity_turn_d_spherical_earth = p.inv_r_e
+        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // ft^0.5*slug^0.5/s
     let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // ft^0.5*slug^0.5/s
@@ -597,8 +604,9 @@ pub fn parameter_jacobian_values<R: Real>(
         * (-d_c_l_d_canard_slaving_term_1 - d_c_l_d_canard_slaving_term_2
             - d_c_l_d_canard_slaving_term_3)
         + u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
-    let d_force_turn_d_c_l_delta_e = turn_factor
-        * (sin_alpha * d_c_t_d_c_l_delta_e + d_c_l_d_c_l_delta_e); // rad^2/s
+    let d_normal_coefficient_d_c_l_delta_e = sin_alpha * d_c_t_d_c_l_delta_e
+        + d_c_l_d_c_l_delta_e; // rad
+    let d_force_turn_d_c_l_delta_e = turn_factor * d_normal_coefficient_d_c_l_delta_e; // rad^2/s
     let d_c_m_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
         * d_c_m_d_canard_slaving_term_1; // rad
     let d_pitching_moment_d_c_l_delta_e = p.c_bar * reference_force * d_c_m_d_c_l_delta_e
@@ -616,8 +624,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_velocity_rate_d_c_l_delta_c = d_path_force_d_c_l_delta_c * p.inv_m; // ft*rad/s^2
     let d_c_l_d_c_l_delta_c = p.d_c_t_d_c_l_delta_c_constant_1 * reference_force
         * d_c_l_d_canard_slaving_term_4 + canard_commanded; // rad
-    let d_force_turn_d_c_l_delta_c = turn_factor
-        * (sin_alpha * d_c_t_d_c_l_delta_c + d_c_l_d_c_l_delta_c); // rad^2/s
+    let d_normal_coefficient_d_c_l_delta_c = sin_alpha * d_c_t_d_c_l_delta_c
+        + d_c_l_d_c_l_delta_c; // rad
+    let d_force_turn_d_c_l_delta_c = turn_factor * d_normal_coefficient_d_c_l_delta_c; // rad^2/s
     let d_c_m_d_c_l_delta_c = p.d_c_t_d_c_l_delta_c_constant_1
         * d_c_m_d_canard_slaving_term_1; // rad
     let d_pitching_moment_d_c_l_delta_c = p.c_bar * reference_force * d_c_m_d_c_l_delta_c
@@ -628,8 +637,10 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_c_n_1_alpha_2 = reference_force_2 * p.inv_omega_1_2
         * (cos_alpha * p.c_t_eta_1 * alpha_2 - p.c_d_eta_1 * alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     let d_velocity_rate_d_c_n_1_alpha_2 = d_path_force_d_c_n_1_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_force_turn_d_c_n_1_alpha_2 = turn_factor * p.inv_omega_1_2 * reference_force
-        * (sin_alpha * p.c_t_eta_1 * alpha_2 + p.c_l_eta_1 * alpha_2); // rad^3*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_1_alpha_2 = p.inv_omega_1_2 * reference_force
+        * (sin_alpha * p.c_t_eta_1 * alpha_2 + p.c_l_eta_1 * alpha_2); // slug^0.5*rad^2/ft^0.5
+    let d_force_turn_d_c_n_1_alpha_2 = turn_factor
+        * d_normal_coefficient_d_c_n_1_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_alpha_2 = p.inv_omega_1_2 * reference_force_2
         * (p.c_bar_c_m_eta_1 * alpha_2 + p.z_t_c_t_eta_1 * alpha_2); // lb*slug^0.5*rad^2/ft^0.5
     let d_pitch_acceleration_d_c_n_1_alpha_2 = d_pitching_moment_d_c_n_1_alpha_2
@@ -637,8 +648,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_c_n_1_alpha = reference_force_2 * p.inv_omega_1_2
         * (cos_alpha * p.c_t_eta_1 * x.alpha - p.c_d_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_1_alpha = d_path_force_d_c_n_1_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_1_alpha = turn_factor * p.inv_omega_1_2 * reference_force
-        * (sin_alpha * p.c_t_eta_1 * x.alpha + p.c_l_eta_1 * x.alpha); // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_1_alpha = p.inv_omega_1_2 * reference_force
+        * (sin_alpha * p.c_t_eta_1 * x.alpha + p.c_l_eta_1 * x.alpha); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_alpha = turn_factor * d_normal_coefficient_d_c_n_1_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_alpha = p.inv_omega_1_2 * reference_force_2
         * (p.c_bar_c_m_eta_1 * x.alpha + p.z_t_c_t_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_1_alpha = d_pitching_moment_d_c_n_1_alpha
@@ -646,36 +658,45 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_c_n_1_delta_e = reference_force_2 * p.inv_omega_1_2
         * (cos_alpha * p.c_t_eta_1 * u.delta_e - p.c_d_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_1_delta_e = d_path_force_d_c_n_1_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_1_delta_e = turn_factor * p.inv_omega_1_2 * reference_force
-        * (sin_alpha * p.c_t_eta_1 * u.delta_e + p.c_l_eta_1 * u.delta_e); // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_1_delta_e = p.inv_omega_1_2 * reference_force
+        * (sin_alpha * p.c_t_eta_1 * u.delta_e + p.c_l_eta_1 * u.delta_e); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_delta_e = turn_factor
+        * d_normal_coefficient_d_c_n_1_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_delta_e = p.inv_omega_1_2 * reference_force_2
         * (p.c_bar_c_m_eta_1 * u.delta_e + p.z_t_c_t_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_1_delta_e = d_pitching_moment_d_c_n_1_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let d2_normal_coefficient_d_alpha_d_chi_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_c_n_1_delta_c_term_1 = d2_normal_coefficient_d_alpha_d_chi_1
+        - p.c_d_eta_1;
     let d_path_force_d_c_n_1_delta_c = reference_force_2 * p.inv_omega_1_2
-        * canard_deflection * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
+        * canard_deflection * d_path_force_d_c_n_1_delta_c_term_1; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_1_delta_c = d_path_force_d_c_n_1_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_1_delta_c = d_force_turn_d_chi_1 * p.inv_omega_1_2
-        * reference_force * canard_deflection; // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_1_delta_c = p.inv_omega_1_2 * reference_force
+        * canard_deflection * d_normal_coefficient_d_chi_1; // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_delta_c = turn_factor
+        * d_normal_coefficient_d_c_n_1_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_delta_c = p
         .d_pitching_moment_d_c_n_1_delta_c_constant_1 * reference_force_2
         * canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_1_delta_c = d_pitching_moment_d_c_n_1_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_0 = reference_force_2 * p.inv_omega_1_2
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5/ft^1.5
+        * d_path_force_d_c_n_1_delta_c_term_1; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
-    let d_force_turn_d_c_n_1_0 = d_force_turn_d_chi_1 * p.inv_omega_1_2
-        * reference_force; // rad*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_1_0 = p.inv_omega_1_2 * reference_force
+        * d_normal_coefficient_d_chi_1; // slug^0.5/ft^0.5
+    let d_force_turn_d_c_n_1_0 = turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_0 = p.d_pitching_moment_d_c_n_1_delta_c_constant_1
         * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_alpha_2 = reference_force_2 * p.inv_omega_2_2
         * (cos_alpha * p.c_t_eta_2 * alpha_2 - p.c_d_eta_2 * alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     let d_velocity_rate_d_c_n_2_alpha_2 = d_path_force_d_c_n_2_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_force_turn_d_c_n_2_alpha_2 = turn_factor * p.inv_omega_2_2 * reference_force
-        * (sin_alpha * p.c_t_eta_2 * alpha_2 + p.c_l_eta_2 * alpha_2); // rad^3*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_2_alpha_2 = p.inv_omega_2_2 * reference_force
+        * (sin_alpha * p.c_t_eta_2 * alpha_2 + p.c_l_eta_2 * alpha_2); // slug^0.5*rad^2/ft^0.5
+    let d_force_turn_d_c_n_2_alpha_2 = turn_factor
+        * d_normal_coefficient_d_c_n_2_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_alpha_2 = p.inv_omega_2_2 * reference_force_2
         * (p.c_bar_c_m_eta_2 * alpha_2 + p.z_t_c_t_eta_2 * alpha_2); // lb*slug^0.5*rad^2/ft^0.5
     let d_pitch_acceleration_d_c_n_2_alpha_2 = d_pitching_moment_d_c_n_2_alpha_2
@@ -683,8 +704,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_c_n_2_alpha = reference_force_2 * p.inv_omega_2_2
         * (cos_alpha * p.c_t_eta_2 * x.alpha - p.c_d_eta_2 * x.alpha); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_alpha = d_path_force_d_c_n_2_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_2_alpha = turn_factor * p.inv_omega_2_2 * reference_force
-        * (sin_alpha * p.c_t_eta_2 * x.alpha + p.c_l_eta_2 * x.alpha); // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_2_alpha = p.inv_omega_2_2 * reference_force
+        * (sin_alpha * p.c_t_eta_2 * x.alpha + p.c_l_eta_2 * x.alpha); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_2_alpha = turn_factor * d_normal_coefficient_d_c_n_2_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_alpha = p.inv_omega_2_2 * reference_force_2
         * (p.c_bar_c_m_eta_2 * x.alpha + p.z_t_c_t_eta_2 * x.alpha); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_alpha = d_pitching_moment_d_c_n_2_alpha
@@ -692,36 +714,45 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_c_n_2_delta_e = reference_force_2 * p.inv_omega_2_2
         * (cos_alpha * p.c_t_eta_2 * u.delta_e - p.c_d_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_delta_e = d_path_force_d_c_n_2_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_2_delta_e = turn_factor * p.inv_omega_2_2 * reference_force
-        * (sin_alpha * p.c_t_eta_2 * u.delta_e + p.c_l_eta_2 * u.delta_e); // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_2_delta_e = p.inv_omega_2_2 * reference_force
+        * (sin_alpha * p.c_t_eta_2 * u.delta_e + p.c_l_eta_2 * u.delta_e); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_2_delta_e = turn_factor
+        * d_normal_coefficient_d_c_n_2_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_delta_e = p.inv_omega_2_2 * reference_force_2
         * (p.c_bar_c_m_eta_2 * u.delta_e + p.z_t_c_t_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_delta_e = d_pitching_moment_d_c_n_2_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let d2_normal_coefficient_d_alpha_d_chi_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_c_n_2_delta_c_term_1 = d2_normal_coefficient_d_alpha_d_chi_2
+        - p.c_d_eta_2;
     let d_path_force_d_c_n_2_delta_c = reference_force_2 * p.inv_omega_2_2
-        * canard_deflection * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad/ft^1.5
+        * canard_deflection * d_path_force_d_c_n_2_delta_c_term_1; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_delta_c = d_path_force_d_c_n_2_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_2_delta_c = d_force_turn_d_chi_2 * p.inv_omega_2_2
-        * reference_force * canard_deflection; // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_2_delta_c = p.inv_omega_2_2 * reference_force
+        * canard_deflection * d_normal_coefficient_d_chi_2; // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_2_delta_c = turn_factor
+        * d_normal_coefficient_d_c_n_2_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_delta_c = p
         .d_pitching_moment_d_c_n_2_delta_c_constant_1 * reference_force_2
         * canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_delta_c = d_pitching_moment_d_c_n_2_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_0 = reference_force_2 * p.inv_omega_2_2
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5/ft^1.5
+        * d_path_force_d_c_n_2_delta_c_term_1; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_2_0 = d_path_force_d_c_n_2_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
-    let d_force_turn_d_c_n_2_0 = d_force_turn_d_chi_2 * p.inv_omega_2_2
-        * reference_force; // rad*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_2_0 = p.inv_omega_2_2 * reference_force
+        * d_normal_coefficient_d_chi_2; // slug^0.5/ft^0.5
+    let d_force_turn_d_c_n_2_0 = turn_factor * d_normal_coefficient_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_0 = p.d_pitching_moment_d_c_n_2_delta_c_constant_1
         * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_2_0 = d_pitching_moment_d_c_n_2_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_alpha_2 = reference_force_2 * p.inv_omega_3_2
         * (cos_alpha * p.c_t_eta_3 * alpha_2 - p.c_d_eta_3 * alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     let d_velocity_rate_d_c_n_3_alpha_2 = d_path_force_d_c_n_3_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_force_turn_d_c_n_3_alpha_2 = turn_factor * p.inv_omega_3_2 * reference_force
-        * (sin_alpha * p.c_t_eta_3 * alpha_2 + p.c_l_eta_3 * alpha_2); // rad^3*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_3_alpha_2 = p.inv_omega_3_2 * reference_force
+        * (sin_alpha * p.c_t_eta_3 * alpha_2 + p.c_l_eta_3 * alpha_2); // slug^0.5*rad^2/ft^0.5
+    let d_force_turn_d_c_n_3_alpha_2 = turn_factor
+        * d_normal_coefficient_d_c_n_3_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_alpha_2 = p.inv_omega_3_2 * reference_force_2
         * (p.c_bar_c_m_eta_3 * alpha_2 + p.z_t_c_t_eta_3 * alpha_2); // lb*slug^0.5*rad^2/ft^0.5
     let d_pitch_acceleration_d_c_n_3_alpha_2 = d_pitching_moment_d_c_n_3_alpha_2
@@ -729,8 +760,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_c_n_3_alpha = reference_force_2 * p.inv_omega_3_2
         * (cos_alpha * p.c_t_eta_3 * x.alpha - p.c_d_eta_3 * x.alpha); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_alpha = d_path_force_d_c_n_3_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_3_alpha = turn_factor * p.inv_omega_3_2 * reference_force
-        * (sin_alpha * p.c_t_eta_3 * x.alpha + p.c_l_eta_3 * x.alpha); // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_3_alpha = p.inv_omega_3_2 * reference_force
+        * (sin_alpha * p.c_t_eta_3 * x.alpha + p.c_l_eta_3 * x.alpha); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_3_alpha = turn_factor * d_normal_coefficient_d_c_n_3_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_alpha = p.inv_omega_3_2 * reference_force_2
         * (p.c_bar_c_m_eta_3 * x.alpha + p.z_t_c_t_eta_3 * x.alpha); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_alpha = d_pitching_moment_d_c_n_3_alpha
@@ -738,28 +770,35 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_c_n_3_delta_e = reference_force_2 * p.inv_omega_3_2
         * (cos_alpha * p.c_t_eta_3 * u.delta_e - p.c_d_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_delta_e = d_path_force_d_c_n_3_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_3_delta_e = turn_factor * p.inv_omega_3_2 * reference_force
-        * (sin_alpha * p.c_t_eta_3 * u.delta_e + p.c_l_eta_3 * u.delta_e); // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_3_delta_e = p.inv_omega_3_2 * reference_force
+        * (sin_alpha * p.c_t_eta_3 * u.delta_e + p.c_l_eta_3 * u.delta_e); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_3_delta_e = turn_factor
+        * d_normal_coefficient_d_c_n_3_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_delta_e = p.inv_omega_3_2 * reference_force_2
         * (p.c_bar_c_m_eta_3 * u.delta_e + p.z_t_c_t_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_delta_e = d_pitching_moment_d_c_n_3_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let d2_normal_coefficient_d_alpha_d_chi_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
+    let d_path_force_d_c_n_3_delta_c_term_1 = d2_normal_coefficient_d_alpha_d_chi_3
+        - p.c_d_eta_3;
     let d_path_force_d_c_n_3_delta_c = reference_force_2 * p.inv_omega_3_2
-        * canard_deflection * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad/ft^1.5
+        * canard_deflection * d_path_force_d_c_n_3_delta_c_term_1; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_delta_c = d_path_force_d_c_n_3_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_force_turn_d_c_n_3_delta_c = d_force_turn_d_chi_3 * p.inv_omega_3_2
-        * reference_force * canard_deflection; // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_3_delta_c = p.inv_omega_3_2 * reference_force
+        * canard_deflection * d_normal_coefficient_d_chi_3; // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_3_delta_c = turn_factor
+        * d_normal_coefficient_d_c_n_3_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_delta_c = p
         .d_pitching_moment_d_c_n_3_delta_c_constant_1 * reference_force_2
         * canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_delta_c = d_pitching_moment_d_c_n_3_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_0 = reference_force_2 * p.inv_omega_3_2
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5/ft^1.5
+        * d_path_force_d_c_n_3_delta_c_term_1; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_3_0 = d_path_force_d_c_n_3_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
-    let d_force_turn_d_c_n_3_0 = d_force_turn_d_chi_3 * p.inv_omega_3_2
-        * reference_force; // rad*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_3_0 = p.inv_omega_3_2 * reference_force
+        * d_normal_coefficient_d_chi_3; // slug^0.5/ft^0.5
+    let d_force_turn_d_c_n_3_0 = turn_factor * d_normal_coefficient_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_0 = p.d_pitching_moment_d_c_n_3_delta_c_constant_1
         * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_3_0 = d_pitching_moment_d_c_n_3_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
@@ -771,13 +810,15 @@ pub fn parameter_jacobian_values<R: Real>(
         d_velocity_rate_d_h_0,
         d_velocity_rate_d_h_s,
         -sin_gamma * radius_ratio_2,
-        d_velocity_rate_d_r_e,
+        sin_gamma * p.two_g_earth_curvature_over_r_e * radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
         d_velocity_rate_d_omega_1,
         d_velocity_rate_d_omega_2,
         d_velocity_rate_d_omega_3,
         d_velocity_rate_d_canard_command,
         d_velocity_rate_d_canard_slaving,
-        d_velocity_rate_d_spherical_earth,
+        sin_gamma * p.minus_two_g_over_r_e * radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
         cos_alpha * reference_force * u.phi * alpha_3 * p.inv_m,
         cos_alpha * reference_force * u.phi * alpha_2 * p.inv_m,
         cos_alpha * reference_force * u.phi * x.alpha * p.inv_m,
@@ -816,7 +857,7 @@ pub fn parameter_jacobian_values<R: Real>(
         d_velocity_rate_d_c_n_3_delta_e,
         d_velocity_rate_d_c_n_3_delta_c,
         d_velocity_rate_d_c_n_3_0,
-        d_force_turn_d_m,
+        normal_coefficient * d_reference_force_d_velocity * p.minus_half_inv_m_2,
         d_force_turn_d_s,
         d_force_turn_d_rho_0,
         d_force_turn_d_h_0,
@@ -862,7 +903,7 @@ pub fn parameter_jacobian_values<R: Real>(
         d_force_turn_d_c_n_3_delta_e,
         d_force_turn_d_c_n_3_delta_c,
         d_force_turn_d_c_n_3_0,
-        -d_force_turn_d_m,
+        normal_coefficient * d_reference_force_d_velocity * p.half_inv_m_2,
         -d_force_turn_d_s,
         -d_force_turn_d_rho_0,
         -d_force_turn_d_h_0,
@@ -975,292 +1016,5 @@ pub fn parameter_jacobian<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ParameterJacobian<R> {
-    let [velocity_by_m, velocity_by_s, velocity_by_rho_0, velocity_by_h_0,
-    velocity_by_h_s, velocity_by_g, velocity_by_r_e, velocity_by_omega_1,
-    velocity_by_omega_2, velocity_by_omega_3, velocity_by_canard_command,
-    velocity_by_canard_slaving, velocity_by_spherical_earth, velocity_by_c_t_phi_alpha_3,
-    velocity_by_c_t_phi_alpha_2, velocity_by_c_t_phi_alpha, velocity_by_c_t_phi,
-    velocity_by_c_t_alpha_3, velocity_by_c_t_alpha_2, velocity_by_c_t_alpha,
-    velocity_by_c_t_0, velocity_by_c_t_eta_1, velocity_by_c_t_eta_2,
-    velocity_by_c_t_eta_3, velocity_by_c_l_delta_e, velocity_by_c_l_delta_c,
-    velocity_by_c_d_alpha_2, velocity_by_c_d_alpha, velocity_by_c_d_delta_e_2,
-    velocity_by_c_d_delta_e, velocity_by_c_d_delta_c_2, velocity_by_c_d_delta_c,
-    velocity_by_c_d_0, velocity_by_c_d_eta_1, velocity_by_c_d_eta_2,
-    velocity_by_c_d_eta_3, velocity_by_c_n_1_alpha_2, velocity_by_c_n_1_alpha,
-    velocity_by_c_n_1_delta_e, velocity_by_c_n_1_delta_c, velocity_by_c_n_1_0,
-    velocity_by_c_n_2_alpha_2, velocity_by_c_n_2_alpha, velocity_by_c_n_2_delta_e,
-    velocity_by_c_n_2_delta_c, velocity_by_c_n_2_0, velocity_by_c_n_3_alpha_2,
-    velocity_by_c_n_3_alpha, velocity_by_c_n_3_delta_e, velocity_by_c_n_3_delta_c,
-    velocity_by_c_n_3_0, gamma_by_m, gamma_by_s, gamma_by_rho_0, gamma_by_h_0,
-    gamma_by_h_s, gamma_by_g, gamma_by_r_e, gamma_by_omega_1, gamma_by_omega_2,
-    gamma_by_omega_3, gamma_by_canard_command, gamma_by_canard_slaving,
-    gamma_by_spherical_earth, gamma_by_c_t_phi_alpha_3, gamma_by_c_t_phi_alpha_2,
-    gamma_by_c_t_phi_alpha, gamma_by_c_t_phi, gamma_by_c_t_alpha_3, gamma_by_c_t_alpha_2,
-    gamma_by_c_t_alpha, gamma_by_c_t_0, gamma_by_c_t_eta_1, gamma_by_c_t_eta_2,
-    gamma_by_c_t_eta_3, gamma_by_c_l_alpha, gamma_by_c_l_delta_e, gamma_by_c_l_delta_c,
-    gamma_by_c_l_0, gamma_by_c_l_eta_1, gamma_by_c_l_eta_2, gamma_by_c_l_eta_3,
-    gamma_by_c_n_1_alpha_2, gamma_by_c_n_1_alpha, gamma_by_c_n_1_delta_e,
-    gamma_by_c_n_1_delta_c, gamma_by_c_n_1_0, gamma_by_c_n_2_alpha_2,
-    gamma_by_c_n_2_alpha, gamma_by_c_n_2_delta_e, gamma_by_c_n_2_delta_c,
-    gamma_by_c_n_2_0, gamma_by_c_n_3_alpha_2, gamma_by_c_n_3_alpha,
-    gamma_by_c_n_3_delta_e, gamma_by_c_n_3_delta_c, gamma_by_c_n_3_0, alpha_by_m,
-    alpha_by_s, alpha_by_rho_0, alpha_by_h_0, alpha_by_h_s, alpha_by_g, alpha_by_r_e,
-    alpha_by_omega_1, alpha_by_omega_2, alpha_by_omega_3, alpha_by_canard_command,
-    alpha_by_canard_slaving, alpha_by_spherical_earth, alpha_by_c_t_phi_alpha_3,
-    alpha_by_c_t_phi_alpha_2, alpha_by_c_t_phi_alpha, alpha_by_c_t_phi,
-    alpha_by_c_t_alpha_3, alpha_by_c_t_alpha_2, alpha_by_c_t_alpha, alpha_by_c_t_0,
-    alpha_by_c_t_eta_1, alpha_by_c_t_eta_2, alpha_by_c_t_eta_3, alpha_by_c_l_alpha,
-    alpha_by_c_l_delta_e, alpha_by_c_l_delta_c, alpha_by_c_l_0, alpha_by_c_l_eta_1,
-    alpha_by_c_l_eta_2, alpha_by_c_l_eta_3, alpha_by_c_n_1_alpha_2, alpha_by_c_n_1_alpha,
-    alpha_by_c_n_1_delta_e, alpha_by_c_n_1_delta_c, alpha_by_c_n_1_0,
-    alpha_by_c_n_2_alpha_2, alpha_by_c_n_2_alpha, alpha_by_c_n_2_delta_e,
-    alpha_by_c_n_2_delta_c, alpha_by_c_n_2_0, alpha_by_c_n_3_alpha_2,
-    alpha_by_c_n_3_alpha, alpha_by_c_n_3_delta_e, alpha_by_c_n_3_delta_c,
-    alpha_by_c_n_3_0, pitch_rate_by_i_yy, pitch_rate_by_s, pitch_rate_by_c_bar,
-    pitch_rate_by_z_t, pitch_rate_by_rho_0, pitch_rate_by_h_0, pitch_rate_by_h_s,
-    pitch_rate_by_omega_1, pitch_rate_by_omega_2, pitch_rate_by_omega_3,
-    pitch_rate_by_canard_command, pitch_rate_by_canard_slaving,
-    pitch_rate_by_c_t_phi_alpha_3, pitch_rate_by_c_t_phi_alpha_2,
-    pitch_rate_by_c_t_phi_alpha, pitch_rate_by_c_t_phi, pitch_rate_by_c_t_alpha_3,
-    pitch_rate_by_c_t_alpha_2, pitch_rate_by_c_t_alpha, pitch_rate_by_c_t_0,
-    pitch_rate_by_c_t_eta_1, pitch_rate_by_c_t_eta_2, pitch_rate_by_c_t_eta_3,
-    pitch_rate_by_c_l_delta_e, pitch_rate_by_c_l_delta_c, pitch_rate_by_c_m_alpha_2,
-    pitch_rate_by_c_m_alpha, pitch_rate_by_c_m_delta_e, pitch_rate_by_c_m_delta_c,
-    pitch_rate_by_c_m_0, pitch_rate_by_c_m_eta_1, pitch_rate_by_c_m_eta_2,
-    pitch_rate_by_c_m_eta_3, pitch_rate_by_c_n_1_alpha_2, pitch_rate_by_c_n_1_alpha,
-    pitch_rate_by_c_n_1_delta_e, pitch_rate_by_c_n_1_delta_c, pitch_rate_by_c_n_1_0,
-    pitch_rate_by_c_n_2_alpha_2, pitch_rate_by_c_n_2_alpha, pitch_rate_by_c_n_2_delta_e,
-    pitch_rate_by_c_n_2_delta_c, pitch_rate_by_c_n_2_0, pitch_rate_by_c_n_3_alpha_2,
-    pitch_rate_by_c_n_3_alpha, pitch_rate_by_c_n_3_delta_e, pitch_rate_by_c_n_3_delta_c,
-    pitch_rate_by_c_n_3_0, chi_1_by_omega_1, chi_1_by_zeta_1, chi_1_by_moment_matching,
-    chi_2_by_omega_2, chi_2_by_zeta_2, chi_2_by_moment_matching, chi_3_by_omega_3,
-    chi_3_by_zeta_3, chi_3_by_moment_matching] = parameter_jacobian_values(x, u, p);
-
-    // Result
-    let no_parameter = Parameters::splat(R::ZERO);
-    let no_state_parameter = State::splat(no_parameter);
-    State {
-        velocity: Parameters {
-            m: velocity_by_m,
-            s: velocity_by_s,
-            rho_0: velocity_by_rho_0,
-            h_0: velocity_by_h_0,
-            h_s: velocity_by_h_s,
-            g: velocity_by_g,
-            r_e: velocity_by_r_e,
-            omega_1: velocity_by_omega_1,
-            omega_2: velocity_by_omega_2,
-            omega_3: velocity_by_omega_3,
-            canard_command: velocity_by_canard_command,
-            canard_slaving: velocity_by_canard_slaving,
-            spherical_earth: velocity_by_spherical_earth,
-            c_t_phi_alpha_3: velocity_by_c_t_phi_alpha_3,
-            c_t_phi_alpha_2: velocity_by_c_t_phi_alpha_2,
-            c_t_phi_alpha: velocity_by_c_t_phi_alpha,
-            c_t_phi: velocity_by_c_t_phi,
-            c_t_alpha_3: velocity_by_c_t_alpha_3,
-            c_t_alpha_2: velocity_by_c_t_alpha_2,
-            c_t_alpha: velocity_by_c_t_alpha,
-            c_t_0: velocity_by_c_t_0,
-            c_t_eta_1: velocity_by_c_t_eta_1,
-            c_t_eta_2: velocity_by_c_t_eta_2,
-            c_t_eta_3: velocity_by_c_t_eta_3,
-            c_l_delta_e: velocity_by_c_l_delta_e,
-            c_l_delta_c: velocity_by_c_l_delta_c,
-            c_d_alpha_2: velocity_by_c_d_alpha_2,
-            c_d_alpha: velocity_by_c_d_alpha,
-            c_d_delta_e_2: velocity_by_c_d_delta_e_2,
-            c_d_delta_e: velocity_by_c_d_delta_e,
-            c_d_delta_c_2: velocity_by_c_d_delta_c_2,
-            c_d_delta_c: velocity_by_c_d_delta_c,
-            c_d_0: velocity_by_c_d_0,
-            c_d_eta_1: velocity_by_c_d_eta_1,
-            c_d_eta_2: velocity_by_c_d_eta_2,
-            c_d_eta_3: velocity_by_c_d_eta_3,
-            c_n_1_alpha_2: velocity_by_c_n_1_alpha_2,
-            c_n_1_alpha: velocity_by_c_n_1_alpha,
-            c_n_1_delta_e: velocity_by_c_n_1_delta_e,
-            c_n_1_delta_c: velocity_by_c_n_1_delta_c,
-            c_n_1_0: velocity_by_c_n_1_0,
-            c_n_2_alpha_2: velocity_by_c_n_2_alpha_2,
-            c_n_2_alpha: velocity_by_c_n_2_alpha,
-            c_n_2_delta_e: velocity_by_c_n_2_delta_e,
-            c_n_2_delta_c: velocity_by_c_n_2_delta_c,
-            c_n_2_0: velocity_by_c_n_2_0,
-            c_n_3_alpha_2: velocity_by_c_n_3_alpha_2,
-            c_n_3_alpha: velocity_by_c_n_3_alpha,
-            c_n_3_delta_e: velocity_by_c_n_3_delta_e,
-            c_n_3_delta_c: velocity_by_c_n_3_delta_c,
-            c_n_3_0: velocity_by_c_n_3_0,
-            ..no_parameter
-        },
-        gamma: Parameters {
-            m: gamma_by_m,
-            s: gamma_by_s,
-            rho_0: gamma_by_rho_0,
-            h_0: gamma_by_h_0,
-            h_s: gamma_by_h_s,
-            g: gamma_by_g,
-            r_e: gamma_by_r_e,
-            omega_1: gamma_by_omega_1,
-            omega_2: gamma_by_omega_2,
-            omega_3: gamma_by_omega_3,
-            canard_command: gamma_by_canard_command,
-            canard_slaving: gamma_by_canard_slaving,
-            spherical_earth: gamma_by_spherical_earth,
-            c_t_phi_alpha_3: gamma_by_c_t_phi_alpha_3,
-            c_t_phi_alpha_2: gamma_by_c_t_phi_alpha_2,
-            c_t_phi_alpha: gamma_by_c_t_phi_alpha,
-            c_t_phi: gamma_by_c_t_phi,
-            c_t_alpha_3: gamma_by_c_t_alpha_3,
-            c_t_alpha_2: gamma_by_c_t_alpha_2,
-            c_t_alpha: gamma_by_c_t_alpha,
-            c_t_0: gamma_by_c_t_0,
-            c_t_eta_1: gamma_by_c_t_eta_1,
-            c_t_eta_2: gamma_by_c_t_eta_2,
-            c_t_eta_3: gamma_by_c_t_eta_3,
-            c_l_alpha: gamma_by_c_l_alpha,
-            c_l_delta_e: gamma_by_c_l_delta_e,
-            c_l_delta_c: gamma_by_c_l_delta_c,
-            c_l_0: gamma_by_c_l_0,
-            c_l_eta_1: gamma_by_c_l_eta_1,
-            c_l_eta_2: gamma_by_c_l_eta_2,
-            c_l_eta_3: gamma_by_c_l_eta_3,
-            c_n_1_alpha_2: gamma_by_c_n_1_alpha_2,
-            c_n_1_alpha: gamma_by_c_n_1_alpha,
-            c_n_1_delta_e: gamma_by_c_n_1_delta_e,
-            c_n_1_delta_c: gamma_by_c_n_1_delta_c,
-            c_n_1_0: gamma_by_c_n_1_0,
-            c_n_2_alpha_2: gamma_by_c_n_2_alpha_2,
-            c_n_2_alpha: gamma_by_c_n_2_alpha,
-            c_n_2_delta_e: gamma_by_c_n_2_delta_e,
-            c_n_2_delta_c: gamma_by_c_n_2_delta_c,
-            c_n_2_0: gamma_by_c_n_2_0,
-            c_n_3_alpha_2: gamma_by_c_n_3_alpha_2,
-            c_n_3_alpha: gamma_by_c_n_3_alpha,
-            c_n_3_delta_e: gamma_by_c_n_3_delta_e,
-            c_n_3_delta_c: gamma_by_c_n_3_delta_c,
-            c_n_3_0: gamma_by_c_n_3_0,
-            ..no_parameter
-        },
-        alpha: Parameters {
-            m: alpha_by_m,
-            s: alpha_by_s,
-            rho_0: alpha_by_rho_0,
-            h_0: alpha_by_h_0,
-            h_s: alpha_by_h_s,
-            g: alpha_by_g,
-            r_e: alpha_by_r_e,
-            omega_1: alpha_by_omega_1,
-            omega_2: alpha_by_omega_2,
-            omega_3: alpha_by_omega_3,
-            canard_command: alpha_by_canard_command,
-            canard_slaving: alpha_by_canard_slaving,
-            spherical_earth: alpha_by_spherical_earth,
-            c_t_phi_alpha_3: alpha_by_c_t_phi_alpha_3,
-            c_t_phi_alpha_2: alpha_by_c_t_phi_alpha_2,
-            c_t_phi_alpha: alpha_by_c_t_phi_alpha,
-            c_t_phi: alpha_by_c_t_phi,
-            c_t_alpha_3: alpha_by_c_t_alpha_3,
-            c_t_alpha_2: alpha_by_c_t_alpha_2,
-            c_t_alpha: alpha_by_c_t_alpha,
-            c_t_0: alpha_by_c_t_0,
-            c_t_eta_1: alpha_by_c_t_eta_1,
-            c_t_eta_2: alpha_by_c_t_eta_2,
-            c_t_eta_3: alpha_by_c_t_eta_3,
-            c_l_alpha: alpha_by_c_l_alpha,
-            c_l_delta_e: alpha_by_c_l_delta_e,
-            c_l_delta_c: alpha_by_c_l_delta_c,
-            c_l_0: alpha_by_c_l_0,
-            c_l_eta_1: alpha_by_c_l_eta_1,
-            c_l_eta_2: alpha_by_c_l_eta_2,
-            c_l_eta_3: alpha_by_c_l_eta_3,
-            c_n_1_alpha_2: alpha_by_c_n_1_alpha_2,
-            c_n_1_alpha: alpha_by_c_n_1_alpha,
-            c_n_1_delta_e: alpha_by_c_n_1_delta_e,
-            c_n_1_delta_c: alpha_by_c_n_1_delta_c,
-            c_n_1_0: alpha_by_c_n_1_0,
-            c_n_2_alpha_2: alpha_by_c_n_2_alpha_2,
-            c_n_2_alpha: alpha_by_c_n_2_alpha,
-            c_n_2_delta_e: alpha_by_c_n_2_delta_e,
-            c_n_2_delta_c: alpha_by_c_n_2_delta_c,
-            c_n_2_0: alpha_by_c_n_2_0,
-            c_n_3_alpha_2: alpha_by_c_n_3_alpha_2,
-            c_n_3_alpha: alpha_by_c_n_3_alpha,
-            c_n_3_delta_e: alpha_by_c_n_3_delta_e,
-            c_n_3_delta_c: alpha_by_c_n_3_delta_c,
-            c_n_3_0: alpha_by_c_n_3_0,
-            ..no_parameter
-        },
-        pitch_rate: Parameters {
-            i_yy: pitch_rate_by_i_yy,
-            s: pitch_rate_by_s,
-            c_bar: pitch_rate_by_c_bar,
-            z_t: pitch_rate_by_z_t,
-            rho_0: pitch_rate_by_rho_0,
-            h_0: pitch_rate_by_h_0,
-            h_s: pitch_rate_by_h_s,
-            omega_1: pitch_rate_by_omega_1,
-            omega_2: pitch_rate_by_omega_2,
-            omega_3: pitch_rate_by_omega_3,
-            canard_command: pitch_rate_by_canard_command,
-            canard_slaving: pitch_rate_by_canard_slaving,
-            c_t_phi_alpha_3: pitch_rate_by_c_t_phi_alpha_3,
-            c_t_phi_alpha_2: pitch_rate_by_c_t_phi_alpha_2,
-            c_t_phi_alpha: pitch_rate_by_c_t_phi_alpha,
-            c_t_phi: pitch_rate_by_c_t_phi,
-            c_t_alpha_3: pitch_rate_by_c_t_alpha_3,
-            c_t_alpha_2: pitch_rate_by_c_t_alpha_2,
-            c_t_alpha: pitch_rate_by_c_t_alpha,
-            c_t_0: pitch_rate_by_c_t_0,
-            c_t_eta_1: pitch_rate_by_c_t_eta_1,
-            c_t_eta_2: pitch_rate_by_c_t_eta_2,
-            c_t_eta_3: pitch_rate_by_c_t_eta_3,
-            c_l_delta_e: pitch_rate_by_c_l_delta_e,
-            c_l_delta_c: pitch_rate_by_c_l_delta_c,
-            c_m_alpha_2: pitch_rate_by_c_m_alpha_2,
-            c_m_alpha: pitch_rate_by_c_m_alpha,
-            c_m_delta_e: pitch_rate_by_c_m_delta_e,
-            c_m_delta_c: pitch_rate_by_c_m_delta_c,
-            c_m_0: pitch_rate_by_c_m_0,
-            c_m_eta_1: pitch_rate_by_c_m_eta_1,
-            c_m_eta_2: pitch_rate_by_c_m_eta_2,
-            c_m_eta_3: pitch_rate_by_c_m_eta_3,
-            c_n_1_alpha_2: pitch_rate_by_c_n_1_alpha_2,
-            c_n_1_alpha: pitch_rate_by_c_n_1_alpha,
-            c_n_1_delta_e: pitch_rate_by_c_n_1_delta_e,
-            c_n_1_delta_c: pitch_rate_by_c_n_1_delta_c,
-            c_n_1_0: pitch_rate_by_c_n_1_0,
-            c_n_2_alpha_2: pitch_rate_by_c_n_2_alpha_2,
-            c_n_2_alpha: pitch_rate_by_c_n_2_alpha,
-            c_n_2_delta_e: pitch_rate_by_c_n_2_delta_e,
-            c_n_2_delta_c: pitch_rate_by_c_n_2_delta_c,
-            c_n_2_0: pitch_rate_by_c_n_2_0,
-            c_n_3_alpha_2: pitch_rate_by_c_n_3_alpha_2,
-            c_n_3_alpha: pitch_rate_by_c_n_3_alpha,
-            c_n_3_delta_e: pitch_rate_by_c_n_3_delta_e,
-            c_n_3_delta_c: pitch_rate_by_c_n_3_delta_c,
-            c_n_3_0: pitch_rate_by_c_n_3_0,
-            ..no_parameter
-        },
-        chi_1: Parameters {
-            omega_1: chi_1_by_omega_1,
-            zeta_1: chi_1_by_zeta_1,
-            moment_matching: chi_1_by_moment_matching,
-            ..no_parameter
-        },
-        chi_2: Parameters {
-            omega_2: chi_2_by_omega_2,
-            zeta_2: chi_2_by_zeta_2,
-            moment_matching: chi_2_by_moment_matching,
-            ..no_parameter
-        },
-        chi_3: Parameters {
-            omega_3: chi_3_by_omega_3,
-            zeta_3: chi_3_by_zeta_3,
-            moment_matching: chi_3_by_moment_matching,
-            ..no_parameter
-        },
-        ..no_state_parameter
-    }
+    PARAMETER_JACOBIAN_PATTERN.dense(&parameter_jacobian_values(x, u, p))
 }

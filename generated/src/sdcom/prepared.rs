@@ -232,8 +232,8 @@ pub struct Prepared<R> {
     pub half_c_d_eta_3_inv_omega_3_2: R,
     /// `inv_h_s * inv_h_s`.
     pub inv_h_s_2: R,
-    /// `earth_curvature * inv_r_e`.
-    pub earth_curvature_over_r_e: R,
+    /// `2 * g * earth_curvature * inv_r_e`.
+    pub two_g_earth_curvature_over_r_e: R,
     /// `1 / omega_1`.
     pub inv_omega_1: R,
     /// `2 * c_t_eta_1`.
@@ -260,28 +260,32 @@ pub struct Prepared<R> {
     pub c_d_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
     /// `c_l_delta_e * inv_c_l_delta_c`.
     pub c_l_delta_e_over_c_l_delta_c: R,
-    /// `1 / r_e`.
-    pub inv_r_e: R,
+    /// `R::from_f64(-2.0) * g * inv_r_e`.
+    pub minus_two_g_over_r_e: R,
     /// `canard_slaving * inv_c_l_delta_c`.
     pub canard_slaving_over_c_l_delta_c: R,
     /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
     pub d_c_t_d_c_l_delta_c_constant_1: R,
     /// `R::from_f64(-0.5) * inv_m_2`.
     pub minus_half_inv_m_2: R,
+    /// `R::HALF * inv_m`.
+    pub half_over_m: R,
     /// `c_l_eta_1 * inv_omega_1_2`.
     pub c_l_eta_1_inv_omega_1_2: R,
     /// `c_l_eta_2 * inv_omega_2_2`.
     pub c_l_eta_2_inv_omega_2_2: R,
     /// `c_l_eta_3 * inv_omega_3_2`.
     pub c_l_eta_3_inv_omega_3_2: R,
-    /// `R::HALF * inv_m`.
-    pub half_over_m: R,
     /// `R::HALF * c_l_eta_1 * inv_omega_1_2`.
     pub half_c_l_eta_1_inv_omega_1_2: R,
     /// `R::HALF * c_l_eta_2 * inv_omega_2_2`.
     pub half_c_l_eta_2_inv_omega_2_2: R,
     /// `R::HALF * c_l_eta_3 * inv_omega_3_2`.
     pub half_c_l_eta_3_inv_omega_3_2: R,
+    /// `1 / r_e`.
+    pub inv_r_e: R,
+    /// `earth_curvature * earth_curvature`.
+    pub earth_curvature_2: R,
     /// `c_l_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
     pub c_l_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
     /// `c_l_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
@@ -295,6 +299,8 @@ pub struct Prepared<R> {
     /// Derivative of lift coefficient per elevator deflection that the slaved canard leaves with respect to
     /// c_l_delta_e, dimensionless.
     pub d_elevator_lift_d_c_l_delta_e: R,
+    /// `R::HALF * inv_m_2`.
+    pub half_inv_m_2: R,
     /// `c_m_eta_1 * inv_omega_1_2`.
     pub c_m_eta_1_inv_omega_1_2: R,
     /// `c_m_eta_2 * inv_omega_2_2`.
@@ -411,7 +417,7 @@ pub struct Prepared<R> {
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 232 operations: 33 additions, 187 multiplications, 11 divisions, 1 sqrt.
+/// 237 operations: 33 additions, 192 multiplications, 11 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
@@ -619,7 +625,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         half_c_d_eta_2_inv_omega_2_2: R::HALF * p.c_d_eta_2 * inv_omega_2_2,
         half_c_d_eta_3_inv_omega_3_2: R::HALF * p.c_d_eta_3 * inv_omega_3_2,
         inv_h_s_2,
-        earth_curvature_over_r_e: earth_curvature * inv_r_e,
+        two_g_earth_curvature_over_r_e: R::TWO * p.g * earth_curvature * inv_r_e,
         inv_omega_1,
         two_c_t_eta_1: R::TWO * p.c_t_eta_1,
         inv_omega_2,
@@ -639,18 +645,20 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_d_eta_3_c_n_3_delta_c_inv_omega_3_2: p.c_d_eta_3 * p.c_n_3_delta_c
             * inv_omega_3_2,
         c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
-        inv_r_e,
+        minus_two_g_over_r_e: R::from_f64(-2.0) * p.g * inv_r_e,
         canard_slaving_over_c_l_delta_c: p.canard_slaving * inv_c_l_delta_c,
         d_c_t_d_c_l_delta_c_constant_1: p.canard_slaving * p.c_l_delta_e
             * inv_c_l_delta_c_2,
         minus_half_inv_m_2: R::from_f64(-0.5) * inv_m_2,
+        half_over_m: R::HALF * inv_m,
         c_l_eta_1_inv_omega_1_2: p.c_l_eta_1 * inv_omega_1_2,
         c_l_eta_2_inv_omega_2_2: p.c_l_eta_2 * inv_omega_2_2,
         c_l_eta_3_inv_omega_3_2: p.c_l_eta_3 * inv_omega_3_2,
-        half_over_m: R::HALF * inv_m,
         half_c_l_eta_1_inv_omega_1_2: R::HALF * p.c_l_eta_1 * inv_omega_1_2,
         half_c_l_eta_2_inv_omega_2_2: R::HALF * p.c_l_eta_2 * inv_omega_2_2,
         half_c_l_eta_3_inv_omega_3_2: R::HALF * p.c_l_eta_3 * inv_omega_3_2,
+        inv_r_e,
+        earth_curvature_2,
         c_l_eta_1_c_n_1_delta_c_inv_omega_1_2: p.c_l_eta_1 * p.c_n_1_delta_c
             * inv_omega_1_2,
         c_l_eta_2_c_n_2_delta_c_inv_omega_2_2: p.c_l_eta_2 * p.c_n_2_delta_c
@@ -660,6 +668,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_l_delta_e: p.c_l_delta_e,
         inv_c_l_delta_c,
         d_elevator_lift_d_c_l_delta_e,
+        half_inv_m_2: R::HALF * inv_m_2,
         c_m_eta_1_inv_omega_1_2: p.c_m_eta_1 * inv_omega_1_2,
         c_m_eta_2_inv_omega_2_2: p.c_m_eta_2 * inv_omega_2_2,
         c_m_eta_3_inv_omega_3_2: p.c_m_eta_3 * inv_omega_3_2,

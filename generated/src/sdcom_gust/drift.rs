@@ -41,21 +41,21 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -72,42 +72,42 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
 
     // Curve fits, (3)
     let incidence_3 = incidence * incidence_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * incidence_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * incidence_3
         + p.c_t_phi_alpha_2 * incidence_2
-        + p.c_t_phi_alpha * incidence
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * incidence;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * incidence_3
         + p.c_t_alpha_2 * incidence_2
         + p.c_t_alpha * incidence
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_alpha * incidence
+    let c_l = p.c_l_0
+        + p.c_l_alpha * incidence
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * incidence_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * incidence_2
         + p.c_d_alpha * incidence
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_alpha_2 * incidence_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * incidence_2
         + p.c_m_alpha * incidence
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * eta_1
         + p.c_m_eta_2 * eta_2
         + p.c_m_eta_3 * eta_3;
@@ -116,10 +116,11 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let thrust = reference_force * c_t; // lb/ft
     let drag = reference_force * c_d; // lb/ft
     let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+    let normal_coefficient = c_l + c_t * sin_alpha;
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
+    let force_turn = turn_factor * normal_coefficient; // rad/s
     let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
     let altitude_rate = x.velocity * sin_gamma; // ft/s
     let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s

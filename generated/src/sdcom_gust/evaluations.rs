@@ -50,21 +50,21 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -80,10 +80,10 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    p.c_l_alpha * incidence
+    p.c_l_0
+        + p.c_l_alpha * incidence
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3
@@ -110,21 +110,21 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -143,13 +143,13 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
 
-    p.c_d_alpha_2 * incidence_2
+    p.c_d_0
+        + p.c_d_alpha_2 * incidence_2
         + p.c_d_alpha * incidence
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3
@@ -176,21 +176,21 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -206,11 +206,11 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    p.c_m_alpha_2 * incidence_2
+    p.c_m_0
+        + p.c_m_alpha_2 * incidence_2
         + p.c_m_alpha * incidence
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * eta_1
         + p.c_m_eta_2 * eta_2
         + p.c_m_eta_3 * eta_3
@@ -237,21 +237,21 @@ pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -268,16 +268,16 @@ pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_3 = incidence * incidence_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * incidence_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * incidence_3
         + p.c_t_phi_alpha_2 * incidence_2
-        + p.c_t_phi_alpha * incidence
-        + p.c_t_phi;
+        + p.c_t_phi_alpha * incidence;
 
-    c_t_phi * u.phi
+    p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * incidence_3
         + p.c_t_alpha_2 * incidence_2
         + p.c_t_alpha * incidence
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3
@@ -304,21 +304,21 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -335,15 +335,15 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_3 = incidence * incidence_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * incidence_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * incidence_3
         + p.c_t_phi_alpha_2 * incidence_2
-        + p.c_t_phi_alpha * incidence
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * incidence;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * incidence_3
         + p.c_t_alpha_2 * incidence_2
         + p.c_t_alpha * incidence
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
@@ -373,21 +373,21 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -403,10 +403,10 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    let c_l = p.c_l_alpha * incidence
+    let c_l = p.c_l_0
+        + p.c_l_alpha * incidence
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
@@ -436,21 +436,21 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -468,13 +468,13 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * incidence_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * incidence_2
         + p.c_d_alpha * incidence
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3;
@@ -504,21 +504,21 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -535,23 +535,23 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
 
     // Curve fits, (3)
     let incidence_3 = incidence * incidence_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * incidence_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * incidence_3
         + p.c_t_phi_alpha_2 * incidence_2
-        + p.c_t_phi_alpha * incidence
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * incidence;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * incidence_3
         + p.c_t_alpha_2 * incidence_2
         + p.c_t_alpha * incidence
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_m = p.c_m_alpha_2 * incidence_2
+    let c_m = p.c_m_0
+        + p.c_m_alpha_2 * incidence_2
         + p.c_m_alpha * incidence
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * eta_1
         + p.c_m_eta_2 * eta_2
         + p.c_m_eta_3 * eta_3;
@@ -577,11 +577,11 @@ pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
 
-    p.c_n_1_alpha_2 * incidence_2
+    p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
         + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0
 }
 
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -605,11 +605,11 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     reference_force * c_n_1
@@ -636,11 +636,11 @@ pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -670,11 +670,11 @@ pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_alpha_2 * incidence_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * incidence_2
         + p.c_n_1_alpha * incidence
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -700,11 +700,11 @@ pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
 
-    p.c_n_2_alpha_2 * incidence_2
+    p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
         + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0
 }
 
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -728,11 +728,11 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     reference_force * c_n_2
@@ -759,11 +759,11 @@ pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
@@ -793,11 +793,11 @@ pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_2 = p.c_n_2_alpha_2 * incidence_2
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * incidence_2
         + p.c_n_2_alpha * incidence
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
@@ -823,11 +823,11 @@ pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
 
-    p.c_n_3_alpha_2 * incidence_2
+    p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
         + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0
 }
 
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -851,11 +851,11 @@ pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     reference_force * c_n_3
@@ -882,11 +882,11 @@ pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
@@ -916,11 +916,11 @@ pub fn eta_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let incidence_2 = incidence * incidence;
-    let c_n_3 = p.c_n_3_alpha_2 * incidence_2
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * incidence_2
         + p.c_n_3_alpha * incidence
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2

@@ -3,7 +3,7 @@
 //! Functions of SDCOM_GUST. Units are foot, slug, second and radian.
 
 use super::{Input, Noise, NoiseDerivatives, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`NoiseDerivatives`] stand.
 pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
@@ -32,12 +32,7 @@ pub fn noise_derivatives<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> NoiseDerivatives<R> {
-    let [] = noise_derivatives_values(x, u, p);
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let no_noise_noise = Noise::splat(no_noise);
-    State::splat(no_noise_noise)
+    NOISE_DERIVATIVES_PATTERN.dense(&noise_derivatives_values(x, u, p))
 }
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).

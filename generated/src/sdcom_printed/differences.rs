@@ -33,21 +33,21 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -65,29 +65,29 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
     let c_t_phi_alpha_alpha = p.c_t_phi_alpha * x.alpha;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + c_t_phi_alpha_alpha
-        + p.c_t_phi;
+        + c_t_phi_alpha_alpha;
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let c_t = c_t_phi * u.phi
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + c_t_alpha_alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
     let c_d_alpha_alpha = p.c_d_alpha * x.alpha;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_alpha_2 * alpha_2
+    let c_d = p.c_d_0
+        + p.c_d_alpha_2 * alpha_2
         + c_d_alpha_alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * canard_deflection
-        + p.c_d_0
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3;
@@ -159,21 +159,21 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -190,50 +190,60 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_alpha * x.alpha
+    let c_l = p.c_l_0
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
 
+    // Forces and moment, (1)
+    let normal_coefficient = c_l + c_t * sin_alpha;
+
     // Motion, (1)
-    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
+    let force_turn = turn_factor * normal_coefficient; // rad/s
     let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
     let gamma_rate = force_turn - gravity_turn_cos_gamma; // rad/s
 
     // Strict-feedback form, (31)
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3); // rad/s
-    let f_gamma = turn_factor * (p.c_l_0 + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0))
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0
+        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0); // rad
+    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
         - gravity_turn_cos_gamma
         + f_gamma_eta; // rad/s
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi)); // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
 
     // Printed form, (27)
-    let gamma_rate_printed = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3) + f_gamma
+    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
+    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+        + f_gamma
         + g_gamma * x.alpha; // rad/s
 
     gamma_rate - gamma_rate_printed
@@ -272,21 +282,21 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -303,42 +313,48 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
+        + p.c_t_phi_alpha * x.alpha;
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let c_t = c_t_phi * u.phi
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + c_t_alpha_alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
     let c_l_alpha_alpha = p.c_l_alpha * x.alpha;
-    let c_l = c_l_alpha_alpha
+    let c_l = p.c_l_0
+        + c_l_alpha_alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * canard_commanded
-        + p.c_l_0
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
 
+    // Forces and moment, (1)
+    let normal_coefficient = c_l + c_t * sin_alpha;
+
     // Motion, (1)
-    let force_turn = turn_factor * (c_l + c_t * sin_alpha); // rad/s
+    let force_turn = turn_factor * normal_coefficient; // rad/s
     let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
     let gamma_rate = force_turn - gravity_turn_cos_gamma; // rad/s
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 
     // Strict-feedback form, (31)
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3); // rad/s
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let f_alpha = gravity_turn_cos_gamma
         - turn_factor
@@ -349,9 +365,10 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Printed form, (27)
     let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3) + f_alpha + x.pitch_rate; // rad/s
+        * (-d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
+            - d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
+            - d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3) + f_alpha
+        + x.pitch_rate; // rad/s
 
     alpha_rate - alpha_rate_printed
 }
@@ -374,21 +391,21 @@ pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -405,26 +422,26 @@ pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
+        + p.c_t_phi_alpha * x.alpha;
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let c_t = c_t_phi * u.phi
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + c_t_alpha_alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
     let c_m_alpha_2_alpha_2 = p.c_m_alpha_2 * alpha_2;
     let c_m_alpha_alpha = p.c_m_alpha * x.alpha;
-    let c_m = c_m_alpha_2_alpha_2
+    let c_m = p.c_m_0
+        + c_m_alpha_2_alpha_2
         + c_m_alpha_alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * canard_deflection
-        + p.c_m_0
         + p.c_m_eta_1 * eta_1
         + p.c_m_eta_2 * eta_2
         + p.c_m_eta_3 * eta_3;
@@ -479,21 +496,21 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -510,15 +527,15 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
@@ -527,8 +544,10 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let thrust = reference_force * c_t; // lb/ft
 
     // Strict-feedback form, (28)
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
+        * (p.c_t_alpha + p.c_t_phi_alpha * u.phi); // 1/rad
     let alpha_slope_velocity = reference_force * p.inv_m
-        * (cos_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi) - p.c_d_alpha); // ft/s^2/rad
+        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -590,21 +609,21 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -621,22 +640,23 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
 
     // Strict-feedback form, (30)
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi)); // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
 
     // Derivatives with respect to alpha
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
@@ -662,8 +682,10 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + d_c_l_d_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
 
     d_force_turn_d_alpha - g_gamma
 }
@@ -692,21 +714,21 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -723,22 +745,23 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi_alpha_3 * alpha_3
+    let c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha
-        + p.c_t_phi;
-    let c_t = c_t_phi * u.phi
+        + p.c_t_phi_alpha * x.alpha;
+    let c_t = p.c_t_0
+        + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha
-        + p.c_t_0
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
 
     // Strict-feedback form, (30)
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi)); // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let alpha_slope_alpha = -g_gamma; // rad/s/rad
 
     // Derivatives with respect to alpha
@@ -765,8 +788,10 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor
-        * (c_t * cos_alpha + sin_alpha * d_c_t_d_alpha + d_c_l_d_alpha); // 1/s
+    let d_normal_coefficient_d_alpha = c_t * cos_alpha
+        + sin_alpha * d_c_t_d_alpha
+        + d_c_l_d_alpha; // 1/rad
+    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
 
     -(d_force_turn_d_alpha + alpha_slope_alpha)
 }

@@ -50,10 +50,13 @@ pub fn diffusion_values<R: Real>(
 
     // Strict-feedback form, (28)
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
     let alpha_slope_velocity = reference_force * p.inv_m
-        * (cos_alpha * c_t_alpha_plus_c_t_phi_alpha_phi - p.c_d_alpha); // ft/s^2/rad
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi); // 1/s
+        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let alpha_slope_alpha = -g_gamma; // rad/s/rad
     let alpha_slope_pitch_rate = reference_force * p.inv_i_yy
         * (p.c_bar_c_m_alpha + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
@@ -77,49 +80,7 @@ pub fn diffusion_values<R: Real>(
 /// (28)-(34), w_gamma drives the altitude alone, eq. (27).
 #[inline]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    let [velocity_by_w_alpha, altitude_by_w_gamma, gamma_by_w_alpha, alpha_by_w_alpha,
-    alpha_by_w_q, pitch_rate_by_w_alpha, chi_1_by_xi_1, chi_2_by_xi_1, chi_2_by_xi_2,
-    chi_3_by_xi_1, chi_3_by_xi_3] = diffusion_values(x, u, p);
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    State {
-        velocity: Noise {
-            w_alpha: velocity_by_w_alpha,
-            ..no_noise
-        },
-        altitude: Noise {
-            w_gamma: altitude_by_w_gamma,
-            ..no_noise
-        },
-        gamma: Noise {
-            w_alpha: gamma_by_w_alpha,
-            ..no_noise
-        },
-        alpha: Noise {
-            w_alpha: alpha_by_w_alpha,
-            w_q: alpha_by_w_q,
-            ..no_noise
-        },
-        pitch_rate: Noise {
-            w_alpha: pitch_rate_by_w_alpha,
-            ..no_noise
-        },
-        chi_1: Noise {
-            xi_1: chi_1_by_xi_1,
-            ..no_noise
-        },
-        chi_2: Noise {
-            xi_1: chi_2_by_xi_1,
-            xi_2: chi_2_by_xi_2,
-            ..no_noise
-        },
-        chi_3: Noise {
-            xi_1: chi_3_by_xi_1,
-            xi_3: chi_3_by_xi_3,
-            ..no_noise
-        },
-    }
+    DIFFUSION_PATTERN.dense(&diffusion_values(x, u, p))
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (27).
@@ -159,21 +120,21 @@ pub fn drift_and_diffusion<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -209,22 +170,29 @@ pub fn drift_and_diffusion<R: Real>(
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
     let alpha_slope_velocity = reference_force * p.inv_m
-        * (cos_alpha * c_t_alpha_plus_c_t_phi_alpha_phi - p.c_d_alpha); // ft/s^2/rad
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3); // rad/s
+        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
     let c_t_phi_phi = p.c_t_phi * u.phi;
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0); // rad
     let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * (p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0))
+    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
         - gravity_turn_cos_gamma
         + f_gamma_eta; // rad/s
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi); // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
         + c_t_alpha_alpha
@@ -252,20 +220,21 @@ pub fn drift_and_diffusion<R: Real>(
             + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
+    let gamma_rate_printed_term_1 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
         * x.chi_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
+    let gamma_rate_printed_term_2 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
         * x.chi_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
+    let gamma_rate_printed_term_3 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
         * x.chi_3;
-    let gamma_rate_printed = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3) + f_gamma + g_gamma * x.alpha; // rad/s
+    let slope_of_gamma_rate_printed_in_turn_factor = gamma_rate_printed_term_1
+        + gamma_rate_printed_term_2
+        + gamma_rate_printed_term_3; // rad
+    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+        + f_gamma
+        + g_gamma * x.alpha; // rad/s
     let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3) + f_alpha + x.pitch_rate; // rad/s
+        * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2
+            - gamma_rate_printed_term_3) + f_alpha + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed = reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
             + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
@@ -349,10 +318,13 @@ pub fn noise_increment<R: Real>(
 
     // Strict-feedback form, (28)
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
     let alpha_slope_velocity = reference_force * p.inv_m
-        * (cos_alpha * c_t_alpha_plus_c_t_phi_alpha_phi - p.c_d_alpha); // ft/s^2/rad
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi); // 1/s
+        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let alpha_slope_alpha = -g_gamma; // rad/s/rad
     let alpha_slope_pitch_rate = reference_force * p.inv_i_yy
         * (p.c_bar_c_m_alpha + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad

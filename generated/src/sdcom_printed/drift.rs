@@ -38,21 +38,21 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -87,20 +87,25 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
         - gravity * sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3); // rad/s
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
     let c_t_phi_phi = p.c_t_phi * u.phi;
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0); // rad
     let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * (p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0))
+    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
         - gravity_turn_cos_gamma
         + f_gamma_eta; // rad/s
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi)); // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
         + c_t_alpha_alpha
@@ -125,20 +130,21 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
             + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
+    let gamma_rate_printed_term_1 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
         * x.chi_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
+    let gamma_rate_printed_term_2 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
         * x.chi_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
+    let gamma_rate_printed_term_3 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
         * x.chi_3;
-    let gamma_rate_printed = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3) + f_gamma + g_gamma * x.alpha; // rad/s
+    let slope_of_gamma_rate_printed_in_turn_factor = gamma_rate_printed_term_1
+        + gamma_rate_printed_term_2
+        + gamma_rate_printed_term_3; // rad
+    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+        + f_gamma
+        + g_gamma * x.alpha; // rad/s
     let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3) + f_alpha + x.pitch_rate; // rad/s
+        * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2
+            - gamma_rate_printed_term_3) + f_alpha + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed = reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
             + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2

@@ -3,7 +3,7 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
 use super::{Hessian, Input, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`Hessian`] stand.
 pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
@@ -83,7 +83,7 @@ pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 951 operations: 293 additions, 653 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 959 operations: 297 additions, 657 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 67] {
     // Air, (2)
@@ -114,21 +114,21 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -142,18 +142,72 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
+    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
+    let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
+    let slope_of_f_velocity_in_dynamic_pressure = (cos_alpha * c_t_alpha_alpha_plus_c_t_0
+        - p.c_d_alpha * x.alpha - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
+        - p.c_d_0) * p.s_over_m; // ft^3/s^2/lb
+    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft^3/s^2/lb
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
+    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
+        * cos_alpha * p.s_over_m; // ft^3/s^2/lb
     let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
     let inv_velocity_2 = inv_velocity * inv_velocity;
     let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
         + p.earth_curvature * radius_ratio); // 1/ft
+    let c_t_phi_phi = p.c_t_phi * u.phi;
+    let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0; // rad
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let d_g_gamma_d_velocity_term_1 = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let d_g_gamma_d_velocity = d_g_gamma_d_velocity_term_1 * d_turn_factor_d_velocity; // 1/ft
+    let slope_of_g_gamma_in_turn_factor_term_1 = sin_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + slope_of_g_gamma_in_turn_factor_term_1;
+    let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_velocity; // 1/ft
+    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
+    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
+        + c_t_alpha_alpha
+        + c_t_phi_phi
+        + p.c_t_0;
+    let slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
+        + sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
+    let slope_of_f_alpha_eta_in_turn_factor = -slope_of_f_gamma_eta_in_turn_factor; // rad
+    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
+    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
+    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
+    let slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
+        * slope_of_f_alpha_in_turn_factor_term_1
+        + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
+        * p.s_over_i_yy; // rad*ft^2/s^2/lb
 
     // Derivatives with respect to altitude
     let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
@@ -168,7 +222,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
     let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
         - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_g_gamma_d_altitude = d_g_gamma_d_velocity_term_1 * d_turn_factor_d_altitude; // 1/s/ft
+    let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_altitude; // 1/s/ft
 
     // Derivatives with respect to gamma
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
@@ -176,38 +231,53 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
+    let slope_of_velocity_rate_printed_in_cos_alpha_term_1 = x.chi_1 * p.c_t_eta_1
+        + x.chi_2 * p.c_t_eta_2
+        + x.chi_3 * p.c_t_eta_3;
+    let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
+        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // ft/s^2
+    let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
+        * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
+    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = eta_static_1 * p.c_t_eta_1
+        + eta_static_2 * p.c_t_eta_2
+        + eta_static_3 * p.c_t_eta_3;
+    let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
+        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_g_gamma_d_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi * cos_alpha; // 1/s/rad
+    let slope_of_g_velocity_in_cos_alpha = c_t_phi_alpha_alpha_plus_c_t_phi
+        * reference_force * p.inv_m; // ft/s^2
+    let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
+        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // rad/s
+    let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
+    let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
+        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
+    let slope_of_g_gamma_in_sin_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
+    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * cos_alpha; // 1/s/rad
+    let slope_of_alpha_rate_printed_in_sin_alpha = -slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
+    let slope_of_f_alpha_in_sin_alpha = -turn_factor
+        * slope_of_f_alpha_in_turn_factor_term_1; // rad/s
+    let slope_of_f_alpha_eta_in_sin_alpha = -slope_of_f_gamma_eta_in_sin_alpha; // rad/s
 
     // Derivatives with respect to chi_1
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
     let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let d_gamma_rate_printed_d_chi_1 = turn_factor * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_1 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
     let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let d_gamma_rate_printed_d_chi_2 = turn_factor * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_2 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
     let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let d_gamma_rate_printed_d_chi_3 = turn_factor * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_3 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
 
@@ -215,50 +285,47 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
 
     // Derivatives with respect to velocity
+    let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
+        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * d_generalized_force_1_d_velocity
+            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * d_generalized_force_2_d_velocity
+            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * d_generalized_force_3_d_velocity); // ft^2/s/lb
     let d2_generalized_force_1_d_velocity_d_velocity = c_n_1 * p.s * density; // slug^0.5/ft^1.5
     let d2_generalized_force_2_d_velocity_d_velocity = c_n_2 * p.s * density; // slug^0.5/ft^1.5
     let d2_generalized_force_3_d_velocity_d_velocity = c_n_3 * p.s * density; // slug^0.5/ft^1.5
-    let d2_f_velocity_eta_d_velocity_d_velocity_term_1 = p.inv_omega_1_2
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1 * d_generalized_force_1_d_velocity;
-    let d2_f_velocity_eta_d_velocity_d_velocity_term_2 = p.inv_omega_2_2
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2 * d_generalized_force_2_d_velocity;
-    let d2_f_velocity_eta_d_velocity_d_velocity_term_3 = p.inv_omega_3_2
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3 * d_generalized_force_3_d_velocity;
-    let d2_f_velocity_eta_d_velocity_d_velocity_term_4 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3;
-    let d2_f_velocity_eta_d_velocity_d_velocity = p.inv_m
-        * (d_reference_force_d_velocity
-            * (R::TWO * d2_f_velocity_eta_d_velocity_d_velocity_term_1
-                + R::TWO * d2_f_velocity_eta_d_velocity_d_velocity_term_2
-                + R::TWO * d2_f_velocity_eta_d_velocity_d_velocity_term_3)
-            + p.s * d2_f_velocity_eta_d_velocity_d_velocity_term_4 * density)
+    let d2_f_velocity_eta_d_velocity_d_velocity = R::TWO
+        * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity
+        * d_dynamic_pressure_d_velocity
+        + slope_of_f_velocity_eta_in_dynamic_pressure * density
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_velocity
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_velocity
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_velocity; // 1/ft
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
-    let d2_f_velocity_d_velocity_d_velocity_term_1 = cos_alpha * c_t_alpha_alpha_plus_c_t_0
-        - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
-        - p.c_d_0;
-    let d2_f_velocity_d_velocity_d_velocity = d2_f_velocity_d_velocity_d_velocity_term_1
-        * p.s_over_m * density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
-    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
-    let d2_g_velocity_d_velocity_d_velocity = c_t_phi_alpha_alpha_plus_c_t_phi
-        * cos_alpha * p.s_over_m * density; // 1/ft
+    let d2_f_velocity_d_velocity_d_velocity = slope_of_f_velocity_in_dynamic_pressure
+        * density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
+    let d2_g_velocity_d_velocity_d_velocity = slope_of_g_velocity_in_dynamic_pressure
+        * density; // 1/ft
     let d2_velocity_rate_printed_d_velocity_d_velocity_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
         + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
         + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
-    let d2_velocity_rate_printed_d_velocity_d_velocity = p.s_over_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1 * density
+    let d2_velocity_rate_printed_d_velocity_d_velocity =
+        p.s_over_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1 * density
         + d2_f_velocity_d_velocity_d_velocity
         + u.phi * d2_g_velocity_d_velocity_d_velocity; // 1/ft
 
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * d_density_d_altitude; // lb*s/ft^4
+    let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude = p.s_over_m
+        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * d_generalized_force_1_d_altitude
+            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * d_generalized_force_2_d_altitude
+            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * d_generalized_force_3_d_altitude); // ft^2/s^2/lb
     let d2_reference_force_d_velocity_d_altitude = p.s
         * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
     let d2_generalized_force_1_d_velocity_d_altitude = c_n_1
@@ -267,83 +334,69 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_generalized_force_3_d_velocity_d_altitude = c_n_3
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_f_velocity_eta_d_velocity_d_altitude_term_1 = p.inv_omega_1_2
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1 * d_generalized_force_1_d_altitude;
-    let d2_f_velocity_eta_d_velocity_d_altitude_term_2 = p.inv_omega_2_2
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2 * d_generalized_force_2_d_altitude;
-    let d2_f_velocity_eta_d_velocity_d_altitude_term_3 = p.inv_omega_3_2
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3 * d_generalized_force_3_d_altitude;
-    let d2_f_velocity_eta_d_velocity_d_altitude = p.inv_m
-        * (d_reference_force_d_velocity
-            * (d2_f_velocity_eta_d_velocity_d_altitude_term_1
-                + d2_f_velocity_eta_d_velocity_d_altitude_term_2
-                + d2_f_velocity_eta_d_velocity_d_altitude_term_3)
-            + d_reference_force_d_altitude
-                * (d2_f_velocity_eta_d_velocity_d_velocity_term_1
-                    + d2_f_velocity_eta_d_velocity_d_velocity_term_2
-                    + d2_f_velocity_eta_d_velocity_d_velocity_term_3)
-            + d2_reference_force_d_velocity_d_altitude
-                * d2_f_velocity_eta_d_velocity_d_velocity_term_4)
+    let d2_f_velocity_eta_d_velocity_d_altitude = d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity
+        * d_dynamic_pressure_d_altitude
+        + slope_of_f_velocity_eta_in_dynamic_pressure
+            * d2_dynamic_pressure_d_velocity_d_altitude
+        + d_dynamic_pressure_d_velocity
+            * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_altitude
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_altitude
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_altitude; // 1/s/ft
-    let d2_f_velocity_d_velocity_d_altitude = d2_f_velocity_d_velocity_d_velocity_term_1
-        * d2_reference_force_d_velocity_d_altitude * p.inv_m
+    let d2_f_velocity_d_velocity_d_altitude = slope_of_f_velocity_in_dynamic_pressure
+        * d2_dynamic_pressure_d_velocity_d_altitude
         + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
-    let d2_g_velocity_d_velocity_d_altitude = c_t_phi_alpha_alpha_plus_c_t_phi
-        * cos_alpha * d2_reference_force_d_velocity_d_altitude * p.inv_m; // 1/s/ft
+    let d2_g_velocity_d_velocity_d_altitude = slope_of_g_velocity_in_dynamic_pressure
+        * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft
     let d2_velocity_rate_printed_d_velocity_d_altitude = d2_reference_force_d_velocity_d_altitude
         * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
         + d2_f_velocity_d_velocity_d_altitude
         + u.phi * d2_g_velocity_d_velocity_d_altitude; // 1/s/ft
 
     // Derivatives with respect to alpha
+    let d_slope_of_f_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
+        * (cos_alpha * p.c_t_alpha - p.c_d_alpha
+            + c_t_alpha_alpha_plus_c_t_0 * d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
+    let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha = p.s_over_m
+        * (slope_of_f_velocity_eta_in_cos_alpha_term_1 * d_cos_alpha_d_alpha
+            + p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+                * d_generalized_force_1_d_alpha
+            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * d_generalized_force_2_d_alpha
+            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * d_generalized_force_3_d_alpha); // ft^3/s^2/lb/rad
     let d2_generalized_force_1_d_velocity_d_alpha = d_reference_force_d_velocity
         * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_generalized_force_2_d_velocity_d_alpha = d_reference_force_d_velocity
         * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_generalized_force_3_d_velocity_d_alpha = d_reference_force_d_velocity
         * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_f_velocity_eta_d_velocity_d_alpha_term_1 = p.inv_omega_1_2
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1 * d_generalized_force_1_d_alpha
-        + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-            * d_generalized_force_2_d_alpha
-        + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-            * d_generalized_force_3_d_alpha;
-    let d2_f_velocity_eta_d_velocity_d_alpha_term_2 = d_generalized_force_1_d_velocity * p.c_t_eta_1_inv_omega_1_2
-        + d_generalized_force_2_d_velocity * p.c_t_eta_2_inv_omega_2_2
-        + d_generalized_force_3_d_velocity * p.c_t_eta_3_inv_omega_3_2;
-    let d2_f_velocity_eta_d_velocity_d_alpha_term_3 = eta_static_1 * p.c_t_eta_1
-        + eta_static_2 * p.c_t_eta_2
-        + eta_static_3 * p.c_t_eta_3;
-    let d2_f_velocity_eta_d_velocity_d_alpha = p.inv_m
-        * (d_reference_force_d_velocity * d2_f_velocity_eta_d_velocity_d_alpha_term_1
-            + (reference_force * d2_f_velocity_eta_d_velocity_d_alpha_term_2
-                + d_reference_force_d_velocity
-                    * d2_f_velocity_eta_d_velocity_d_alpha_term_3) * d_cos_alpha_d_alpha)
+    let d2_f_velocity_eta_d_velocity_d_alpha = reference_force * p.inv_m
+        * (d_generalized_force_1_d_velocity * p.c_t_eta_1_inv_omega_1_2
+            + d_generalized_force_2_d_velocity * p.c_t_eta_2_inv_omega_2_2
+            + d_generalized_force_3_d_velocity * p.c_t_eta_3_inv_omega_3_2)
+        * d_cos_alpha_d_alpha
+        + d_dynamic_pressure_d_velocity
+            * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_alpha
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_alpha
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/rad
-    let d2_f_velocity_d_velocity_d_alpha_term_1 = cos_alpha * p.c_t_alpha
-        - p.c_d_alpha
-        + c_t_alpha_alpha_plus_c_t_0 * d_cos_alpha_d_alpha;
-    let d2_f_velocity_d_velocity_d_alpha = d_reference_force_d_velocity * p.inv_m
-        * d2_f_velocity_d_velocity_d_alpha_term_1 + d2_f_velocity_eta_d_velocity_d_alpha; // 1/s/rad
-    let d2_g_velocity_d_velocity_d_alpha_term_1 = p.c_t_phi_alpha * cos_alpha
-        + c_t_phi_alpha_alpha_plus_c_t_phi * d_cos_alpha_d_alpha;
-    let d2_g_velocity_d_velocity_d_alpha = d_reference_force_d_velocity * p.inv_m
-        * d2_g_velocity_d_velocity_d_alpha_term_1; // 1/s/rad
-    let d2_velocity_rate_printed_d_velocity_d_alpha_term_1 = x.chi_1 * p.c_t_eta_1
-        + x.chi_2 * p.c_t_eta_2
-        + x.chi_3 * p.c_t_eta_3;
+    let d2_f_velocity_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
+        * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
+        + d2_f_velocity_eta_d_velocity_d_alpha; // 1/s/rad
+    let d_slope_of_g_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
+        * (cos_alpha * p.c_t_phi_alpha
+            + c_t_phi_alpha_alpha_plus_c_t_phi * d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
+    let d2_g_velocity_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
+        * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s/rad
     let d2_velocity_rate_printed_d_velocity_d_alpha = d_reference_force_d_velocity
-        * p.inv_m * d2_velocity_rate_printed_d_velocity_d_alpha_term_1
+        * p.inv_m * slope_of_velocity_rate_printed_in_cos_alpha_term_1
         * d_cos_alpha_d_alpha + d2_f_velocity_d_velocity_d_alpha
         + u.phi * d2_g_velocity_d_velocity_d_alpha; // 1/s/rad
 
@@ -380,25 +433,23 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     let d2_generalized_force_3_d_altitude_d_altitude = c_n_3
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_f_velocity_eta_d_altitude_d_altitude = p.inv_m
-        * (d_reference_force_d_altitude
-            * (R::TWO * d2_f_velocity_eta_d_velocity_d_altitude_term_1
-                + R::TWO * d2_f_velocity_eta_d_velocity_d_altitude_term_2
-                + R::TWO * d2_f_velocity_eta_d_velocity_d_altitude_term_3)
-            + d2_reference_force_d_altitude_d_altitude
-                * d2_f_velocity_eta_d_velocity_d_velocity_term_4)
+    let d2_f_velocity_eta_d_altitude_d_altitude = R::TWO
+        * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
+        * d_dynamic_pressure_d_altitude
+        + slope_of_f_velocity_eta_in_dynamic_pressure
+            * d2_dynamic_pressure_d_altitude_d_altitude
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_altitude_d_altitude
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_altitude_d_altitude
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_altitude_d_altitude; // 1/s^2/ft
-    let d2_f_velocity_d_altitude_d_altitude = d2_f_velocity_d_velocity_d_velocity_term_1
-        * d2_reference_force_d_altitude_d_altitude * p.inv_m
+    let d2_f_velocity_d_altitude_d_altitude = slope_of_f_velocity_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude
         - sin_gamma * d2_gravity_d_altitude_d_altitude
         + d2_f_velocity_eta_d_altitude_d_altitude; // 1/s^2/ft
-    let d2_g_velocity_d_altitude_d_altitude = c_t_phi_alpha_alpha_plus_c_t_phi
-        * cos_alpha * d2_reference_force_d_altitude_d_altitude * p.inv_m; // 1/s^2/ft
+    let d2_g_velocity_d_altitude_d_altitude = slope_of_g_velocity_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
     let d2_velocity_rate_printed_d_altitude_d_altitude = d2_reference_force_d_altitude_d_altitude
         * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
         + d2_f_velocity_d_altitude_d_altitude
@@ -414,26 +465,26 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_generalized_force_3_d_altitude_d_alpha = d_reference_force_d_altitude
         * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_f_velocity_eta_d_altitude_d_alpha_term_1 = d_generalized_force_1_d_altitude * p.c_t_eta_1_inv_omega_1_2
-        + d_generalized_force_2_d_altitude * p.c_t_eta_2_inv_omega_2_2
-        + d_generalized_force_3_d_altitude * p.c_t_eta_3_inv_omega_3_2;
-    let d2_f_velocity_eta_d_altitude_d_alpha = p.inv_m
-        * (d_reference_force_d_altitude * d2_f_velocity_eta_d_velocity_d_alpha_term_1
-            + (reference_force * d2_f_velocity_eta_d_altitude_d_alpha_term_1
-                + d_reference_force_d_altitude
-                    * d2_f_velocity_eta_d_velocity_d_alpha_term_3) * d_cos_alpha_d_alpha)
+    let d2_f_velocity_eta_d_altitude_d_alpha = reference_force * p.inv_m
+        * (d_generalized_force_1_d_altitude * p.c_t_eta_1_inv_omega_1_2
+            + d_generalized_force_2_d_altitude * p.c_t_eta_2_inv_omega_2_2
+            + d_generalized_force_3_d_altitude * p.c_t_eta_3_inv_omega_3_2)
+        * d_cos_alpha_d_alpha
+        + d_dynamic_pressure_d_altitude
+            * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_altitude_d_alpha
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_altitude_d_alpha
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/rad
-    let d2_f_velocity_d_altitude_d_alpha = d_reference_force_d_altitude * p.inv_m
-        * d2_f_velocity_d_velocity_d_alpha_term_1 + d2_f_velocity_eta_d_altitude_d_alpha; // 1/s^2/rad
-    let d2_g_velocity_d_altitude_d_alpha = d_reference_force_d_altitude * p.inv_m
-        * d2_g_velocity_d_velocity_d_alpha_term_1; // 1/s^2/rad
+    let d2_f_velocity_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
+        * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
+        + d2_f_velocity_eta_d_altitude_d_alpha; // 1/s^2/rad
+    let d2_g_velocity_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
+        * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s^2/rad
     let d2_velocity_rate_printed_d_altitude_d_alpha = d_reference_force_d_altitude
-        * p.inv_m * d2_velocity_rate_printed_d_velocity_d_alpha_term_1
+        * p.inv_m * slope_of_velocity_rate_printed_in_cos_alpha_term_1
         * d_cos_alpha_d_alpha + d2_f_velocity_d_altitude_d_alpha
         + u.phi * d2_g_velocity_d_altitude_d_alpha; // 1/s^2/rad
 
@@ -454,50 +505,56 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -cos_alpha; // 1/rad^2
+    let d_slope_of_f_velocity_in_cos_alpha_d_alpha = reference_force
+        * p.c_t_alpha_over_m; // ft/s^2/rad
+    let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1 =
+        p.c_t_eta_1_inv_omega_1_2 * d_generalized_force_1_d_alpha
+        + p.c_t_eta_2_inv_omega_2_2 * d_generalized_force_2_d_alpha
+        + p.c_t_eta_3_inv_omega_3_2 * d_generalized_force_3_d_alpha;
+    let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha = reference_force * p.inv_m
+        * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1; // ft/s^2/rad
     let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_f_velocity_eta_d_alpha_d_alpha_term_1 = d_generalized_force_1_d_alpha
-        * p.c_t_eta_1_inv_omega_1_2;
-    let d2_f_velocity_eta_d_alpha_d_alpha_term_2 = d_generalized_force_2_d_alpha
-        * p.c_t_eta_2_inv_omega_2_2;
-    let d2_f_velocity_eta_d_alpha_d_alpha_term_3 = d_generalized_force_3_d_alpha
-        * p.c_t_eta_3_inv_omega_3_2;
-    let d2_f_velocity_eta_d_alpha_d_alpha_term_4 = R::TWO * d2_f_velocity_eta_d_alpha_d_alpha_term_1
-        + R::TWO * d2_f_velocity_eta_d_alpha_d_alpha_term_2
-        + R::TWO * d2_f_velocity_eta_d_alpha_d_alpha_term_3;
-    let d2_f_velocity_eta_d_alpha_d_alpha = reference_force * p.inv_m
-        * (d_cos_alpha_d_alpha * d2_f_velocity_eta_d_alpha_d_alpha_term_4
-            + d2_f_velocity_eta_d_velocity_d_alpha_term_3 * d2_cos_alpha_d_alpha_d_alpha)
+    let d2_f_velocity_eta_d_alpha_d_alpha = R::TWO
+        * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
+        + slope_of_f_velocity_eta_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_alpha_d_alpha
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_alpha_d_alpha
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_alpha_d_alpha; // ft/s^2/rad^2
-    let d2_f_velocity_d_alpha_d_alpha = reference_force * p.inv_m
-        * (R::TWO * d_cos_alpha_d_alpha * p.c_t_alpha
-            + c_t_alpha_alpha_plus_c_t_0 * d2_cos_alpha_d_alpha_d_alpha)
+    let d2_f_velocity_d_alpha_d_alpha = R::TWO * d_slope_of_f_velocity_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
+        + slope_of_f_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d2_f_velocity_eta_d_alpha_d_alpha; // ft/s^2/rad^2
-    let d2_g_velocity_d_alpha_d_alpha = reference_force * p.inv_m
-        * (R::TWO * d_cos_alpha_d_alpha * p.c_t_phi_alpha
-            + c_t_phi_alpha_alpha_plus_c_t_phi * d2_cos_alpha_d_alpha_d_alpha); // ft/s^2/rad^2
-    let d2_velocity_rate_printed_d_alpha_d_alpha = reference_force * p.inv_m
-        * d2_velocity_rate_printed_d_velocity_d_alpha_term_1
-        * d2_cos_alpha_d_alpha_d_alpha + d2_f_velocity_d_alpha_d_alpha
+    let d_slope_of_g_velocity_in_cos_alpha_d_alpha = reference_force
+        * p.c_t_phi_alpha_over_m; // ft/s^2/rad
+    let d2_g_velocity_d_alpha_d_alpha = R::TWO
+        * d_slope_of_g_velocity_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
+        + slope_of_g_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha; // ft/s^2/rad^2
+    let d2_velocity_rate_printed_d_alpha_d_alpha =
+        slope_of_velocity_rate_printed_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
+        + d2_f_velocity_d_alpha_d_alpha
         + u.phi * d2_g_velocity_d_alpha_d_alpha; // ft/s^2/rad^2
 
     // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_alpha_d_chi_1 = d_cos_alpha_d_alpha * reference_force
-        * p.c_t_eta_1_over_m; // ft^0.5/s^2/rad/slug^0.5
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = reference_force
+        * p.c_t_eta_1_over_m; // ft^0.5/s^2/slug^0.5
+    let d2_velocity_rate_printed_d_alpha_d_chi_1 = d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_velocity_rate_printed_d_alpha_d_chi_2 = d_cos_alpha_d_alpha * reference_force
-        * p.c_t_eta_2_over_m; // ft^0.5/s^2/rad/slug^0.5
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = reference_force
+        * p.c_t_eta_2_over_m; // ft^0.5/s^2/slug^0.5
+    let d2_velocity_rate_printed_d_alpha_d_chi_2 = d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_velocity_rate_printed_d_alpha_d_chi_3 = d_cos_alpha_d_alpha * reference_force
-        * p.c_t_eta_3_over_m; // ft^0.5/s^2/rad/slug^0.5
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3 = reference_force
+        * p.c_t_eta_3_over_m; // ft^0.5/s^2/slug^0.5
+    let d2_velocity_rate_printed_d_alpha_d_chi_3 = d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to gamma
     let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
@@ -505,22 +562,31 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to velocity
     let inv_velocity_3 = inv_velocity * inv_velocity_2;
     let d2_gravity_turn_d_velocity_d_velocity = R::TWO * gravity * inv_velocity_3; // s/ft^2
-    let d2_f_gamma_eta_d_velocity_d_velocity_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_velocity;
-    let d2_f_gamma_eta_d_velocity_d_velocity_term_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
-        * p.inv_omega_2_2 * d_generalized_force_2_d_velocity;
-    let d2_f_gamma_eta_d_velocity_d_velocity_term_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
-        * p.inv_omega_3_2 * d_generalized_force_3_d_velocity;
-    let d2_f_gamma_eta_d_velocity_d_velocity = d_turn_factor_d_velocity
-        * (R::TWO * d2_f_gamma_eta_d_velocity_d_velocity_term_1
-            + R::TWO * d2_f_gamma_eta_d_velocity_d_velocity_term_2
-            + R::TWO * d2_f_gamma_eta_d_velocity_d_velocity_term_3)
-        + d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_velocity
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
+        * p.inv_omega_1_2 * d_generalized_force_1_d_velocity
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2
+            * d_generalized_force_2_d_velocity
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2
+            * d_generalized_force_3_d_velocity; // rad*s/ft
+    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
+        * p.inv_omega_1_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
+        * p.inv_omega_2_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
+        * p.inv_omega_3_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+    let d2_f_gamma_eta_d_velocity_d_velocity = slope_of_f_gamma_eta_in_generalized_force_1
+        * d2_generalized_force_1_d_velocity_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_2
             * d2_generalized_force_2_d_velocity_d_velocity
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_velocity; // rad*s/ft^2
+        + slope_of_f_gamma_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_velocity_d_velocity
+        + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_velocity
+        + d_generalized_force_1_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
+        + d_generalized_force_2_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
+        + d_generalized_force_3_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
     let d2_f_gamma_d_velocity_d_velocity_term_1 = cos_gamma
         * d2_gravity_turn_d_velocity_d_velocity;
     let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
@@ -530,100 +596,98 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * d_density_d_altitude; // 1/ft^2
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * d_radius_ratio_d_altitude + inv_velocity_2 * d_gravity_d_altitude); // 1/ft^2
-    let d2_f_gamma_eta_d_velocity_d_altitude_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_altitude;
-    let d2_f_gamma_eta_d_velocity_d_altitude_term_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
-        * p.inv_omega_2_2 * d_generalized_force_2_d_altitude;
-    let d2_f_gamma_eta_d_velocity_d_altitude_term_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
-        * p.inv_omega_3_2 * d_generalized_force_3_d_altitude;
-    let d2_f_gamma_eta_d_velocity_d_altitude_term_4 = d2_f_gamma_eta_d_velocity_d_altitude_term_1
-        + d2_f_gamma_eta_d_velocity_d_altitude_term_2
-        + d2_f_gamma_eta_d_velocity_d_altitude_term_3;
-    let d2_f_gamma_eta_d_velocity_d_altitude_term_5 = d2_f_gamma_eta_d_velocity_d_velocity_term_1
-        + d2_f_gamma_eta_d_velocity_d_velocity_term_2
-        + d2_f_gamma_eta_d_velocity_d_velocity_term_3;
-    let d2_f_gamma_eta_d_velocity_d_altitude_term_6 = d2_f_gamma_eta_d_velocity_d_altitude_term_5
-        * d_turn_factor_d_altitude;
-    let d2_f_gamma_eta_d_velocity_d_altitude_term_7 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3;
-    let d2_f_gamma_eta_d_velocity_d_altitude_term_8 = d2_f_gamma_eta_d_velocity_d_altitude_term_7
-        * d2_turn_factor_d_velocity_d_altitude;
-    let d2_f_gamma_eta_d_velocity_d_altitude = d_turn_factor_d_velocity
-        * d2_f_gamma_eta_d_velocity_d_altitude_term_4
-        + d2_f_gamma_eta_d_velocity_d_altitude_term_6
-        + d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_altitude
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
+        * p.inv_omega_1_2 * d_generalized_force_1_d_altitude
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2
+            * d_generalized_force_2_d_altitude
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2
+            * d_generalized_force_3_d_altitude; // rad/ft
+    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
+        * p.inv_omega_1_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
+        * p.inv_omega_2_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
+        * p.inv_omega_3_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+    let d2_f_gamma_eta_d_velocity_d_altitude = slope_of_f_gamma_eta_in_generalized_force_1
+        * d2_generalized_force_1_d_velocity_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_2
             * d2_generalized_force_2_d_velocity_d_altitude
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
+        + slope_of_f_gamma_eta_in_generalized_force_3
             * d2_generalized_force_3_d_velocity_d_altitude
-        + d2_f_gamma_eta_d_velocity_d_altitude_term_8; // rad/ft^2
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
-    let d2_f_gamma_d_velocity_d_altitude_term_1 = p.c_l_0
-        + sin_alpha * c_t_phi_phi_plus_c_t_0;
-    let d2_f_gamma_d_velocity_d_altitude_term_2 = cos_gamma
+        + slope_of_f_gamma_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        + d_generalized_force_1_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + d_generalized_force_2_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + d_generalized_force_3_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+    let d2_f_gamma_d_velocity_d_altitude_term_1 = cos_gamma
         * d2_gravity_turn_d_velocity_d_altitude;
-    let d2_f_gamma_d_velocity_d_altitude = d2_f_gamma_d_velocity_d_altitude_term_1
-        * d2_turn_factor_d_velocity_d_altitude - d2_f_gamma_d_velocity_d_altitude_term_2
+    let d2_f_gamma_d_velocity_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        - d2_f_gamma_d_velocity_d_altitude_term_1
         + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
-    let d2_g_gamma_d_velocity_d_altitude = d_g_gamma_d_velocity_term_1
+    let d2_g_gamma_d_velocity_d_altitude = slope_of_g_gamma_in_turn_factor
         * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
-    let d2_gamma_rate_printed_d_velocity_d_altitude_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
-    let d2_gamma_rate_printed_d_velocity_d_altitude_term_2 = d2_gamma_rate_printed_d_velocity_d_altitude_term_1
-        * d2_turn_factor_d_velocity_d_altitude;
-    let d2_gamma_rate_printed_d_velocity_d_altitude = d2_gamma_rate_printed_d_velocity_d_altitude_term_2
-        + d2_f_gamma_d_velocity_d_altitude
+    let d2_gamma_rate_printed_d_velocity_d_altitude = slope_of_gamma_rate_printed_in_turn_factor
+        * d2_turn_factor_d_velocity_d_altitude + d2_f_gamma_d_velocity_d_altitude
         + x.alpha * d2_g_gamma_d_velocity_d_altitude; // rad/ft^2
 
     // Derivatives with respect to gamma
     let d2_f_gamma_d_velocity_d_gamma = -d_gravity_turn_d_velocity * d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d2_f_gamma_eta_d_velocity_d_alpha_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_alpha
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_alpha
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_alpha;
-    let d2_f_gamma_eta_d_velocity_d_alpha_term_2 = (turn_factor
-        * d2_f_velocity_eta_d_velocity_d_alpha_term_2
-        + d_turn_factor_d_velocity * d2_f_velocity_eta_d_velocity_d_alpha_term_3)
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = slope_of_velocity_rate_printed_in_cos_alpha_term_1
         * cos_alpha;
-    let d2_f_gamma_eta_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * d2_f_gamma_eta_d_velocity_d_alpha_term_1
-        + d2_f_gamma_eta_d_velocity_d_alpha_term_2
-        + d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_alpha
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
+    let d_slope_of_f_gamma_in_turn_factor_d_alpha = c_t_phi_phi_plus_c_t_0 * cos_alpha;
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = slope_of_f_velocity_eta_in_cos_alpha_term_1
+        * cos_alpha
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2
+            * d_generalized_force_1_d_alpha
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2
+            * d_generalized_force_2_d_alpha
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2
+            * d_generalized_force_3_d_alpha;
+    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = turn_factor
+        * p.c_t_eta_1_inv_omega_1_2 * cos_alpha; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = turn_factor
+        * p.c_t_eta_2_inv_omega_2_2 * cos_alpha; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha = turn_factor
+        * p.c_t_eta_3_inv_omega_3_2 * cos_alpha; // s/ft^0.5/slug^0.5
+    let d2_f_gamma_eta_d_velocity_d_alpha = slope_of_f_gamma_eta_in_generalized_force_1
+        * d2_generalized_force_1_d_velocity_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_2
             * d2_generalized_force_2_d_velocity_d_alpha
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_alpha; // 1/ft
-    let d2_f_gamma_d_velocity_d_alpha = d_turn_factor_d_velocity * c_t_phi_phi_plus_c_t_0
-        * cos_alpha + d2_f_gamma_eta_d_velocity_d_alpha; // 1/ft
+        + slope_of_f_gamma_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_velocity_d_alpha
+        + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
+        + d_generalized_force_1_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha; // 1/ft
+    let d2_f_gamma_d_velocity_d_alpha = d_turn_factor_d_velocity
+        * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_velocity_d_alpha; // 1/ft
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
     let d2_g_gamma_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * c_t_alpha_plus_c_t_phi_alpha_phi * cos_alpha; // 1/ft/rad
-    let d2_gamma_rate_printed_d_velocity_d_alpha_term_1 = d_turn_factor_d_velocity
-        * d2_velocity_rate_printed_d_velocity_d_alpha_term_1 * cos_alpha;
+        * d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/ft/rad
     let d2_gamma_rate_printed_d_velocity_d_alpha = d_g_gamma_d_velocity
-        + d2_gamma_rate_printed_d_velocity_d_alpha_term_1
-        + d2_f_gamma_d_velocity_d_alpha
-        + x.alpha * d2_g_gamma_d_velocity_d_alpha; // 1/ft
+        + d_turn_factor_d_velocity * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
+        + d2_f_gamma_d_velocity_d_alpha + x.alpha * d2_g_gamma_d_velocity_d_alpha; // 1/ft
 
     // Derivatives with respect to chi_1
     let d2_gamma_rate_printed_d_velocity_d_chi_1 = d_turn_factor_d_velocity
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_gamma_rate_printed_d_velocity_d_chi_2 = d_turn_factor_d_velocity
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d2_gamma_rate_printed_d_velocity_d_chi_3 = d_turn_factor_d_velocity
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
     let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
@@ -631,96 +695,96 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
         * inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_f_gamma_eta_d_altitude_d_altitude_term_1 = d2_f_gamma_eta_d_velocity_d_altitude_term_7
-        * d2_turn_factor_d_altitude_d_altitude;
     let d2_f_gamma_eta_d_altitude_d_altitude = d_turn_factor_d_altitude
-        * (R::TWO * d2_f_gamma_eta_d_velocity_d_altitude_term_1
-            + R::TWO * d2_f_gamma_eta_d_velocity_d_altitude_term_2
-            + R::TWO * d2_f_gamma_eta_d_velocity_d_altitude_term_3)
-        + d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        + d_generalized_force_1_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + d_generalized_force_2_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + d_generalized_force_3_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_1
             * d2_generalized_force_1_d_altitude_d_altitude
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
+        + slope_of_f_gamma_eta_in_generalized_force_2
             * d2_generalized_force_2_d_altitude_d_altitude
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
+        + slope_of_f_gamma_eta_in_generalized_force_3
             * d2_generalized_force_3_d_altitude_d_altitude
-        + d2_f_gamma_eta_d_altitude_d_altitude_term_1; // rad/s/ft^2
+        + slope_of_f_gamma_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_gamma_d_altitude_d_altitude_term_1 = cos_gamma
         * d2_gravity_turn_d_altitude_d_altitude;
-    let d2_f_gamma_d_altitude_d_altitude = d2_f_gamma_d_velocity_d_altitude_term_1
-        * d2_turn_factor_d_altitude_d_altitude - d2_f_gamma_d_altitude_d_altitude_term_1
+    let d2_f_gamma_d_altitude_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+        - d2_f_gamma_d_altitude_d_altitude_term_1
         + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_g_gamma_d_altitude_d_altitude = d_g_gamma_d_velocity_term_1
+    let d2_g_gamma_d_altitude_d_altitude = slope_of_g_gamma_in_turn_factor
         * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_gamma_rate_printed_d_altitude_d_altitude_term_1 = d2_gamma_rate_printed_d_velocity_d_altitude_term_1
-        * d2_turn_factor_d_altitude_d_altitude;
-    let d2_gamma_rate_printed_d_altitude_d_altitude = d2_gamma_rate_printed_d_altitude_d_altitude_term_1
-        + d2_f_gamma_d_altitude_d_altitude
+    let d2_gamma_rate_printed_d_altitude_d_altitude = slope_of_gamma_rate_printed_in_turn_factor
+        * d2_turn_factor_d_altitude_d_altitude + d2_f_gamma_d_altitude_d_altitude
         + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
     let d2_f_gamma_d_altitude_d_gamma = -d_gravity_turn_d_altitude * d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_f_gamma_eta_d_altitude_d_alpha_term_1 = (turn_factor
-        * d2_f_velocity_eta_d_altitude_d_alpha_term_1
-        + d_turn_factor_d_altitude * d2_f_velocity_eta_d_velocity_d_alpha_term_3)
-        * cos_alpha;
     let d2_f_gamma_eta_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * d2_f_gamma_eta_d_velocity_d_alpha_term_1
-        + d2_f_gamma_eta_d_altitude_d_alpha_term_1
-        + d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
+        + d_generalized_force_1_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_1
             * d2_generalized_force_1_d_altitude_d_alpha
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
+        + slope_of_f_gamma_eta_in_generalized_force_2
             * d2_generalized_force_2_d_altitude_d_alpha
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
+        + slope_of_f_gamma_eta_in_generalized_force_3
             * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
-    let d2_f_gamma_d_altitude_d_alpha = d_turn_factor_d_altitude * c_t_phi_phi_plus_c_t_0
-        * cos_alpha + d2_f_gamma_eta_d_altitude_d_alpha; // 1/s/ft
+    let d2_f_gamma_d_altitude_d_alpha = d_turn_factor_d_altitude
+        * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_altitude_d_alpha; // 1/s/ft
     let d2_g_gamma_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * c_t_alpha_plus_c_t_phi_alpha_phi * cos_alpha; // 1/s/ft/rad
-    let d2_gamma_rate_printed_d_altitude_d_alpha_term_1 = d_turn_factor_d_altitude
-        * d2_velocity_rate_printed_d_velocity_d_alpha_term_1 * cos_alpha;
+        * d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/s/ft/rad
     let d2_gamma_rate_printed_d_altitude_d_alpha = d_g_gamma_d_altitude
-        + d2_gamma_rate_printed_d_altitude_d_alpha_term_1
-        + d2_f_gamma_d_altitude_d_alpha
-        + x.alpha * d2_g_gamma_d_altitude_d_alpha; // 1/s/ft
+        + d_turn_factor_d_altitude * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
+        + d2_f_gamma_d_altitude_d_alpha + x.alpha * d2_g_gamma_d_altitude_d_alpha; // 1/s/ft
 
     // Derivatives with respect to chi_1
     let d2_gamma_rate_printed_d_altitude_d_chi_1 = d_turn_factor_d_altitude
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_gamma_rate_printed_d_altitude_d_chi_2 = d_turn_factor_d_altitude
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d2_gamma_rate_printed_d_altitude_d_chi_3 = d_turn_factor_d_altitude
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to gamma
     let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
     let d2_f_gamma_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d2_f_gamma_eta_d_alpha_d_alpha_term_1 = d2_f_velocity_eta_d_velocity_d_alpha_term_3
-        * d_cos_alpha_d_alpha;
-    let d2_f_gamma_eta_d_alpha_d_alpha = turn_factor
-        * (cos_alpha * d2_f_velocity_eta_d_alpha_d_alpha_term_4
-            + d2_f_gamma_eta_d_alpha_d_alpha_term_1)
-        + d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = turn_factor
+        * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1; // 1/s
+    let d2_f_gamma_eta_d_alpha_d_alpha = d_generalized_force_1_d_alpha
+        * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_alpha
+            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_alpha
+            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_1
             * d2_generalized_force_1_d_alpha_d_alpha
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
+        + slope_of_f_gamma_eta_in_generalized_force_2
             * d2_generalized_force_2_d_alpha_d_alpha
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_alpha_d_alpha; // 1/s/rad
-    let d2_f_gamma_d_alpha_d_alpha = turn_factor * c_t_phi_phi_plus_c_t_0
-        * d_cos_alpha_d_alpha + d2_f_gamma_eta_d_alpha_d_alpha; // 1/s/rad
-    let d2_g_gamma_d_alpha_d_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi
-        * d_cos_alpha_d_alpha; // 1/s/rad^2
-    let d2_gamma_rate_printed_d_alpha_d_alpha_term_1 = turn_factor
-        * d2_velocity_rate_printed_d_velocity_d_alpha_term_1 * d_cos_alpha_d_alpha;
+        + slope_of_f_gamma_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_alpha_d_alpha
+        + slope_of_f_gamma_eta_in_sin_alpha * d_cos_alpha_d_alpha
+        + cos_alpha * d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s/rad
+    let d2_f_gamma_d_alpha_d_alpha = slope_of_f_gamma_in_sin_alpha * d_cos_alpha_d_alpha
+        + d2_f_gamma_eta_d_alpha_d_alpha; // 1/s/rad
+    let d2_g_gamma_d_alpha_d_alpha = slope_of_g_gamma_in_sin_alpha * d_cos_alpha_d_alpha; // 1/s/rad^2
     let d2_gamma_rate_printed_d_alpha_d_alpha = R::TWO * d_g_gamma_d_alpha
-        + d2_gamma_rate_printed_d_alpha_d_alpha_term_1
+        + slope_of_gamma_rate_printed_in_sin_alpha * d_cos_alpha_d_alpha
         + d2_f_gamma_d_alpha_d_alpha
         + x.alpha * d2_g_gamma_d_alpha_d_alpha; // 1/s/rad
 
@@ -734,21 +798,26 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_gamma_rate_printed_d_alpha_d_chi_3 = cos_alpha * turn_factor * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to velocity
-    let d2_f_alpha_eta_d_velocity_d_velocity = -(p.inv_omega_3_2
-        * (d2_gamma_rate_printed_d_velocity_d_chi_3 * d_generalized_force_3_d_velocity
-            + d_gamma_rate_printed_d_chi_3
-                * d2_generalized_force_3_d_velocity_d_velocity)
-        + p.inv_omega_2_2
-            * (d2_gamma_rate_printed_d_velocity_d_chi_2
-                * d_generalized_force_2_d_velocity
-                + d_gamma_rate_printed_d_chi_2
-                    * d2_generalized_force_2_d_velocity_d_velocity)
-        + p.inv_omega_1_2
-            * (d2_gamma_rate_printed_d_velocity_d_chi_1
-                * d_generalized_force_1_d_velocity
-                + d_gamma_rate_printed_d_chi_1
-                    * d2_generalized_force_1_d_velocity_d_velocity)
-        + d2_f_gamma_eta_d_velocity_d_altitude_term_5 * d_turn_factor_d_velocity); // rad*s/ft^2
+    let d_slope_of_f_alpha_eta_in_turn_factor_d_velocity = -d_slope_of_f_gamma_eta_in_turn_factor_d_velocity;
+    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_1
+        * p.inv_omega_1_2; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_2
+        * p.inv_omega_2_2; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_3
+        * p.inv_omega_3_2; // rad*s^2/ft^1.5/slug^0.5
+    let d2_f_alpha_eta_d_velocity_d_velocity = slope_of_f_alpha_eta_in_generalized_force_1
+        * d2_generalized_force_1_d_velocity_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_2
+            * d2_generalized_force_2_d_velocity_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_velocity_d_velocity
+        + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_velocity
+        + d_generalized_force_1_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
+        + d_generalized_force_2_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
+        + d_generalized_force_3_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
     let d2_f_alpha_d_velocity_d_velocity = d2_f_gamma_d_velocity_d_velocity_term_1
         - gravity_turn
             * (cos_gamma * inv_velocity_2
@@ -757,152 +826,183 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d2_f_alpha_eta_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
-    let d2_f_alpha_eta_d_velocity_d_altitude = -(p.inv_omega_3_2
-        * (d2_gamma_rate_printed_d_velocity_d_chi_3 * d_generalized_force_3_d_altitude
-            + d_gamma_rate_printed_d_chi_3
-                * d2_generalized_force_3_d_velocity_d_altitude)
-        + p.inv_omega_2_2
-            * (d2_gamma_rate_printed_d_velocity_d_chi_2
-                * d_generalized_force_2_d_altitude
-                + d_gamma_rate_printed_d_chi_2
-                    * d2_generalized_force_2_d_velocity_d_altitude)
-        + p.inv_omega_1_2
-            * (d2_gamma_rate_printed_d_velocity_d_chi_1
-                * d_generalized_force_1_d_altitude
-                + d_gamma_rate_printed_d_chi_1
-                    * d2_generalized_force_1_d_velocity_d_altitude)
-        + d2_f_gamma_eta_d_velocity_d_altitude_term_6
-        + d2_f_gamma_eta_d_velocity_d_altitude_term_8); // rad/ft^2
-    let d2_f_alpha_d_velocity_d_altitude_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
-        + p.c_t_0;
-    let d2_f_alpha_d_velocity_d_altitude_term_2 = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + sin_alpha * d2_f_alpha_d_velocity_d_altitude_term_1;
-    let d2_f_alpha_d_velocity_d_altitude = d2_f_gamma_d_velocity_d_altitude_term_2
-        - d2_f_alpha_d_velocity_d_altitude_term_2 * d2_turn_factor_d_velocity_d_altitude
+    let d_slope_of_f_alpha_eta_in_turn_factor_d_altitude = -d_slope_of_f_gamma_eta_in_turn_factor_d_altitude; // rad/ft
+    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_1
+        * p.inv_omega_1_2; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_2
+        * p.inv_omega_2_2; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_3
+        * p.inv_omega_3_2; // rad*s/ft^1.5/slug^0.5
+    let d2_f_alpha_eta_d_velocity_d_altitude = slope_of_f_alpha_eta_in_generalized_force_1
+        * d2_generalized_force_1_d_velocity_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_2
+            * d2_generalized_force_2_d_velocity_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_velocity_d_altitude
+        + slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
+        + d_generalized_force_1_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
+        + d_generalized_force_2_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
+        + d_generalized_force_3_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+    let d2_f_alpha_d_velocity_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + d2_f_gamma_d_velocity_d_altitude_term_1
         + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
-    let d2_alpha_rate_printed_d_velocity_d_altitude = d2_f_alpha_d_velocity_d_altitude
-        - d2_gamma_rate_printed_d_velocity_d_altitude_term_2; // rad/ft^2
+    let d2_alpha_rate_printed_d_velocity_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
+        * d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
 
     // Derivatives with respect to gamma
     let d2_f_alpha_d_velocity_d_gamma = d_gravity_turn_d_velocity * d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d2_f_alpha_eta_d_velocity_d_alpha = -(p.inv_omega_3_2
-        * (d2_gamma_rate_printed_d_velocity_d_chi_3 * d_generalized_force_3_d_alpha
-            + d_gamma_rate_printed_d_chi_3 * d2_generalized_force_3_d_velocity_d_alpha)
-        + p.inv_omega_2_2
-            * (d2_gamma_rate_printed_d_velocity_d_chi_2 * d_generalized_force_2_d_alpha
-                + d_gamma_rate_printed_d_chi_2
-                    * d2_generalized_force_2_d_velocity_d_alpha)
-        + p.inv_omega_1_2
-            * (d2_gamma_rate_printed_d_velocity_d_chi_1 * d_generalized_force_1_d_alpha
-                + d_gamma_rate_printed_d_chi_1
-                    * d2_generalized_force_1_d_velocity_d_alpha)
-        + d2_f_gamma_eta_d_velocity_d_alpha_term_2); // 1/ft
-    let d2_f_alpha_d_velocity_d_alpha = d2_f_alpha_eta_d_velocity_d_alpha
-        - d_g_gamma_d_velocity
-        - d_turn_factor_d_velocity * d2_f_alpha_d_velocity_d_altitude_term_1 * cos_alpha; // 1/ft
-    let d2_alpha_rate_printed_d_velocity_d_alpha = d2_f_alpha_d_velocity_d_alpha
-        - d2_gamma_rate_printed_d_velocity_d_alpha_term_1; // 1/ft
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
+    let d_slope_of_f_alpha_in_turn_factor_d_alpha = -(p.c_l_alpha
+        + slope_of_g_gamma_in_turn_factor_term_1
+        + slope_of_f_alpha_in_turn_factor_term_1 * cos_alpha);
+    let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
+    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_1
+        * p.inv_omega_1_2; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_2
+        * p.inv_omega_2_2; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_3
+        * p.inv_omega_3_2; // s/ft^0.5/slug^0.5
+    let d2_f_alpha_eta_d_velocity_d_alpha = slope_of_f_alpha_eta_in_generalized_force_1
+        * d2_generalized_force_1_d_velocity_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_2
+            * d2_generalized_force_2_d_velocity_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_velocity_d_alpha
+        + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
+        + d_generalized_force_1_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_velocity
+            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha; // 1/ft
+    let d2_f_alpha_d_velocity_d_alpha = d_turn_factor_d_velocity
+        * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_velocity_d_alpha; // 1/ft
+    let d2_alpha_rate_printed_d_velocity_d_alpha = d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
+        + d2_f_alpha_d_velocity_d_alpha; // 1/ft
 
     // Derivatives with respect to chi_1
-    let d2_alpha_rate_printed_d_velocity_d_chi_1 = -d2_gamma_rate_printed_d_velocity_d_chi_1; // rad/ft^1.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1;
+    let d2_alpha_rate_printed_d_velocity_d_chi_1 = d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_alpha_rate_printed_d_velocity_d_chi_2 = -d2_gamma_rate_printed_d_velocity_d_chi_2; // rad/ft^1.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2 = -d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2;
+    let d2_alpha_rate_printed_d_velocity_d_chi_2 = d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_alpha_rate_printed_d_velocity_d_chi_3 = -d2_gamma_rate_printed_d_velocity_d_chi_3; // rad/ft^1.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3 = -d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3;
+    let d2_alpha_rate_printed_d_velocity_d_chi_3 = d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
-    let d2_f_alpha_eta_d_altitude_d_altitude = -(p.inv_omega_3_2
-        * (d2_gamma_rate_printed_d_altitude_d_chi_3 * d_generalized_force_3_d_altitude
-            + d_gamma_rate_printed_d_chi_3
-                * d2_generalized_force_3_d_altitude_d_altitude)
-        + p.inv_omega_2_2
-            * (d2_gamma_rate_printed_d_altitude_d_chi_2
-                * d_generalized_force_2_d_altitude
-                + d_gamma_rate_printed_d_chi_2
-                    * d2_generalized_force_2_d_altitude_d_altitude)
-        + p.inv_omega_1_2
-            * (d2_gamma_rate_printed_d_altitude_d_chi_1
-                * d_generalized_force_1_d_altitude
-                + d_gamma_rate_printed_d_chi_1
-                    * d2_generalized_force_1_d_altitude_d_altitude)
-        + d2_f_gamma_eta_d_velocity_d_altitude_term_4 * d_turn_factor_d_altitude
-        + d2_f_gamma_eta_d_altitude_d_altitude_term_1); // rad/s/ft^2
-    let d2_f_alpha_d_altitude_d_altitude = d2_f_gamma_d_altitude_d_altitude_term_1
-        - d2_f_alpha_d_velocity_d_altitude_term_2 * d2_turn_factor_d_altitude_d_altitude
+    let d2_f_alpha_eta_d_altitude_d_altitude = d_turn_factor_d_altitude
+        * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
+        + d_generalized_force_1_d_altitude
+            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
+        + d_generalized_force_2_d_altitude
+            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
+        + d_generalized_force_3_d_altitude
+            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_1
+            * d2_generalized_force_1_d_altitude_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_2
+            * d2_generalized_force_2_d_altitude_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_altitude_d_altitude
+        + slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_f_alpha_d_altitude_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+        + d2_f_gamma_d_altitude_d_altitude_term_1
         + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_alpha_rate_printed_d_altitude_d_altitude = d2_f_alpha_d_altitude_d_altitude
-        - d2_gamma_rate_printed_d_altitude_d_altitude_term_1; // rad/s/ft^2
+    let d2_alpha_rate_printed_d_altitude_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
+        * d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
     let d2_f_alpha_d_altitude_d_gamma = d_gravity_turn_d_altitude * d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_f_alpha_eta_d_altitude_d_alpha = -(p.inv_omega_3_2
-        * (d2_gamma_rate_printed_d_altitude_d_chi_3 * d_generalized_force_3_d_alpha
-            + d_gamma_rate_printed_d_chi_3 * d2_generalized_force_3_d_altitude_d_alpha)
-        + p.inv_omega_2_2
-            * (d2_gamma_rate_printed_d_altitude_d_chi_2 * d_generalized_force_2_d_alpha
-                + d_gamma_rate_printed_d_chi_2
-                    * d2_generalized_force_2_d_altitude_d_alpha)
-        + p.inv_omega_1_2
-            * (d2_gamma_rate_printed_d_altitude_d_chi_1 * d_generalized_force_1_d_alpha
-                + d_gamma_rate_printed_d_chi_1
-                    * d2_generalized_force_1_d_altitude_d_alpha)
-        + d2_f_gamma_eta_d_altitude_d_alpha_term_1); // 1/s/ft
-    let d2_f_alpha_d_altitude_d_alpha = d2_f_alpha_eta_d_altitude_d_alpha
-        - d_g_gamma_d_altitude
-        - d_turn_factor_d_altitude * d2_f_alpha_d_velocity_d_altitude_term_1 * cos_alpha; // 1/s/ft
-    let d2_alpha_rate_printed_d_altitude_d_alpha = d2_f_alpha_d_altitude_d_alpha
-        - d2_gamma_rate_printed_d_altitude_d_alpha_term_1; // 1/s/ft
+    let d2_f_alpha_eta_d_altitude_d_alpha = d_turn_factor_d_altitude
+        * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
+        + d_generalized_force_1_d_altitude
+            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_altitude
+            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_altitude
+            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_1
+            * d2_generalized_force_1_d_altitude_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_2
+            * d2_generalized_force_2_d_altitude_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
+    let d2_f_alpha_d_altitude_d_alpha = d_turn_factor_d_altitude
+        * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_altitude_d_alpha; // 1/s/ft
+    let d2_alpha_rate_printed_d_altitude_d_alpha = d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
+        + d2_f_alpha_d_altitude_d_alpha; // 1/s/ft
 
     // Derivatives with respect to chi_1
-    let d2_alpha_rate_printed_d_altitude_d_chi_1 = -d2_gamma_rate_printed_d_altitude_d_chi_1; // rad/s/ft^1.5/slug^0.5
+    let d2_alpha_rate_printed_d_altitude_d_chi_1 = d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_alpha_rate_printed_d_altitude_d_chi_2 = -d2_gamma_rate_printed_d_altitude_d_chi_2; // rad/s/ft^1.5/slug^0.5
+    let d2_alpha_rate_printed_d_altitude_d_chi_2 = d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_alpha_rate_printed_d_altitude_d_chi_3 = -d2_gamma_rate_printed_d_altitude_d_chi_3; // rad/s/ft^1.5/slug^0.5
+    let d2_alpha_rate_printed_d_altitude_d_chi_3 = d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to gamma
     let d2_f_alpha_d_gamma_d_gamma = gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d2_f_alpha_eta_d_alpha_d_alpha = -(p.inv_omega_3_2
-        * (d2_gamma_rate_printed_d_alpha_d_chi_3 * d_generalized_force_3_d_alpha
-            + d_gamma_rate_printed_d_chi_3 * d2_generalized_force_3_d_alpha_d_alpha)
-        + p.inv_omega_2_2
-            * (d2_gamma_rate_printed_d_alpha_d_chi_2 * d_generalized_force_2_d_alpha
-                + d_gamma_rate_printed_d_chi_2 * d2_generalized_force_2_d_alpha_d_alpha)
-        + p.inv_omega_1_2
-            * (d2_gamma_rate_printed_d_alpha_d_chi_1 * d_generalized_force_1_d_alpha
-                + d_gamma_rate_printed_d_chi_1 * d2_generalized_force_1_d_alpha_d_alpha)
-        + turn_factor
-            * ((d2_f_velocity_eta_d_alpha_d_alpha_term_1
-                + d2_f_velocity_eta_d_alpha_d_alpha_term_2
-                + d2_f_velocity_eta_d_alpha_d_alpha_term_3) * cos_alpha
-                + d2_f_gamma_eta_d_alpha_d_alpha_term_1)); // 1/s/rad
-    let d2_f_alpha_d_alpha_d_alpha = d2_f_alpha_eta_d_alpha_d_alpha
-        - R::TWO * d_g_gamma_d_alpha
-        - turn_factor * d2_f_alpha_d_velocity_d_altitude_term_1 * d_cos_alpha_d_alpha; // 1/s/rad
-    let d2_alpha_rate_printed_d_alpha_d_alpha = d2_f_alpha_d_alpha_d_alpha
-        - d2_gamma_rate_printed_d_alpha_d_alpha_term_1; // 1/s/rad
+    let d_slope_of_f_alpha_in_sin_alpha_d_alpha = -slope_of_g_gamma_in_sin_alpha; // 1/s
+    let d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha = -d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s
+    let d2_f_alpha_eta_d_alpha_d_alpha = d_generalized_force_1_d_alpha
+        * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_alpha
+            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_alpha
+            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_1
+            * d2_generalized_force_1_d_alpha_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_2
+            * d2_generalized_force_2_d_alpha_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_alpha_d_alpha
+        + slope_of_f_alpha_eta_in_sin_alpha * d_cos_alpha_d_alpha
+        + cos_alpha * d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha; // 1/s/rad
+    let d_alpha_slope_alpha_d_alpha = cos_alpha
+        * d_slope_of_f_alpha_in_sin_alpha_d_alpha; // 1/s/rad
+    let d2_f_alpha_d_alpha_d_alpha = slope_of_f_alpha_in_sin_alpha * d_cos_alpha_d_alpha
+        - d_g_gamma_d_alpha
+        + d_alpha_slope_alpha_d_alpha
+        + d2_f_alpha_eta_d_alpha_d_alpha; // 1/s/rad
+    let d2_alpha_rate_printed_d_alpha_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
+        * d_cos_alpha_d_alpha + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
-    let d2_alpha_rate_printed_d_alpha_d_chi_1 = -d2_gamma_rate_printed_d_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -turn_factor * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_1 = cos_alpha
+        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_alpha_rate_printed_d_alpha_d_chi_2 = -d2_gamma_rate_printed_d_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -turn_factor * p.c_t_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_2 = cos_alpha
+        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_alpha_rate_printed_d_alpha_d_chi_3 = -d2_gamma_rate_printed_d_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -turn_factor * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_3 = cos_alpha
+        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to velocity
     let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1 = p
@@ -926,13 +1026,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
             * d2_generalized_force_2_d_velocity_d_velocity
         + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_velocity; // rad/ft^2
-    let d2_f_pitch_rate_d_velocity_d_velocity_term_1 = p.z_t
-        * d2_f_alpha_d_velocity_d_altitude_term_1
-        + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0);
-    let d2_f_pitch_rate_d_velocity_d_velocity = d2_f_pitch_rate_d_velocity_d_velocity_term_1
-        * p.s_over_i_yy * density + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
+    let d2_f_pitch_rate_d_velocity_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
+        * density + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
     let d2_g_pitch_rate_d_velocity_d_velocity = p
-        .d2_g_pitch_rate_d_velocity_d_velocity_constant_1 * density; // 1/ft^2
+        .slope_of_g_pitch_rate_in_dynamic_pressure * density; // 1/ft^2
     let d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
@@ -965,18 +1062,23 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
             * d2_generalized_force_2_d_velocity_d_altitude
         + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_f_pitch_rate_d_velocity_d_altitude = d2_f_pitch_rate_d_velocity_d_velocity_term_1
-        * d2_reference_force_d_velocity_d_altitude * p.inv_i_yy
+    let d2_f_pitch_rate_d_velocity_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_velocity_d_altitude
         + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_g_pitch_rate_d_velocity_d_altitude = p.g_pitch_rate_constant_1
-        * d2_reference_force_d_velocity_d_altitude; // 1/s/ft^2
+    let d2_g_pitch_rate_d_velocity_d_altitude = p
+        .slope_of_g_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft^2
     let d2_pitch_rate_rate_printed_d_velocity_d_altitude = d2_reference_force_d_velocity_d_altitude
         * p.inv_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1
         + d2_f_pitch_rate_d_velocity_d_altitude
         + u.delta_e * d2_g_pitch_rate_d_velocity_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to alpha
-    let d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1 = p.d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_alpha
+    let d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha = p.s_over_i_yy
+        * (p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi
+            + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha)); // ft^2/s^2/lb
+    let d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1 =
+        p.d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_alpha
         + p.d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_alpha
         + p.d_f_pitch_rate_eta_d_velocity_constant_3 * d_generalized_force_3_d_alpha;
     let d2_f_pitch_rate_eta_d_velocity_d_alpha = d_reference_force_d_velocity
@@ -987,11 +1089,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
             * d2_generalized_force_2_d_velocity_d_alpha
         + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
-    let d2_f_pitch_rate_d_velocity_d_alpha_term_1 = p.z_t
-        * c_t_alpha_plus_c_t_phi_alpha_phi
-        + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha);
-    let d2_f_pitch_rate_d_velocity_d_alpha = d_reference_force_d_velocity * p.inv_i_yy
-        * d2_f_pitch_rate_d_velocity_d_alpha_term_1
+    let d2_f_pitch_rate_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
+        * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_velocity_d_alpha; // 1/s/ft
 
     // Derivatives with respect to chi_1
@@ -1020,11 +1119,12 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
             * d2_generalized_force_2_d_altitude_d_altitude
         + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_f_pitch_rate_d_altitude_d_altitude = d2_f_pitch_rate_d_velocity_d_velocity_term_1
-        * d2_reference_force_d_altitude_d_altitude * p.inv_i_yy
+    let d2_f_pitch_rate_d_altitude_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude
         + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_g_pitch_rate_d_altitude_d_altitude = p.g_pitch_rate_constant_1
-        * d2_reference_force_d_altitude_d_altitude; // 1/s^2/ft^2
+    let d2_g_pitch_rate_d_altitude_d_altitude = p
+        .slope_of_g_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft^2
     let d2_pitch_rate_rate_printed_d_altitude_d_altitude = d2_reference_force_d_altitude_d_altitude
         * p.inv_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1
         + d2_f_pitch_rate_d_altitude_d_altitude
@@ -1039,8 +1139,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
             * d2_generalized_force_2_d_altitude_d_alpha
         + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/ft
-    let d2_f_pitch_rate_d_altitude_d_alpha = d_reference_force_d_altitude * p.inv_i_yy
-        * d2_f_pitch_rate_d_velocity_d_alpha_term_1
+    let d2_f_pitch_rate_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
+        * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_altitude_d_alpha; // 1/s^2/ft
 
     // Derivatives with respect to chi_1
@@ -1139,257 +1239,5 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
 #[inline]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
-    let [velocity_by_velocity_velocity, velocity_by_altitude_velocity,
-    velocity_by_altitude_altitude, velocity_by_gamma_altitude, velocity_by_gamma_gamma,
-    velocity_by_alpha_velocity, velocity_by_alpha_altitude, velocity_by_alpha_alpha,
-    velocity_by_chi_1_velocity, velocity_by_chi_1_altitude, velocity_by_chi_1_alpha,
-    velocity_by_chi_2_velocity, velocity_by_chi_2_altitude, velocity_by_chi_2_alpha,
-    velocity_by_chi_3_velocity, velocity_by_chi_3_altitude, velocity_by_chi_3_alpha,
-    altitude_by_gamma_velocity, altitude_by_gamma_gamma, gamma_by_velocity_velocity,
-    gamma_by_altitude_velocity, gamma_by_altitude_altitude, gamma_by_gamma_velocity,
-    gamma_by_gamma_altitude, gamma_by_gamma_gamma, gamma_by_alpha_velocity,
-    gamma_by_alpha_altitude, gamma_by_alpha_alpha, gamma_by_chi_1_velocity,
-    gamma_by_chi_1_altitude, gamma_by_chi_1_alpha, gamma_by_chi_2_velocity,
-    gamma_by_chi_2_altitude, gamma_by_chi_2_alpha, gamma_by_chi_3_velocity,
-    gamma_by_chi_3_altitude, gamma_by_chi_3_alpha, alpha_by_velocity_velocity,
-    alpha_by_altitude_velocity, alpha_by_altitude_altitude, alpha_by_gamma_velocity,
-    alpha_by_gamma_altitude, alpha_by_gamma_gamma, alpha_by_alpha_velocity,
-    alpha_by_alpha_altitude, alpha_by_alpha_alpha, alpha_by_chi_1_velocity,
-    alpha_by_chi_1_altitude, alpha_by_chi_1_alpha, alpha_by_chi_2_velocity,
-    alpha_by_chi_2_altitude, alpha_by_chi_2_alpha, alpha_by_chi_3_velocity,
-    alpha_by_chi_3_altitude, alpha_by_chi_3_alpha, pitch_rate_by_velocity_velocity,
-    pitch_rate_by_altitude_velocity, pitch_rate_by_altitude_altitude,
-    pitch_rate_by_alpha_velocity, pitch_rate_by_alpha_altitude,
-    pitch_rate_by_alpha_alpha, pitch_rate_by_chi_1_velocity,
-    pitch_rate_by_chi_1_altitude, pitch_rate_by_chi_2_velocity,
-    pitch_rate_by_chi_2_altitude, pitch_rate_by_chi_3_velocity,
-    pitch_rate_by_chi_3_altitude] = hessian_values(x, u, p);
-
-    // Result
-    let no_state = State::splat(R::ZERO);
-    let no_state_state = State::splat(no_state);
-    let no_state_state_state = State::splat(no_state_state);
-    State {
-        velocity: State {
-            velocity: State {
-                velocity: velocity_by_velocity_velocity,
-                altitude: velocity_by_altitude_velocity,
-                alpha: velocity_by_alpha_velocity,
-                chi_1: velocity_by_chi_1_velocity,
-                chi_2: velocity_by_chi_2_velocity,
-                chi_3: velocity_by_chi_3_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: velocity_by_altitude_velocity,
-                altitude: velocity_by_altitude_altitude,
-                gamma: velocity_by_gamma_altitude,
-                alpha: velocity_by_alpha_altitude,
-                chi_1: velocity_by_chi_1_altitude,
-                chi_2: velocity_by_chi_2_altitude,
-                chi_3: velocity_by_chi_3_altitude,
-                ..no_state
-            },
-            gamma: State {
-                altitude: velocity_by_gamma_altitude,
-                gamma: velocity_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: velocity_by_alpha_velocity,
-                altitude: velocity_by_alpha_altitude,
-                alpha: velocity_by_alpha_alpha,
-                chi_1: velocity_by_chi_1_alpha,
-                chi_2: velocity_by_chi_2_alpha,
-                chi_3: velocity_by_chi_3_alpha,
-                ..no_state
-            },
-            chi_1: State {
-                velocity: velocity_by_chi_1_velocity,
-                altitude: velocity_by_chi_1_altitude,
-                alpha: velocity_by_chi_1_alpha,
-                ..no_state
-            },
-            chi_2: State {
-                velocity: velocity_by_chi_2_velocity,
-                altitude: velocity_by_chi_2_altitude,
-                alpha: velocity_by_chi_2_alpha,
-                ..no_state
-            },
-            chi_3: State {
-                velocity: velocity_by_chi_3_velocity,
-                altitude: velocity_by_chi_3_altitude,
-                alpha: velocity_by_chi_3_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        altitude: State {
-            velocity: State {
-                gamma: altitude_by_gamma_velocity,
-                ..no_state
-            },
-            gamma: State {
-                velocity: altitude_by_gamma_velocity,
-                gamma: altitude_by_gamma_gamma,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        gamma: State {
-            velocity: State {
-                velocity: gamma_by_velocity_velocity,
-                altitude: gamma_by_altitude_velocity,
-                gamma: gamma_by_gamma_velocity,
-                alpha: gamma_by_alpha_velocity,
-                chi_1: gamma_by_chi_1_velocity,
-                chi_2: gamma_by_chi_2_velocity,
-                chi_3: gamma_by_chi_3_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: gamma_by_altitude_velocity,
-                altitude: gamma_by_altitude_altitude,
-                gamma: gamma_by_gamma_altitude,
-                alpha: gamma_by_alpha_altitude,
-                chi_1: gamma_by_chi_1_altitude,
-                chi_2: gamma_by_chi_2_altitude,
-                chi_3: gamma_by_chi_3_altitude,
-                ..no_state
-            },
-            gamma: State {
-                velocity: gamma_by_gamma_velocity,
-                altitude: gamma_by_gamma_altitude,
-                gamma: gamma_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: gamma_by_alpha_velocity,
-                altitude: gamma_by_alpha_altitude,
-                alpha: gamma_by_alpha_alpha,
-                chi_1: gamma_by_chi_1_alpha,
-                chi_2: gamma_by_chi_2_alpha,
-                chi_3: gamma_by_chi_3_alpha,
-                ..no_state
-            },
-            chi_1: State {
-                velocity: gamma_by_chi_1_velocity,
-                altitude: gamma_by_chi_1_altitude,
-                alpha: gamma_by_chi_1_alpha,
-                ..no_state
-            },
-            chi_2: State {
-                velocity: gamma_by_chi_2_velocity,
-                altitude: gamma_by_chi_2_altitude,
-                alpha: gamma_by_chi_2_alpha,
-                ..no_state
-            },
-            chi_3: State {
-                velocity: gamma_by_chi_3_velocity,
-                altitude: gamma_by_chi_3_altitude,
-                alpha: gamma_by_chi_3_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        alpha: State {
-            velocity: State {
-                velocity: alpha_by_velocity_velocity,
-                altitude: alpha_by_altitude_velocity,
-                gamma: alpha_by_gamma_velocity,
-                alpha: alpha_by_alpha_velocity,
-                chi_1: alpha_by_chi_1_velocity,
-                chi_2: alpha_by_chi_2_velocity,
-                chi_3: alpha_by_chi_3_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: alpha_by_altitude_velocity,
-                altitude: alpha_by_altitude_altitude,
-                gamma: alpha_by_gamma_altitude,
-                alpha: alpha_by_alpha_altitude,
-                chi_1: alpha_by_chi_1_altitude,
-                chi_2: alpha_by_chi_2_altitude,
-                chi_3: alpha_by_chi_3_altitude,
-                ..no_state
-            },
-            gamma: State {
-                velocity: alpha_by_gamma_velocity,
-                altitude: alpha_by_gamma_altitude,
-                gamma: alpha_by_gamma_gamma,
-                ..no_state
-            },
-            alpha: State {
-                velocity: alpha_by_alpha_velocity,
-                altitude: alpha_by_alpha_altitude,
-                alpha: alpha_by_alpha_alpha,
-                chi_1: alpha_by_chi_1_alpha,
-                chi_2: alpha_by_chi_2_alpha,
-                chi_3: alpha_by_chi_3_alpha,
-                ..no_state
-            },
-            chi_1: State {
-                velocity: alpha_by_chi_1_velocity,
-                altitude: alpha_by_chi_1_altitude,
-                alpha: alpha_by_chi_1_alpha,
-                ..no_state
-            },
-            chi_2: State {
-                velocity: alpha_by_chi_2_velocity,
-                altitude: alpha_by_chi_2_altitude,
-                alpha: alpha_by_chi_2_alpha,
-                ..no_state
-            },
-            chi_3: State {
-                velocity: alpha_by_chi_3_velocity,
-                altitude: alpha_by_chi_3_altitude,
-                alpha: alpha_by_chi_3_alpha,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        pitch_rate: State {
-            velocity: State {
-                velocity: pitch_rate_by_velocity_velocity,
-                altitude: pitch_rate_by_altitude_velocity,
-                alpha: pitch_rate_by_alpha_velocity,
-                chi_1: pitch_rate_by_chi_1_velocity,
-                chi_2: pitch_rate_by_chi_2_velocity,
-                chi_3: pitch_rate_by_chi_3_velocity,
-                ..no_state
-            },
-            altitude: State {
-                velocity: pitch_rate_by_altitude_velocity,
-                altitude: pitch_rate_by_altitude_altitude,
-                alpha: pitch_rate_by_alpha_altitude,
-                chi_1: pitch_rate_by_chi_1_altitude,
-                chi_2: pitch_rate_by_chi_2_altitude,
-                chi_3: pitch_rate_by_chi_3_altitude,
-                ..no_state
-            },
-            alpha: State {
-                velocity: pitch_rate_by_alpha_velocity,
-                altitude: pitch_rate_by_alpha_altitude,
-                alpha: pitch_rate_by_alpha_alpha,
-                ..no_state
-            },
-            chi_1: State {
-                velocity: pitch_rate_by_chi_1_velocity,
-                altitude: pitch_rate_by_chi_1_altitude,
-                ..no_state
-            },
-            chi_2: State {
-                velocity: pitch_rate_by_chi_2_velocity,
-                altitude: pitch_rate_by_chi_2_altitude,
-                ..no_state
-            },
-            chi_3: State {
-                velocity: pitch_rate_by_chi_3_velocity,
-                altitude: pitch_rate_by_chi_3_altitude,
-                ..no_state
-            },
-            ..no_state_state
-        },
-        ..no_state_state_state
-    }
+    HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
 }

@@ -68,7 +68,7 @@ pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 470 operations: 144 additions, 321 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 495 operations: 157 additions, 333 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn jacobians_values<R: Real>(
     x: &State<R>,
@@ -103,21 +103,21 @@ pub fn jacobians_values<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -134,41 +134,43 @@ pub fn jacobians_values<R: Real>(
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * c_t_phi_alpha_alpha_plus_c_t_phi; // ft/s^2
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let g_gamma_term_1 = p.c_l_alpha + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * g_gamma_term_1; // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let g_pitch_rate = reference_force * p.g_pitch_rate_constant_1; // 1/s^2
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
+    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
+    let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
+    let slope_of_f_velocity_in_dynamic_pressure = (cos_alpha * c_t_alpha_alpha_plus_c_t_0
+        - p.c_d_alpha * x.alpha - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
+        - p.c_d_0) * p.s_over_m; // ft^3/s^2/lb
+    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft^3/s^2/lb
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let d_f_velocity_eta_d_velocity_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3;
-    let d_f_velocity_eta_d_velocity = p.inv_m
-        * (reference_force
-            * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-                * d_generalized_force_1_d_velocity
-                + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                    * d_generalized_force_2_d_velocity
-                + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                    * d_generalized_force_3_d_velocity)
-            + d_reference_force_d_velocity * d_f_velocity_eta_d_velocity_term_1); // 1/s
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
-    let d_f_velocity_d_velocity_term_1 = cos_alpha * c_t_alpha_alpha_plus_c_t_0
-        - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
-        - p.c_d_0;
-    let d_f_velocity_d_velocity = d_f_velocity_d_velocity_term_1
-        * d_reference_force_d_velocity * p.inv_m + d_f_velocity_eta_d_velocity; // 1/s
-    let d_g_velocity_d_velocity = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * d_reference_force_d_velocity * p.inv_m; // 1/s
+    let d_f_velocity_eta_d_velocity = reference_force * p.inv_m
+        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * d_generalized_force_1_d_velocity
+            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * d_generalized_force_2_d_velocity
+            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * d_generalized_force_3_d_velocity)
+        + slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_velocity; // 1/s
+    let d_f_velocity_d_velocity = slope_of_f_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_velocity + d_f_velocity_eta_d_velocity; // 1/s
+    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
+        * cos_alpha * p.s_over_m; // ft^3/s^2/lb
+    let d_g_velocity_d_velocity = slope_of_g_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_velocity; // 1/s
     let d_velocity_rate_printed_d_velocity_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
         + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
         + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
@@ -176,52 +178,69 @@ pub fn jacobians_values<R: Real>(
         * d_velocity_rate_printed_d_velocity_term_1 + d_f_velocity_d_velocity
         + u.phi * d_g_velocity_d_velocity; // 1/s
     let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
     let inv_velocity_2 = inv_velocity * inv_velocity;
     let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
         + p.earth_curvature * radius_ratio); // 1/ft
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let d_f_gamma_eta_d_velocity_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3;
-    let d_f_gamma_eta_d_velocity = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_velocity
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-                * d_generalized_force_2_d_velocity
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-                * d_generalized_force_3_d_velocity)
-        + d_f_gamma_eta_d_velocity_term_1 * d_turn_factor_d_velocity; // rad/ft
     let c_t_phi_phi = p.c_t_phi * u.phi;
     let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
-    let d_f_gamma_d_velocity_term_1 = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0;
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0; // rad
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+    let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor
+        * d_turn_factor_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
     let cos_gamma_d_gravity_turn_d_velocity = cos_gamma * d_gravity_turn_d_velocity;
-    let d_f_gamma_d_velocity = d_f_gamma_d_velocity_term_1 * d_turn_factor_d_velocity
+    let d_f_gamma_d_velocity = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_velocity
         - cos_gamma_d_gravity_turn_d_velocity
         + d_f_gamma_eta_d_velocity; // rad/ft
-    let d_g_gamma_d_velocity = g_gamma_term_1 * d_turn_factor_d_velocity; // 1/ft
-    let d_gamma_rate_printed_d_velocity_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
-    let d_gamma_rate_printed_d_velocity_term_2 = d_gamma_rate_printed_d_velocity_term_1
-        * d_turn_factor_d_velocity;
-    let d_gamma_rate_printed_d_velocity = d_gamma_rate_printed_d_velocity_term_2
+    let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_velocity; // 1/ft
+    let d_gamma_rate_printed_d_velocity = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_velocity
         + d_f_gamma_d_velocity
         + x.alpha * d_g_gamma_d_velocity; // rad/ft
-    let d_f_alpha_eta_d_velocity = -d_f_gamma_eta_d_velocity; // rad/ft
-    let d_f_alpha_d_velocity_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
+    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
+    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
         + c_t_alpha_alpha
         + c_t_phi_phi
         + p.c_t_0;
-    let d_f_alpha_d_velocity_term_2 = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + sin_alpha * d_f_alpha_d_velocity_term_1;
+    let slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
+        + sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
+    let slope_of_f_alpha_eta_in_turn_factor = -slope_of_f_gamma_eta_in_turn_factor; // rad
+    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
+    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
+    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
+    let d_f_alpha_eta_d_velocity = slope_of_f_alpha_eta_in_turn_factor
+        * d_turn_factor_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
     let d_f_alpha_d_velocity = cos_gamma_d_gravity_turn_d_velocity
-        - d_f_alpha_d_velocity_term_2 * d_turn_factor_d_velocity
+        + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_velocity
         + d_f_alpha_eta_d_velocity; // rad/ft
-    let d_alpha_rate_printed_d_velocity = d_f_alpha_d_velocity
-        - d_gamma_rate_printed_d_velocity_term_2; // rad/ft
+    let d_alpha_rate_printed_d_velocity = slope_of_alpha_rate_printed_in_turn_factor
+        * d_turn_factor_d_velocity + d_f_alpha_d_velocity; // rad/ft
+    let slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
+        * slope_of_f_alpha_in_turn_factor_term_1
+        + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
+        * p.s_over_i_yy; // rad*ft^2/s^2/lb
     let d_f_pitch_rate_eta_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3;
@@ -234,12 +253,10 @@ pub fn jacobians_values<R: Real>(
                 + p.d_f_pitch_rate_eta_d_velocity_constant_3
                     * d_generalized_force_3_d_velocity)
             + d_reference_force_d_velocity * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s/ft
-    let d_f_pitch_rate_d_velocity_term_1 = p.z_t * d_f_alpha_d_velocity_term_1
-        + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0);
-    let d_f_pitch_rate_d_velocity = d_f_pitch_rate_d_velocity_term_1
-        * d_reference_force_d_velocity * p.inv_i_yy + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
-    let d_g_pitch_rate_d_velocity = p.g_pitch_rate_constant_1
-        * d_reference_force_d_velocity; // 1/s/ft
+    let d_f_pitch_rate_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_velocity + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
+    let d_g_pitch_rate_d_velocity = p.slope_of_g_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_velocity; // 1/s/ft
     let d_pitch_rate_rate_printed_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
@@ -257,50 +274,49 @@ pub fn jacobians_values<R: Real>(
     let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_altitude = p.inv_m
-        * (reference_force
-            * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-                * d_generalized_force_1_d_altitude
-                + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                    * d_generalized_force_2_d_altitude
-                + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                    * d_generalized_force_3_d_altitude)
-            + d_reference_force_d_altitude * d_f_velocity_eta_d_velocity_term_1); // 1/s^2
-    let d_f_velocity_d_altitude = d_f_velocity_d_velocity_term_1 * d_reference_force_d_altitude * p.inv_m
+    let d_f_velocity_eta_d_altitude = reference_force * p.inv_m
+        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * d_generalized_force_1_d_altitude
+            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * d_generalized_force_2_d_altitude
+            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * d_generalized_force_3_d_altitude)
+        + slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_altitude; // 1/s^2
+    let d_f_velocity_d_altitude = slope_of_f_velocity_in_dynamic_pressure * d_dynamic_pressure_d_altitude
         - sin_gamma * d_gravity_d_altitude
         + d_f_velocity_eta_d_altitude; // 1/s^2
-    let d_g_velocity_d_altitude = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * d_reference_force_d_altitude * p.inv_m; // 1/s^2
+    let d_g_velocity_d_altitude = slope_of_g_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_altitude; // 1/s^2
     let d_velocity_rate_printed_d_altitude = d_reference_force_d_altitude * p.inv_m
         * d_velocity_rate_printed_d_velocity_term_1 + d_f_velocity_d_altitude
         + u.phi * d_g_velocity_d_altitude; // 1/s^2
     let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
     let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
         - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_f_gamma_eta_d_altitude = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_altitude
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-                * d_generalized_force_2_d_altitude
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-                * d_generalized_force_3_d_altitude)
-        + d_f_gamma_eta_d_velocity_term_1 * d_turn_factor_d_altitude; // rad/s/ft
+    let d_f_gamma_eta_d_altitude = slope_of_f_gamma_eta_in_turn_factor
+        * d_turn_factor_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
     let cos_gamma_d_gravity_turn_d_altitude = cos_gamma * d_gravity_turn_d_altitude;
-    let d_f_gamma_d_altitude = d_f_gamma_d_velocity_term_1 * d_turn_factor_d_altitude
+    let d_f_gamma_d_altitude = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_altitude
         - cos_gamma_d_gravity_turn_d_altitude
         + d_f_gamma_eta_d_altitude; // rad/s/ft
-    let d_g_gamma_d_altitude = g_gamma_term_1 * d_turn_factor_d_altitude; // 1/s/ft
-    let d_gamma_rate_printed_d_altitude_term_1 = d_gamma_rate_printed_d_velocity_term_1
-        * d_turn_factor_d_altitude;
-    let d_gamma_rate_printed_d_altitude = d_gamma_rate_printed_d_altitude_term_1
+    let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_altitude; // 1/s/ft
+    let d_gamma_rate_printed_d_altitude = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_altitude
         + d_f_gamma_d_altitude
         + x.alpha * d_g_gamma_d_altitude; // rad/s/ft
-    let d_f_alpha_eta_d_altitude = -d_f_gamma_eta_d_altitude; // rad/s/ft
+    let d_f_alpha_eta_d_altitude = slope_of_f_alpha_eta_in_turn_factor
+        * d_turn_factor_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
     let d_f_alpha_d_altitude = cos_gamma_d_gravity_turn_d_altitude
-        - d_f_alpha_d_velocity_term_2 * d_turn_factor_d_altitude
+        + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_altitude
         + d_f_alpha_eta_d_altitude; // rad/s/ft
-    let d_alpha_rate_printed_d_altitude = d_f_alpha_d_altitude
-        - d_gamma_rate_printed_d_altitude_term_1; // rad/s/ft
+    let d_alpha_rate_printed_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
+        * d_turn_factor_d_altitude + d_f_alpha_d_altitude; // rad/s/ft
     let d_f_pitch_rate_eta_d_altitude = p.inv_i_yy
         * (reference_force
             * (p.d_f_pitch_rate_eta_d_velocity_constant_1
@@ -310,10 +326,10 @@ pub fn jacobians_values<R: Real>(
                 + p.d_f_pitch_rate_eta_d_velocity_constant_3
                     * d_generalized_force_3_d_altitude)
             + d_reference_force_d_altitude * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s^2/ft
-    let d_f_pitch_rate_d_altitude = d_f_pitch_rate_d_velocity_term_1
-        * d_reference_force_d_altitude * p.inv_i_yy + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
-    let d_g_pitch_rate_d_altitude = p.g_pitch_rate_constant_1
-        * d_reference_force_d_altitude; // 1/s^2/ft
+    let d_f_pitch_rate_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
+    let d_g_pitch_rate_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_altitude; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_altitude = d_reference_force_d_altitude * p.inv_i_yy
         * d_pitch_rate_rate_printed_d_velocity_term_1 + d_f_pitch_rate_d_altitude
         + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
@@ -327,59 +343,72 @@ pub fn jacobians_values<R: Real>(
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
+    let slope_of_velocity_rate_printed_in_cos_alpha_term_1 = x.chi_1 * p.c_t_eta_1
+        + x.chi_2 * p.c_t_eta_2
+        + x.chi_3 * p.c_t_eta_3;
+    let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
+        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // ft/s^2
+    let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
+        * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
+    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = eta_static_1 * p.c_t_eta_1
+        + eta_static_2 * p.c_t_eta_2
+        + eta_static_3 * p.c_t_eta_3;
+    let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
+        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_alpha_term_1 = eta_static_1 * p.c_t_eta_1
-        + eta_static_2 * p.c_t_eta_2
-        + eta_static_3 * p.c_t_eta_3;
     let d_f_velocity_eta_d_alpha = reference_force * p.inv_m
-        * (d_f_velocity_eta_d_alpha_term_1 * d_cos_alpha_d_alpha
-            + p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-                * d_generalized_force_1_d_alpha
+        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * d_generalized_force_1_d_alpha
             + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
                 * d_generalized_force_2_d_alpha
             + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_alpha); // ft/s^2/rad
-    let d_f_velocity_d_alpha = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_alpha - p.c_d_alpha
-            + c_t_alpha_alpha_plus_c_t_0 * d_cos_alpha_d_alpha)
+                * d_generalized_force_3_d_alpha)
+        + slope_of_f_velocity_eta_in_cos_alpha * d_cos_alpha_d_alpha; // ft/s^2/rad
+    let d_f_velocity_d_alpha = reference_force * p.inv_m * (cos_alpha * p.c_t_alpha - p.c_d_alpha)
+        + slope_of_f_velocity_in_cos_alpha * d_cos_alpha_d_alpha
         + d_f_velocity_eta_d_alpha; // ft/s^2/rad
-    let d_g_velocity_d_alpha = reference_force * p.inv_m
-        * (p.c_t_phi_alpha * cos_alpha
-            + c_t_phi_alpha_alpha_plus_c_t_phi * d_cos_alpha_d_alpha); // ft/s^2/rad
-    let d_velocity_rate_printed_d_alpha_term_1 = x.chi_1 * p.c_t_eta_1
-        + x.chi_2 * p.c_t_eta_2
-        + x.chi_3 * p.c_t_eta_3;
-    let d_velocity_rate_printed_d_alpha = reference_force * p.inv_m
-        * d_velocity_rate_printed_d_alpha_term_1 * d_cos_alpha_d_alpha
-        + d_f_velocity_d_alpha + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
-    let d_f_gamma_eta_d_alpha = turn_factor
-        * (d_f_velocity_eta_d_alpha_term_1 * cos_alpha
-            + sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-                * d_generalized_force_1_d_alpha
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-                * d_generalized_force_2_d_alpha
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-                * d_generalized_force_3_d_alpha); // 1/s
-    let d_f_gamma_d_alpha = turn_factor * c_t_phi_phi_plus_c_t_0 * cos_alpha
+    let slope_of_g_velocity_in_cos_alpha = c_t_phi_alpha_alpha_plus_c_t_phi
+        * reference_force * p.inv_m; // ft/s^2
+    let d_g_velocity_d_alpha = reference_force * p.c_t_phi_alpha_over_m * cos_alpha
+        + slope_of_g_velocity_in_cos_alpha * d_cos_alpha_d_alpha; // ft/s^2/rad
+    let d_velocity_rate_printed_d_alpha = slope_of_velocity_rate_printed_in_cos_alpha * d_cos_alpha_d_alpha
+        + d_f_velocity_d_alpha
+        + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
+    let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
+        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // rad/s
+    let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
+    let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
+        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
+    let d_f_gamma_eta_d_alpha = slope_of_f_gamma_eta_in_sin_alpha * cos_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_alpha; // 1/s
+    let d_f_gamma_d_alpha = slope_of_f_gamma_in_sin_alpha * cos_alpha
         + d_f_gamma_eta_d_alpha; // 1/s
-    let d_g_gamma_d_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi * cos_alpha; // 1/s/rad
-    let d_gamma_rate_printed_d_alpha_term_1 = turn_factor
-        * d_velocity_rate_printed_d_alpha_term_1 * cos_alpha;
+    let slope_of_g_gamma_in_sin_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
+    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * cos_alpha; // 1/s/rad
     let d_gamma_rate_printed_d_alpha = g_gamma
-        + d_gamma_rate_printed_d_alpha_term_1
+        + slope_of_gamma_rate_printed_in_sin_alpha * cos_alpha
         + d_f_gamma_d_alpha
         + x.alpha * d_g_gamma_d_alpha; // 1/s
-    let d_f_alpha_eta_d_alpha = -d_f_gamma_eta_d_alpha; // 1/s
-    let d_f_alpha_d_alpha = d_f_alpha_eta_d_alpha
+    let slope_of_alpha_rate_printed_in_sin_alpha = -slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
+    let slope_of_f_alpha_in_sin_alpha = -turn_factor
+        * slope_of_f_alpha_in_turn_factor_term_1; // rad/s
+    let slope_of_f_alpha_eta_in_sin_alpha = -slope_of_f_gamma_eta_in_sin_alpha; // rad/s
+    let d_f_alpha_eta_d_alpha = slope_of_f_alpha_eta_in_sin_alpha * cos_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_alpha; // 1/s
+    let d_f_alpha_d_alpha = slope_of_f_alpha_in_sin_alpha * cos_alpha
         - g_gamma
-        - turn_factor * d_f_alpha_d_velocity_term_1 * cos_alpha; // 1/s
-    let d_alpha_rate_printed_d_alpha = d_f_alpha_d_alpha
-        - d_gamma_rate_printed_d_alpha_term_1; // 1/s
+        + d_f_alpha_eta_d_alpha; // 1/s
+    let d_alpha_rate_printed_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
+        * cos_alpha + d_f_alpha_d_alpha; // 1/s
     let d_f_pitch_rate_eta_d_alpha = reference_force * p.inv_i_yy
         * (p.d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_alpha
             + p.d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_alpha
@@ -393,7 +422,8 @@ pub fn jacobians_values<R: Real>(
     // Derivatives with respect to chi_1
     let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_1 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
@@ -401,7 +431,8 @@ pub fn jacobians_values<R: Real>(
     // Derivatives with respect to chi_2
     let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_2 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
@@ -409,7 +440,8 @@ pub fn jacobians_values<R: Real>(
     // Derivatives with respect to chi_3
     let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_3 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
@@ -434,13 +466,14 @@ pub fn jacobians_values<R: Real>(
             * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
         - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1
         * d_generalized_force_1_d_delta_e
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_alpha_eta_d_delta_e = -d_f_gamma_eta_d_delta_e; // 1/s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
+    let d_f_alpha_eta_d_delta_e = slope_of_f_alpha_eta_in_generalized_force_1
+        * d_generalized_force_1_d_delta_e
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
     let d_f_pitch_rate_eta_d_delta_e = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
         + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
@@ -463,13 +496,14 @@ pub fn jacobians_values<R: Real>(
             * d_generalized_force_2_d_delta_c
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1
         * d_generalized_force_1_d_delta_c
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_alpha_eta_d_delta_c = -d_f_gamma_eta_d_delta_c; // 1/s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
+    let d_f_alpha_eta_d_delta_c = slope_of_f_alpha_eta_in_generalized_force_1
+        * d_generalized_force_1_d_delta_c
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
     let d_f_pitch_rate_eta_d_delta_c = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
         + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
@@ -537,148 +571,14 @@ pub fn jacobians<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
-    let (
-        [velocity_by_velocity,
-        velocity_by_altitude,
-        velocity_by_gamma,
-        velocity_by_alpha,
-        velocity_by_chi_1,
-        velocity_by_chi_2,
-        velocity_by_chi_3,
-        altitude_by_velocity,
-        altitude_by_gamma,
-        gamma_by_velocity,
-        gamma_by_altitude,
-        gamma_by_gamma,
-        gamma_by_alpha,
-        gamma_by_chi_1,
-        gamma_by_chi_2,
-        gamma_by_chi_3,
-        alpha_by_velocity,
-        alpha_by_altitude,
-        alpha_by_gamma,
-        alpha_by_alpha,
-        alpha_by_pitch_rate,
-        alpha_by_chi_1,
-        alpha_by_chi_2,
-        alpha_by_chi_3,
-        pitch_rate_by_velocity,
-        pitch_rate_by_altitude,
-        pitch_rate_by_alpha,
-        pitch_rate_by_chi_1,
-        pitch_rate_by_chi_2,
-        pitch_rate_by_chi_3,
-        chi_1_by_chi_1,
-        chi_2_by_chi_2,
-        chi_3_by_chi_3,
-        ],
-        [velocity_by_phi,
-        velocity_by_delta_e,
-        velocity_by_delta_c,
-        gamma_by_phi,
-        gamma_by_delta_e,
-        gamma_by_delta_c,
-        alpha_by_phi,
-        alpha_by_delta_e,
-        alpha_by_delta_c,
-        pitch_rate_by_phi,
-        pitch_rate_by_delta_e,
-        pitch_rate_by_delta_c,
-        ],
-    ) = jacobians_values(x, u, p);
-
-    // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    let state = State {
-        velocity: State {
-            velocity: velocity_by_velocity,
-            altitude: velocity_by_altitude,
-            gamma: velocity_by_gamma,
-            alpha: velocity_by_alpha,
-            chi_1: velocity_by_chi_1,
-            chi_2: velocity_by_chi_2,
-            chi_3: velocity_by_chi_3,
-            ..no_state
-        },
-        altitude: State {
-            velocity: altitude_by_velocity,
-            gamma: altitude_by_gamma,
-            ..no_state
-        },
-        gamma: State {
-            velocity: gamma_by_velocity,
-            altitude: gamma_by_altitude,
-            gamma: gamma_by_gamma,
-            alpha: gamma_by_alpha,
-            chi_1: gamma_by_chi_1,
-            chi_2: gamma_by_chi_2,
-            chi_3: gamma_by_chi_3,
-            ..no_state
-        },
-        alpha: State {
-            velocity: alpha_by_velocity,
-            altitude: alpha_by_altitude,
-            gamma: alpha_by_gamma,
-            alpha: alpha_by_alpha,
-            pitch_rate: alpha_by_pitch_rate,
-            chi_1: alpha_by_chi_1,
-            chi_2: alpha_by_chi_2,
-            chi_3: alpha_by_chi_3,
-        },
-        pitch_rate: State {
-            velocity: pitch_rate_by_velocity,
-            altitude: pitch_rate_by_altitude,
-            alpha: pitch_rate_by_alpha,
-            chi_1: pitch_rate_by_chi_1,
-            chi_2: pitch_rate_by_chi_2,
-            chi_3: pitch_rate_by_chi_3,
-            ..no_state
-        },
-        chi_1: State {
-            chi_1: chi_1_by_chi_1,
-            ..no_state
-        },
-        chi_2: State {
-            chi_2: chi_2_by_chi_2,
-            ..no_state
-        },
-        chi_3: State {
-            chi_3: chi_3_by_chi_3,
-            ..no_state
-        },
-    };
-    let input = State {
-        velocity: Input {
-            phi: velocity_by_phi,
-            delta_e: velocity_by_delta_e,
-            delta_c: velocity_by_delta_c,
-        },
-        gamma: Input {
-            phi: gamma_by_phi,
-            delta_e: gamma_by_delta_e,
-            delta_c: gamma_by_delta_c,
-        },
-        alpha: Input {
-            phi: alpha_by_phi,
-            delta_e: alpha_by_delta_e,
-            delta_c: alpha_by_delta_c,
-        },
-        pitch_rate: Input {
-            phi: pitch_rate_by_phi,
-            delta_e: pitch_rate_by_delta_e,
-            delta_c: pitch_rate_by_delta_c,
-        },
-        ..no_state_input
-    };
-    (state, input)
+    let (state, input) = jacobians_values(x, u, p);
+    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (27).
 ///
-/// 513 operations: 161 additions, 347 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 538 operations: 174 additions, 359 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn drift_and_jacobians<R: Real>(
     x: &State<R>,
@@ -713,21 +613,21 @@ pub fn drift_and_jacobians<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -767,23 +667,27 @@ pub fn drift_and_jacobians<R: Real>(
     let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * c_t_phi_alpha_alpha_plus_c_t_phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3;
-    let f_gamma_eta = turn_factor * f_gamma_eta_term_1; // rad/s
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
     let c_t_phi_phi = p.c_t_phi * u.phi;
     let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
-    let f_gamma_term_1 = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0;
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0; // rad
     let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * f_gamma_term_1
+    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
         - gravity_turn_cos_gamma
         + f_gamma_eta; // rad/s
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let g_gamma_term_1 = p.c_l_alpha + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * g_gamma_term_1; // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
         + c_t_alpha_alpha
@@ -812,22 +716,21 @@ pub fn drift_and_jacobians<R: Real>(
     let velocity_rate_printed = reference_force * p.inv_m * velocity_rate_printed_term_1
         + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
+    let gamma_rate_printed_term_1 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
         * x.chi_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
+    let gamma_rate_printed_term_2 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
         * x.chi_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
+    let gamma_rate_printed_term_3 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
         * x.chi_3;
-    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3;
-    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
+    let slope_of_gamma_rate_printed_in_turn_factor = gamma_rate_printed_term_1
+        + gamma_rate_printed_term_2
+        + gamma_rate_printed_term_3; // rad
+    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
         + f_gamma
         + g_gamma * x.alpha; // rad/s
     let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_chi_3) + f_alpha + x.pitch_rate; // rad/s
+        * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2
+            - gamma_rate_printed_term_3) + f_alpha + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
@@ -837,23 +740,26 @@ pub fn drift_and_jacobians<R: Real>(
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
+    let slope_of_f_velocity_in_dynamic_pressure = f_velocity_term_1 * p.s_over_m; // ft^3/s^2/lb
+    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m * f_velocity_eta_term_1; // ft^3/s^2/lb
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_f_velocity_eta_d_velocity = p.inv_m
-        * (reference_force
-            * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-                * d_generalized_force_1_d_velocity
-                + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                    * d_generalized_force_2_d_velocity
-                + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                    * d_generalized_force_3_d_velocity)
-            + d_reference_force_d_velocity * f_velocity_eta_term_1); // 1/s
-    let d_f_velocity_d_velocity = f_velocity_term_1 * d_reference_force_d_velocity
-        * p.inv_m + d_f_velocity_eta_d_velocity; // 1/s
-    let d_g_velocity_d_velocity = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * d_reference_force_d_velocity * p.inv_m; // 1/s
+    let d_f_velocity_eta_d_velocity = reference_force * p.inv_m
+        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * d_generalized_force_1_d_velocity
+            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * d_generalized_force_2_d_velocity
+            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * d_generalized_force_3_d_velocity)
+        + slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_velocity; // 1/s
+    let d_f_velocity_d_velocity = slope_of_f_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_velocity + d_f_velocity_eta_d_velocity; // 1/s
+    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
+        * cos_alpha * p.s_over_m; // ft^3/s^2/lb
+    let d_g_velocity_d_velocity = slope_of_g_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_velocity; // 1/s
     let d_velocity_rate_printed_d_velocity = d_reference_force_d_velocity * p.inv_m * velocity_rate_printed_term_1
         + d_f_velocity_d_velocity
         + u.phi * d_g_velocity_d_velocity; // 1/s
@@ -861,30 +767,43 @@ pub fn drift_and_jacobians<R: Real>(
     let inv_velocity_2 = inv_velocity * inv_velocity;
     let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
         + p.earth_curvature * radius_ratio); // 1/ft
-    let d_f_gamma_eta_d_velocity = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_velocity
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-                * d_generalized_force_2_d_velocity
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-                * d_generalized_force_3_d_velocity)
-        + f_gamma_eta_term_1 * d_turn_factor_d_velocity; // rad/ft
+    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+    let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor
+        * d_turn_factor_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
     let cos_gamma_d_gravity_turn_d_velocity = cos_gamma * d_gravity_turn_d_velocity;
-    let d_f_gamma_d_velocity = f_gamma_term_1 * d_turn_factor_d_velocity
+    let d_f_gamma_d_velocity = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_velocity
         - cos_gamma_d_gravity_turn_d_velocity
         + d_f_gamma_eta_d_velocity; // rad/ft
-    let d_g_gamma_d_velocity = g_gamma_term_1 * d_turn_factor_d_velocity; // 1/ft
-    let d_gamma_rate_printed_d_velocity_term_1 = gamma_rate_printed_term_1
-        * d_turn_factor_d_velocity;
-    let d_gamma_rate_printed_d_velocity = d_gamma_rate_printed_d_velocity_term_1
+    let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_velocity; // 1/ft
+    let d_gamma_rate_printed_d_velocity = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_velocity
         + d_f_gamma_d_velocity
         + x.alpha * d_g_gamma_d_velocity; // rad/ft
-    let d_f_alpha_eta_d_velocity = -d_f_gamma_eta_d_velocity; // rad/ft
+    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
+    let slope_of_f_alpha_in_turn_factor = -f_alpha_term_2; // rad
+    let slope_of_f_alpha_eta_in_turn_factor = -slope_of_f_gamma_eta_in_turn_factor; // rad
+    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
+    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
+    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
+    let d_f_alpha_eta_d_velocity = slope_of_f_alpha_eta_in_turn_factor
+        * d_turn_factor_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
     let d_f_alpha_d_velocity = cos_gamma_d_gravity_turn_d_velocity
-        - f_alpha_term_2 * d_turn_factor_d_velocity
+        + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_velocity
         + d_f_alpha_eta_d_velocity; // rad/ft
-    let d_alpha_rate_printed_d_velocity = d_f_alpha_d_velocity
-        - d_gamma_rate_printed_d_velocity_term_1; // rad/ft
+    let d_alpha_rate_printed_d_velocity = slope_of_alpha_rate_printed_in_turn_factor
+        * d_turn_factor_d_velocity + d_f_alpha_d_velocity; // rad/ft
+    let slope_of_f_pitch_rate_in_dynamic_pressure = f_pitch_rate_term_1 * p.s_over_i_yy; // rad*ft^2/s^2/lb
     let d_f_pitch_rate_eta_d_velocity = p.inv_i_yy
         * (reference_force
             * (p.d_f_pitch_rate_eta_d_velocity_constant_1
@@ -894,11 +813,12 @@ pub fn drift_and_jacobians<R: Real>(
                 + p.d_f_pitch_rate_eta_d_velocity_constant_3
                     * d_generalized_force_3_d_velocity)
             + d_reference_force_d_velocity * f_pitch_rate_eta_term_1); // rad/s/ft
-    let d_f_pitch_rate_d_velocity = f_pitch_rate_term_1 * d_reference_force_d_velocity
-        * p.inv_i_yy + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
-    let d_g_pitch_rate_d_velocity = p.g_pitch_rate_constant_1
-        * d_reference_force_d_velocity; // 1/s/ft
-    let d_pitch_rate_rate_printed_d_velocity = d_reference_force_d_velocity * p.inv_i_yy * pitch_rate_rate_printed_term_1
+    let d_f_pitch_rate_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_velocity + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
+    let d_g_pitch_rate_d_velocity = p.slope_of_g_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_velocity; // 1/s/ft
+    let d_pitch_rate_rate_printed_d_velocity =
+        d_reference_force_d_velocity * p.inv_i_yy * pitch_rate_rate_printed_term_1
         + d_f_pitch_rate_d_velocity
         + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
 
@@ -912,50 +832,49 @@ pub fn drift_and_jacobians<R: Real>(
     let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_altitude = p.inv_m
-        * (reference_force
-            * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-                * d_generalized_force_1_d_altitude
-                + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                    * d_generalized_force_2_d_altitude
-                + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                    * d_generalized_force_3_d_altitude)
-            + d_reference_force_d_altitude * f_velocity_eta_term_1); // 1/s^2
-    let d_f_velocity_d_altitude = f_velocity_term_1 * d_reference_force_d_altitude * p.inv_m
+    let d_f_velocity_eta_d_altitude = reference_force * p.inv_m
+        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * d_generalized_force_1_d_altitude
+            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * d_generalized_force_2_d_altitude
+            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * d_generalized_force_3_d_altitude)
+        + slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_altitude; // 1/s^2
+    let d_f_velocity_d_altitude = slope_of_f_velocity_in_dynamic_pressure * d_dynamic_pressure_d_altitude
         - sin_gamma * d_gravity_d_altitude
         + d_f_velocity_eta_d_altitude; // 1/s^2
-    let d_g_velocity_d_altitude = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * d_reference_force_d_altitude * p.inv_m; // 1/s^2
+    let d_g_velocity_d_altitude = slope_of_g_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_altitude; // 1/s^2
     let d_velocity_rate_printed_d_altitude = d_reference_force_d_altitude * p.inv_m * velocity_rate_printed_term_1
         + d_f_velocity_d_altitude
         + u.phi * d_g_velocity_d_altitude; // 1/s^2
     let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
     let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
         - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_f_gamma_eta_d_altitude = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_altitude
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-                * d_generalized_force_2_d_altitude
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-                * d_generalized_force_3_d_altitude)
-        + f_gamma_eta_term_1 * d_turn_factor_d_altitude; // rad/s/ft
+    let d_f_gamma_eta_d_altitude = slope_of_f_gamma_eta_in_turn_factor
+        * d_turn_factor_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
     let cos_gamma_d_gravity_turn_d_altitude = cos_gamma * d_gravity_turn_d_altitude;
-    let d_f_gamma_d_altitude = f_gamma_term_1 * d_turn_factor_d_altitude
+    let d_f_gamma_d_altitude = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_altitude
         - cos_gamma_d_gravity_turn_d_altitude
         + d_f_gamma_eta_d_altitude; // rad/s/ft
-    let d_g_gamma_d_altitude = g_gamma_term_1 * d_turn_factor_d_altitude; // 1/s/ft
-    let d_gamma_rate_printed_d_altitude_term_1 = gamma_rate_printed_term_1
-        * d_turn_factor_d_altitude;
-    let d_gamma_rate_printed_d_altitude = d_gamma_rate_printed_d_altitude_term_1
+    let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_altitude; // 1/s/ft
+    let d_gamma_rate_printed_d_altitude = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_altitude
         + d_f_gamma_d_altitude
         + x.alpha * d_g_gamma_d_altitude; // rad/s/ft
-    let d_f_alpha_eta_d_altitude = -d_f_gamma_eta_d_altitude; // rad/s/ft
+    let d_f_alpha_eta_d_altitude = slope_of_f_alpha_eta_in_turn_factor
+        * d_turn_factor_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
     let d_f_alpha_d_altitude = cos_gamma_d_gravity_turn_d_altitude
-        - f_alpha_term_2 * d_turn_factor_d_altitude
+        + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_altitude
         + d_f_alpha_eta_d_altitude; // rad/s/ft
-    let d_alpha_rate_printed_d_altitude = d_f_alpha_d_altitude
-        - d_gamma_rate_printed_d_altitude_term_1; // rad/s/ft
+    let d_alpha_rate_printed_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
+        * d_turn_factor_d_altitude + d_f_alpha_d_altitude; // rad/s/ft
     let d_f_pitch_rate_eta_d_altitude = p.inv_i_yy
         * (reference_force
             * (p.d_f_pitch_rate_eta_d_velocity_constant_1
@@ -965,11 +884,12 @@ pub fn drift_and_jacobians<R: Real>(
                 + p.d_f_pitch_rate_eta_d_velocity_constant_3
                     * d_generalized_force_3_d_altitude)
             + d_reference_force_d_altitude * f_pitch_rate_eta_term_1); // rad/s^2/ft
-    let d_f_pitch_rate_d_altitude = f_pitch_rate_term_1 * d_reference_force_d_altitude
-        * p.inv_i_yy + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
-    let d_g_pitch_rate_d_altitude = p.g_pitch_rate_constant_1
-        * d_reference_force_d_altitude; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_altitude = d_reference_force_d_altitude * p.inv_i_yy * pitch_rate_rate_printed_term_1
+    let d_f_pitch_rate_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
+    let d_g_pitch_rate_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_altitude; // 1/s^2/ft
+    let d_pitch_rate_rate_printed_d_altitude =
+        d_reference_force_d_altitude * p.inv_i_yy * pitch_rate_rate_printed_term_1
         + d_f_pitch_rate_d_altitude
         + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
 
@@ -982,59 +902,71 @@ pub fn drift_and_jacobians<R: Real>(
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
+    let slope_of_velocity_rate_printed_in_cos_alpha_term_1 = x.chi_1 * p.c_t_eta_1
+        + x.chi_2 * p.c_t_eta_2
+        + x.chi_3 * p.c_t_eta_3;
+    let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
+        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // ft/s^2
+    let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
+        * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
+    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = eta_static_1 * p.c_t_eta_1
+        + eta_static_2 * p.c_t_eta_2
+        + eta_static_3 * p.c_t_eta_3;
+    let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
+        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_alpha_term_1 = eta_static_1 * p.c_t_eta_1
-        + eta_static_2 * p.c_t_eta_2
-        + eta_static_3 * p.c_t_eta_3;
     let d_f_velocity_eta_d_alpha = reference_force * p.inv_m
-        * (d_f_velocity_eta_d_alpha_term_1 * d_cos_alpha_d_alpha
-            + p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-                * d_generalized_force_1_d_alpha
+        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * d_generalized_force_1_d_alpha
             + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
                 * d_generalized_force_2_d_alpha
             + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_alpha); // ft/s^2/rad
-    let d_f_velocity_d_alpha = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_alpha - p.c_d_alpha
-            + c_t_alpha_alpha_plus_c_t_0 * d_cos_alpha_d_alpha)
+                * d_generalized_force_3_d_alpha)
+        + slope_of_f_velocity_eta_in_cos_alpha * d_cos_alpha_d_alpha; // ft/s^2/rad
+    let d_f_velocity_d_alpha = reference_force * p.inv_m * (cos_alpha * p.c_t_alpha - p.c_d_alpha)
+        + slope_of_f_velocity_in_cos_alpha * d_cos_alpha_d_alpha
         + d_f_velocity_eta_d_alpha; // ft/s^2/rad
-    let d_g_velocity_d_alpha = reference_force * p.inv_m
-        * (p.c_t_phi_alpha * cos_alpha
-            + c_t_phi_alpha_alpha_plus_c_t_phi * d_cos_alpha_d_alpha); // ft/s^2/rad
-    let d_velocity_rate_printed_d_alpha_term_1 = x.chi_1 * p.c_t_eta_1
-        + x.chi_2 * p.c_t_eta_2
-        + x.chi_3 * p.c_t_eta_3;
-    let d_velocity_rate_printed_d_alpha = reference_force * p.inv_m
-        * d_velocity_rate_printed_d_alpha_term_1 * d_cos_alpha_d_alpha
-        + d_f_velocity_d_alpha + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
-    let d_f_gamma_eta_d_alpha = turn_factor
-        * (d_f_velocity_eta_d_alpha_term_1 * cos_alpha
-            + sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-                * d_generalized_force_1_d_alpha
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-                * d_generalized_force_2_d_alpha
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-                * d_generalized_force_3_d_alpha); // 1/s
-    let d_f_gamma_d_alpha = turn_factor * c_t_phi_phi_plus_c_t_0 * cos_alpha
+    let slope_of_g_velocity_in_cos_alpha = c_t_phi_alpha_alpha_plus_c_t_phi
+        * reference_force * p.inv_m; // ft/s^2
+    let d_g_velocity_d_alpha = reference_force * p.c_t_phi_alpha_over_m * cos_alpha
+        + slope_of_g_velocity_in_cos_alpha * d_cos_alpha_d_alpha; // ft/s^2/rad
+    let d_velocity_rate_printed_d_alpha = slope_of_velocity_rate_printed_in_cos_alpha * d_cos_alpha_d_alpha
+        + d_f_velocity_d_alpha
+        + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
+    let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
+        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // rad/s
+    let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
+    let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
+        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
+    let d_f_gamma_eta_d_alpha = slope_of_f_gamma_eta_in_sin_alpha * cos_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_alpha; // 1/s
+    let d_f_gamma_d_alpha = slope_of_f_gamma_in_sin_alpha * cos_alpha
         + d_f_gamma_eta_d_alpha; // 1/s
-    let d_g_gamma_d_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi * cos_alpha; // 1/s/rad
-    let d_gamma_rate_printed_d_alpha_term_1 = turn_factor
-        * d_velocity_rate_printed_d_alpha_term_1 * cos_alpha;
+    let slope_of_g_gamma_in_sin_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
+    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * cos_alpha; // 1/s/rad
     let d_gamma_rate_printed_d_alpha = g_gamma
-        + d_gamma_rate_printed_d_alpha_term_1
+        + slope_of_gamma_rate_printed_in_sin_alpha * cos_alpha
         + d_f_gamma_d_alpha
         + x.alpha * d_g_gamma_d_alpha; // 1/s
-    let d_f_alpha_eta_d_alpha = -d_f_gamma_eta_d_alpha; // 1/s
-    let d_f_alpha_d_alpha = d_f_alpha_eta_d_alpha
+    let slope_of_alpha_rate_printed_in_sin_alpha = -slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
+    let slope_of_f_alpha_in_sin_alpha = -turn_factor * f_alpha_term_1; // rad/s
+    let slope_of_f_alpha_eta_in_sin_alpha = -slope_of_f_gamma_eta_in_sin_alpha; // rad/s
+    let d_f_alpha_eta_d_alpha = slope_of_f_alpha_eta_in_sin_alpha * cos_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_alpha; // 1/s
+    let d_f_alpha_d_alpha = slope_of_f_alpha_in_sin_alpha * cos_alpha
         - g_gamma
-        - turn_factor * f_alpha_term_1 * cos_alpha; // 1/s
-    let d_alpha_rate_printed_d_alpha = d_f_alpha_d_alpha
-        - d_gamma_rate_printed_d_alpha_term_1; // 1/s
+        + d_f_alpha_eta_d_alpha; // 1/s
+    let d_alpha_rate_printed_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
+        * cos_alpha + d_f_alpha_d_alpha; // 1/s
     let d_f_pitch_rate_eta_d_alpha = reference_force * p.inv_i_yy
         * (p.d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_alpha
             + p.d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_alpha
@@ -1048,7 +980,8 @@ pub fn drift_and_jacobians<R: Real>(
     // Derivatives with respect to chi_1
     let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_1 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
@@ -1056,7 +989,8 @@ pub fn drift_and_jacobians<R: Real>(
     // Derivatives with respect to chi_2
     let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_2 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
@@ -1064,7 +998,8 @@ pub fn drift_and_jacobians<R: Real>(
     // Derivatives with respect to chi_3
     let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_3 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
@@ -1089,13 +1024,14 @@ pub fn drift_and_jacobians<R: Real>(
             * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
         - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1
         * d_generalized_force_1_d_delta_e
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_alpha_eta_d_delta_e = -d_f_gamma_eta_d_delta_e; // 1/s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
+    let d_f_alpha_eta_d_delta_e = slope_of_f_alpha_eta_in_generalized_force_1
+        * d_generalized_force_1_d_delta_e
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
     let d_f_pitch_rate_eta_d_delta_e = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
         + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
@@ -1118,13 +1054,14 @@ pub fn drift_and_jacobians<R: Real>(
             * d_generalized_force_2_d_delta_c
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1
         * d_generalized_force_1_d_delta_c
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_alpha_eta_d_delta_c = -d_f_gamma_eta_d_delta_c; // 1/s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
+    let d_f_alpha_eta_d_delta_c = slope_of_f_alpha_eta_in_generalized_force_1
+        * d_generalized_force_1_d_delta_c
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
     let d_f_pitch_rate_eta_d_delta_c = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
         + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2

@@ -33,21 +33,21 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -180,21 +180,21 @@ pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -207,29 +207,38 @@ pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
     // Strict-feedback form, (31)
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3); // rad/s
-    let f_gamma = turn_factor * (p.c_l_0 + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0))
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0
+        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0); // rad
+    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
         - gravity_turn * cos_gamma
         + f_gamma_eta; // rad/s
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi)); // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
 
     // Printed form, (27)
-    turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3) + f_gamma + g_gamma * x.alpha
+    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
+
+    turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+        + f_gamma
+        + g_gamma * x.alpha
 }
 
 /// Lie derivatives of the gamma along the input columns: its relative degree is 1, eq. (27).
 ///
-/// 48 operations: 9 additions, 37 multiplications, 1 sin_cos, 1 exp.
+/// 45 operations: 9 additions, 34 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Air, (2)
@@ -245,17 +254,19 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     // Motion, (1)
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
-    // Derivatives with respect to chi_1
-    let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
+    // Derivatives with respect to velocity
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
     let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
@@ -266,12 +277,10 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_gamma_eta_d_delta_e = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1
         * d_generalized_force_1_d_delta_e
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // 1/s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
 
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = reference_force
@@ -280,12 +289,10 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
         * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_c = reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_gamma_eta_d_delta_c = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1
         * d_generalized_force_1_d_delta_c
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // 1/s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
 
     Input {
         phi: d_gamma_rate_printed_d_phi,
@@ -339,21 +346,21 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -379,18 +386,24 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         - gravity * sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3); // rad/s
-    let f_gamma = turn_factor * (p.c_l_0 + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0))
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0
+        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0); // rad
+    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
         - gravity_turn * cos_gamma
         + f_gamma_eta; // rad/s
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi)); // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
 
     // Printed form, (27)
     let velocity_rate_printed = reference_force * p.inv_m
@@ -398,10 +411,11 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
             + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let gamma_rate_printed = turn_factor
-        * (sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-            + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-            + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3) + f_gamma
+    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
+    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+        + f_gamma
         + g_gamma * x.alpha; // rad/s
 
     // Derivatives with respect to gamma
@@ -413,7 +427,7 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Lie derivatives of L_f h along the input columns: the relative degree of the altitude is 2, eq. (27).
 ///
-/// 94 operations: 21 additions, 70 multiplications, 2 sin_cos, 1 exp.
+/// 91 operations: 21 additions, 67 multiplications, 2 sin_cos, 1 exp.
 #[inline]
 pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Air, (2)
@@ -434,26 +448,34 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
 
+    // Derivatives with respect to velocity
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+
     // Derivatives with respect to gamma
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
 
     // Derivatives with respect to chi_1
     let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
         * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
         * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
         * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
     let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
@@ -472,12 +494,10 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
             * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
         - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1
         * d_generalized_force_1_d_delta_e
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // 1/s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
 
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = reference_force
@@ -492,12 +512,10 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
             * d_generalized_force_2_d_delta_c
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1
         * d_generalized_force_1_d_delta_c
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // 1/s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
 
     // Derivatives with respect to phi
     let d_altitude_acceleration_d_phi = sin_gamma * g_velocity

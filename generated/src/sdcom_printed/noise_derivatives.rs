@@ -3,7 +3,7 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
 use super::{Input, Noise, NoiseDerivatives, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`NoiseDerivatives`] stand.
 pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
@@ -28,7 +28,7 @@ pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 73 operations: 8 additions, 63 multiplications, 1 sin_cos, 1 exp.
+/// 76 operations: 8 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn noise_derivatives_values<R: Real>(
     x: &State<R>,
@@ -50,18 +50,22 @@ pub fn noise_derivatives_values<R: Real>(
 
     // Strict-feedback form, (28)
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let alpha_slope_velocity_term_1 = cos_alpha * c_t_alpha_plus_c_t_phi_alpha_phi
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
+    let alpha_slope_velocity_term_1 = d_slope_of_g_gamma_in_turn_factor_d_alpha
         - p.c_d_alpha;
     let alpha_slope_velocity = reference_force * p.inv_m * alpha_slope_velocity_term_1; // ft/s^2/rad
-    let g_gamma_term_1 = p.c_l_alpha + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * g_gamma_term_1; // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let alpha_slope_alpha = -g_gamma; // rad/s/rad
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let d_g_gamma_d_velocity = g_gamma_term_1 * d_turn_factor_d_velocity; // 1/ft
+    let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_velocity; // 1/ft
 
     // Derivatives with respect to altitude
     let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
@@ -69,11 +73,14 @@ pub fn noise_derivatives_values<R: Real>(
     let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
     let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
     let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_g_gamma_d_altitude = g_gamma_term_1 * d_turn_factor_d_altitude; // 1/s/ft
+    let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_altitude; // 1/s/ft
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_g_gamma_d_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi * cos_alpha; // 1/s/rad
+    let slope_of_g_gamma_in_sin_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
+    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * cos_alpha; // 1/s/rad
+    let d_slope_of_f_alpha_in_sin_alpha_d_alpha = -slope_of_g_gamma_in_sin_alpha; // 1/s
 
     // Derivatives with respect to altitude
     let d_alpha_slope_velocity_d_altitude = alpha_slope_velocity_term_1
@@ -84,17 +91,23 @@ pub fn noise_derivatives_values<R: Real>(
         * d_reference_force_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d_alpha_slope_velocity_d_alpha = reference_force * p.inv_m
-        * c_t_alpha_plus_c_t_phi_alpha_phi * d_cos_alpha_d_alpha; // ft/s^2/rad^2
+    let slope_of_alpha_slope_velocity_in_cos_alpha = reference_force * p.inv_m
+        * c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
+    let d_alpha_slope_velocity_d_alpha = slope_of_alpha_slope_velocity_in_cos_alpha
+        * d_cos_alpha_d_alpha; // ft/s^2/rad^2
 
     // Derivatives with respect to altitude
-    let d_alpha_slope_alpha_d_altitude = -d_g_gamma_d_altitude; // 1/s/ft
+    let slope_of_alpha_slope_alpha_in_turn_factor = -slope_of_g_gamma_in_turn_factor;
+    let d_alpha_slope_alpha_d_altitude = slope_of_alpha_slope_alpha_in_turn_factor
+        * d_turn_factor_d_altitude; // 1/s/ft
 
     // Derivatives with respect to velocity
-    let d_alpha_slope_alpha_d_velocity = -d_g_gamma_d_velocity; // 1/ft
+    let d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
+        * d_turn_factor_d_velocity; // 1/ft
 
     // Derivatives with respect to alpha
-    let d_alpha_slope_alpha_d_alpha = -d_g_gamma_d_alpha; // 1/s/rad
+    let d_alpha_slope_alpha_d_alpha = cos_alpha
+        * d_slope_of_f_alpha_in_sin_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to altitude
     let d_alpha_slope_pitch_rate_d_altitude_term_1 = p.c_bar_c_m_alpha
@@ -135,87 +148,12 @@ pub fn noise_derivatives<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> NoiseDerivatives<R> {
-    let [velocity_by_w_gamma_w_alpha, velocity_by_w_alpha_w_alpha,
-    velocity_by_w_q_w_alpha, altitude_by_w_alpha_w_gamma, gamma_by_w_gamma_w_alpha,
-    gamma_by_w_alpha_w_alpha, gamma_by_w_q_w_alpha, alpha_by_w_gamma_w_alpha,
-    alpha_by_w_alpha_w_alpha, alpha_by_w_q_w_alpha, pitch_rate_by_w_gamma_w_alpha,
-    pitch_rate_by_w_alpha_w_alpha] = noise_derivatives_values(x, u, p);
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let no_noise_noise = Noise::splat(no_noise);
-    let no_state_noise_noise = State::splat(no_noise_noise);
-    State {
-        velocity: Noise {
-            w_gamma: Noise {
-                w_alpha: velocity_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: velocity_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: velocity_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        altitude: Noise {
-            w_alpha: Noise {
-                w_gamma: altitude_by_w_alpha_w_gamma,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        gamma: Noise {
-            w_gamma: Noise {
-                w_alpha: gamma_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: gamma_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: gamma_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        alpha: Noise {
-            w_gamma: Noise {
-                w_alpha: alpha_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: alpha_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            w_q: Noise {
-                w_alpha: alpha_by_w_q_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        pitch_rate: Noise {
-            w_gamma: Noise {
-                w_alpha: pitch_rate_by_w_gamma_w_alpha,
-                ..no_noise
-            },
-            w_alpha: Noise {
-                w_alpha: pitch_rate_by_w_alpha_w_alpha,
-                ..no_noise
-            },
-            ..no_noise_noise
-        },
-        ..no_state_noise_noise
-    }
+    NOISE_DERIVATIVES_PATTERN.dense(&noise_derivatives_values(x, u, p))
 }
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
 ///
-/// 49 operations: 8 additions, 39 multiplications, 1 sin_cos, 1 exp.
+/// 51 operations: 8 additions, 41 multiplications, 1 sin_cos, 1 exp.
 #[inline]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
@@ -233,36 +171,49 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
 
     // Strict-feedback form, (28)
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let alpha_slope_velocity_term_1 = cos_alpha * c_t_alpha_plus_c_t_phi_alpha_phi
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
+    let alpha_slope_velocity_term_1 = d_slope_of_g_gamma_in_turn_factor_d_alpha
         - p.c_d_alpha;
     let alpha_slope_velocity = reference_force * p.inv_m * alpha_slope_velocity_term_1; // ft/s^2/rad
-    let g_gamma_term_1 = p.c_l_alpha + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * g_gamma_term_1; // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
     let alpha_slope_alpha = -g_gamma; // rad/s/rad
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let d_g_gamma_d_velocity = g_gamma_term_1 * d_turn_factor_d_velocity; // 1/ft
+    let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
+        * d_turn_factor_d_velocity; // 1/ft
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_g_gamma_d_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi * cos_alpha; // 1/s/rad
+    let slope_of_g_gamma_in_sin_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
+    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * cos_alpha; // 1/s/rad
+    let d_slope_of_f_alpha_in_sin_alpha_d_alpha = -slope_of_g_gamma_in_sin_alpha; // 1/s
 
     // Derivatives with respect to velocity
     let d_alpha_slope_velocity_d_velocity = alpha_slope_velocity_term_1
         * d_reference_force_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d_alpha_slope_velocity_d_alpha = reference_force * p.inv_m
-        * c_t_alpha_plus_c_t_phi_alpha_phi * d_cos_alpha_d_alpha; // ft/s^2/rad^2
+    let slope_of_alpha_slope_velocity_in_cos_alpha = reference_force * p.inv_m
+        * c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
+    let d_alpha_slope_velocity_d_alpha = slope_of_alpha_slope_velocity_in_cos_alpha
+        * d_cos_alpha_d_alpha; // ft/s^2/rad^2
+
+    // Derivatives with respect to altitude
+    let slope_of_alpha_slope_alpha_in_turn_factor = -slope_of_g_gamma_in_turn_factor;
 
     // Derivatives with respect to velocity
-    let d_alpha_slope_alpha_d_velocity = -d_g_gamma_d_velocity; // 1/ft
+    let d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
+        * d_turn_factor_d_velocity; // 1/ft
 
     // Derivatives with respect to alpha
-    let d_alpha_slope_alpha_d_alpha = -d_g_gamma_d_alpha; // 1/s/rad
+    let d_alpha_slope_alpha_d_alpha = cos_alpha
+        * d_slope_of_f_alpha_in_sin_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to velocity
     let d_alpha_slope_pitch_rate_d_velocity = (p.c_bar_c_m_alpha

@@ -3,7 +3,7 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
 use super::{Input, ParameterJacobian, Parameters, Prepared, State};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
 pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
@@ -197,7 +197,7 @@ pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 901 operations: 179 additions, 717 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 968 operations: 195 additions, 768 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline]
 pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
@@ -228,21 +228,21 @@ pub fn parameter_jacobian_values<R: Real>(
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -259,49 +259,96 @@ pub fn parameter_jacobian_values<R: Real>(
 
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
+    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
+    let slope_of_f_velocity_in_dynamic_pressure_term_1 = cos_alpha * (c_t_alpha_alpha + p.c_t_0)
+        - p.c_d_alpha * x.alpha
+        - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
+        - p.c_d_0;
+    let slope_of_f_velocity_in_dynamic_pressure = slope_of_f_velocity_in_dynamic_pressure_term_1
+        * p.s_over_m; // ft^3/s^2/lb
+    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let slope_of_f_velocity_eta_in_dynamic_pressure_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
+        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
+        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3;
+    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
+        * slope_of_f_velocity_eta_in_dynamic_pressure_term_1; // ft^3/s^2/lb
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
+    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
+    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
+        * cos_alpha * p.s_over_m; // ft^3/s^2/lb
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
+    let c_t_phi_phi = p.c_t_phi * u.phi;
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0); // rad
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
+    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
+        + c_t_alpha_alpha
+        + c_t_phi_phi
+        + p.c_t_0;
+    let slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
+        + sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
+    let slope_of_f_alpha_eta_in_turn_factor = -slope_of_f_gamma_eta_in_turn_factor; // rad
+    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
+    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
+    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
+    let slope_of_f_pitch_rate_in_dynamic_pressure_term_1 = p.c_m_alpha_2 * alpha_2
+        + p.c_m_alpha * x.alpha
+        + p.c_m_0;
+    let slope_of_f_pitch_rate_in_dynamic_pressure_term_2 = p.z_t
+        * slope_of_f_alpha_in_turn_factor_term_1
+        + p.c_bar * slope_of_f_pitch_rate_in_dynamic_pressure_term_1;
+    let slope_of_f_pitch_rate_in_dynamic_pressure = slope_of_f_pitch_rate_in_dynamic_pressure_term_2
+        * p.s_over_i_yy; // rad*ft^2/s^2/lb
 
     // Derivatives with respect to chi_1
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
     let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let d_gamma_rate_printed_d_chi_1 = turn_factor * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_1 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_1 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
     let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let d_gamma_rate_printed_d_chi_2 = turn_factor * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_2 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_2 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
     let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let d_gamma_rate_printed_d_chi_3 = turn_factor * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_3 = turn_factor
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_3 = reference_force
         * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to parameters
-    let d_f_velocity_eta_d_m_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3;
     let d_f_velocity_eta_d_m = -reference_force * p.inv_m_2
-        * d_f_velocity_eta_d_m_term_1; // ft^2/s^2/slug
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let d_f_velocity_d_m_term_1 = cos_alpha * (c_t_alpha_alpha + p.c_t_0)
-        - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
-        - p.c_d_0;
+        * slope_of_f_velocity_eta_in_dynamic_pressure_term_1; // ft^2/s^2/slug
     let d_f_velocity_d_m = d_f_velocity_eta_d_m
-        - d_f_velocity_d_m_term_1 * reference_force * p.inv_m_2; // ft^2/s^2/slug
-    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
+        - slope_of_f_velocity_in_dynamic_pressure_term_1 * reference_force * p.inv_m_2; // ft^2/s^2/slug
     let d_g_velocity_d_m = -c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
         * reference_force * p.inv_m_2; // ft^2/s^2/slug
     let d_velocity_rate_printed_d_m_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
@@ -310,51 +357,28 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_velocity_rate_printed_d_m = d_f_velocity_d_m
         - reference_force * p.inv_m_2 * d_velocity_rate_printed_d_m_term_1
         + u.phi * d_g_velocity_d_m; // ft^2/s^2/slug
-    let d_f_gamma_eta_d_m_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3;
-    let d_f_gamma_eta_d_m = d_f_gamma_eta_d_m_term_1 * d_reference_force_d_velocity
-        * p.minus_half_inv_m_2; // rad*ft/s/slug
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let d_f_gamma_d_m_term_1 = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0);
-    let d_f_gamma_d_m = d_f_gamma_eta_d_m
-        - d_f_gamma_d_m_term_1 * d_reference_force_d_velocity * p.half_inv_m_2; // rad*ft/s/slug
-    let d_g_gamma_d_m_term_1 = p.c_l_alpha
-        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let d_g_gamma_d_m = d_g_gamma_d_m_term_1 * d_reference_force_d_velocity
-        * p.minus_half_inv_m_2; // ft/s/slug
-    let d_gamma_rate_printed_d_m_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
-    let d_gamma_rate_printed_d_m_term_2 = d_gamma_rate_printed_d_m_term_1
-        * d_reference_force_d_velocity * p.half_inv_m_2;
-    let d_gamma_rate_printed_d_m = d_f_gamma_d_m
-        - d_gamma_rate_printed_d_m_term_2
-        + x.alpha * d_g_gamma_d_m; // rad*ft/s/slug
-    let d_f_alpha_eta_d_m = d_f_gamma_eta_d_m_term_1 * d_reference_force_d_velocity
-        * p.half_inv_m_2; // rad*ft/s/slug
-    let d_f_alpha_d_m_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
-        + p.c_t_0;
-    let d_f_alpha_d_m_term_2 = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + sin_alpha * d_f_alpha_d_m_term_1;
-    let d_f_alpha_d_m = d_f_alpha_d_m_term_2 * d_reference_force_d_velocity
-        * p.half_inv_m_2 + d_f_alpha_eta_d_m; // rad*ft/s/slug
-    let d_alpha_rate_printed_d_m = d_gamma_rate_printed_d_m_term_2 + d_f_alpha_d_m; // rad*ft/s/slug
+    let d_f_gamma_d_m = -d_reference_force_d_velocity * p.inv_m_2
+        * (R::HALF * slope_of_f_gamma_in_turn_factor
+            + R::HALF * slope_of_f_gamma_eta_in_turn_factor); // rad*ft/s/slug
+    let alpha_slope_of_g_gamma_in_turn_factor = x.alpha
+        * slope_of_g_gamma_in_turn_factor;
+    let d_gamma_rate_printed_d_m = d_reference_force_d_velocity * p.inv_m_2
+        * (-R::HALF * slope_of_gamma_rate_printed_in_turn_factor
+            - R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_m; // rad*ft/s/slug
+    let d_f_alpha_d_m = -d_reference_force_d_velocity * p.inv_m_2
+        * (R::HALF * slope_of_f_alpha_in_turn_factor
+            + R::HALF * slope_of_f_alpha_eta_in_turn_factor); // rad*ft/s/slug
+    let d_alpha_rate_printed_d_m = d_f_alpha_d_m
+        - slope_of_alpha_rate_printed_in_turn_factor * d_reference_force_d_velocity
+            * p.half_inv_m_2; // rad*ft/s/slug
     let d_f_pitch_rate_eta_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3;
     let d_f_pitch_rate_eta_d_i_yy = -p.inv_i_yy_2 * reference_force
         * d_f_pitch_rate_eta_d_i_yy_term_1; // rad/s^2/slug/ft
-    let d_f_pitch_rate_d_i_yy_term_1 = p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_0;
-    let d_f_pitch_rate_d_i_yy_term_2 = p.z_t * d_f_alpha_d_m_term_1
-        + p.c_bar * d_f_pitch_rate_d_i_yy_term_1;
     let d_f_pitch_rate_d_i_yy = d_f_pitch_rate_eta_d_i_yy
-        - d_f_pitch_rate_d_i_yy_term_2 * reference_force * p.inv_i_yy_2; // rad/s^2/slug/ft
+        - slope_of_f_pitch_rate_in_dynamic_pressure_term_2 * reference_force
+            * p.inv_i_yy_2; // rad/s^2/slug/ft
     let d_g_pitch_rate_d_i_yy = -p.d_g_pitch_rate_d_i_yy_constant_1 * reference_force; // 1/s^2/slug/ft
     let d_pitch_rate_rate_printed_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
@@ -363,42 +387,45 @@ pub fn parameter_jacobian_values<R: Real>(
         - p.inv_i_yy_2 * reference_force * d_pitch_rate_rate_printed_d_i_yy_term_1
         + u.delta_e * d_g_pitch_rate_d_i_yy; // rad/s^2/slug/ft
     let d_f_velocity_eta_d_s = dynamic_pressure
-        * (p.inv_m * d_f_velocity_eta_d_m_term_1
+        * (p.inv_m * slope_of_f_velocity_eta_in_dynamic_pressure_term_1
             + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * c_n_1
             + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * c_n_2
             + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * c_n_3); // 1/s^2
-    let d_f_velocity_d_s = d_f_velocity_d_m_term_1 * dynamic_pressure * p.inv_m
-        + d_f_velocity_eta_d_s; // 1/s^2
+    let d_f_velocity_d_s = slope_of_f_velocity_in_dynamic_pressure_term_1
+        * dynamic_pressure * p.inv_m + d_f_velocity_eta_d_s; // 1/s^2
     let d_g_velocity_d_s = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
         * dynamic_pressure * p.inv_m; // 1/s^2
     let d_velocity_rate_printed_d_s = dynamic_pressure * p.inv_m * d_velocity_rate_printed_d_m_term_1
         + d_f_velocity_d_s
         + u.phi * d_g_velocity_d_s; // 1/s^2
     let d_f_gamma_eta_d_s = dynamic_pressure
-        * (d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2 * c_n_1
-            + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2 * c_n_2
-            + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2 * c_n_3)
-        + d_f_gamma_eta_d_m_term_1 * d_dynamic_pressure_d_velocity * p.half_over_m; // rad/s/ft
-    let d_f_gamma_d_s = d_f_gamma_d_m_term_1 * d_dynamic_pressure_d_velocity
+        * (slope_of_f_gamma_eta_in_generalized_force_1 * c_n_1
+            + slope_of_f_gamma_eta_in_generalized_force_2 * c_n_2
+            + slope_of_f_gamma_eta_in_generalized_force_3 * c_n_3)
+        + slope_of_f_gamma_eta_in_turn_factor * d_dynamic_pressure_d_velocity
+            * p.half_over_m; // rad/s/ft
+    let d_f_gamma_d_s = slope_of_f_gamma_in_turn_factor * d_dynamic_pressure_d_velocity
         * p.half_over_m + d_f_gamma_eta_d_s; // rad/s/ft
-    let d_g_gamma_d_s = d_g_gamma_d_m_term_1 * d_dynamic_pressure_d_velocity
-        * p.half_over_m; // 1/s/ft
-    let d_gamma_rate_printed_d_s_term_1 = d_gamma_rate_printed_d_m_term_1
-        * d_dynamic_pressure_d_velocity * p.half_over_m;
-    let d_gamma_rate_printed_d_s = d_gamma_rate_printed_d_s_term_1
-        + d_f_gamma_d_s
-        + x.alpha * d_g_gamma_d_s; // rad/s/ft
-    let d_f_alpha_eta_d_s = -d_f_gamma_eta_d_s; // rad/s/ft
-    let d_f_alpha_d_s = d_f_alpha_eta_d_s
-        - d_f_alpha_d_m_term_2 * d_dynamic_pressure_d_velocity * p.half_over_m; // rad/s/ft
-    let d_alpha_rate_printed_d_s = d_f_alpha_d_s - d_gamma_rate_printed_d_s_term_1; // rad/s/ft
+    let d_gamma_rate_printed_d_s = d_dynamic_pressure_d_velocity * p.inv_m
+        * (R::HALF * slope_of_gamma_rate_printed_in_turn_factor
+            + R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_s; // rad/s/ft
+    let d_f_alpha_eta_d_s = dynamic_pressure
+        * (slope_of_f_alpha_eta_in_generalized_force_1 * c_n_1
+            + slope_of_f_alpha_eta_in_generalized_force_2 * c_n_2
+            + slope_of_f_alpha_eta_in_generalized_force_3 * c_n_3)
+        + slope_of_f_alpha_eta_in_turn_factor * d_dynamic_pressure_d_velocity
+            * p.half_over_m; // rad/s/ft
+    let d_f_alpha_d_s = slope_of_f_alpha_in_turn_factor * d_dynamic_pressure_d_velocity
+        * p.half_over_m + d_f_alpha_eta_d_s; // rad/s/ft
+    let d_alpha_rate_printed_d_s = slope_of_alpha_rate_printed_in_turn_factor
+        * d_dynamic_pressure_d_velocity * p.half_over_m + d_f_alpha_d_s; // rad/s/ft
     let d_f_pitch_rate_eta_d_s = dynamic_pressure
         * (p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
             + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * c_n_1
             + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * c_n_2
             + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * c_n_3); // rad/s^2/ft
-    let d_f_pitch_rate_d_s = d_f_pitch_rate_d_i_yy_term_2 * dynamic_pressure * p.inv_i_yy
-        + d_f_pitch_rate_eta_d_s; // rad/s^2/ft
+    let d_f_pitch_rate_d_s = slope_of_f_pitch_rate_in_dynamic_pressure_term_2
+        * dynamic_pressure * p.inv_i_yy + d_f_pitch_rate_eta_d_s; // rad/s^2/ft
     let d_g_pitch_rate_d_s = p.g_pitch_rate_constant_1 * dynamic_pressure; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_s = p.inv_i_yy * dynamic_pressure * d_pitch_rate_rate_printed_d_i_yy_term_1
         + d_f_pitch_rate_d_s
@@ -407,7 +434,7 @@ pub fn parameter_jacobian_values<R: Real>(
         * (eta_static_1 * p.c_m_eta_1 + eta_static_2 * p.c_m_eta_2
             + eta_static_3 * p.c_m_eta_3); // rad/s^2/ft
     let d_f_pitch_rate_d_c_bar = reference_force * p.inv_i_yy
-        * d_f_pitch_rate_d_i_yy_term_1 + d_f_pitch_rate_eta_d_c_bar; // rad/s^2/ft
+        * slope_of_f_pitch_rate_in_dynamic_pressure_term_1 + d_f_pitch_rate_eta_d_c_bar; // rad/s^2/ft
     let d_g_pitch_rate_d_c_bar = p.d_g_pitch_rate_d_c_bar_constant_1 * reference_force; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_c_bar = reference_force * p.inv_i_yy
         * (x.chi_1 * p.c_m_eta_1 + x.chi_2 * p.c_m_eta_2 + x.chi_3 * p.c_m_eta_3)
@@ -415,43 +442,48 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_f_pitch_rate_eta_d_z_t = reference_force * p.inv_i_yy
         * (eta_static_1 * p.c_t_eta_1 + eta_static_2 * p.c_t_eta_2
             + eta_static_3 * p.c_t_eta_3); // rad/s^2/ft
-    let d_f_pitch_rate_d_z_t = reference_force * p.inv_i_yy * d_f_alpha_d_m_term_1
-        + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
+    let d_f_pitch_rate_d_z_t = reference_force * p.inv_i_yy
+        * slope_of_f_alpha_in_turn_factor_term_1 + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
     let d_pitch_rate_rate_printed_d_z_t = reference_force * p.inv_i_yy
         * (x.chi_1 * p.c_t_eta_1 + x.chi_2 * p.c_t_eta_2 + x.chi_3 * p.c_t_eta_3)
         + d_f_pitch_rate_d_z_t; // rad/s^2/ft
-    let d_f_velocity_eta_d_rho_0 = p.s * density_ratio
-        * (p.half_over_m * d_f_velocity_eta_d_m_term_1 * velocity_2
-            + d_velocity_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * c_n_1 * velocity_2
-            + d_velocity_rate_printed_d_chi_2 * p.half_inv_omega_2_2 * c_n_2 * velocity_2
-            + d_velocity_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * c_n_3
-                * velocity_2); // ft^4/s^2/slug
-    let d_f_velocity_d_rho_0 = d_f_velocity_d_m_term_1 * p.half_s_over_m * velocity_2
-        * density_ratio + d_f_velocity_eta_d_rho_0; // ft^4/s^2/slug
-    let d_g_velocity_d_rho_0 = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * p.half_s_over_m * velocity_2 * density_ratio; // ft^4/s^2/slug
-    let d_velocity_rate_printed_d_rho_0 = p.half_s_over_m
-        * d_velocity_rate_printed_d_m_term_1 * velocity_2 * density_ratio
-        + d_f_velocity_d_rho_0 + u.phi * d_g_velocity_d_rho_0; // ft^4/s^2/slug
+    let d_f_velocity_eta_d_rho_0 = density_ratio
+        * (p.s
+            * (d_velocity_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * c_n_1
+                * velocity_2
+                + d_velocity_rate_printed_d_chi_2 * p.half_inv_omega_2_2 * c_n_2
+                    * velocity_2
+                + d_velocity_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * c_n_3
+                    * velocity_2)
+            + R::HALF * slope_of_f_velocity_eta_in_dynamic_pressure * velocity_2); // ft^4/s^2/slug
+    let d_f_velocity_d_rho_0 = R::HALF * slope_of_f_velocity_in_dynamic_pressure
+        * velocity_2 * density_ratio + d_f_velocity_eta_d_rho_0; // ft^4/s^2/slug
+    let d_velocity_rate_printed_d_rho_0 = density_ratio
+        * (p.half_s_over_m * d_velocity_rate_printed_d_m_term_1 * velocity_2
+            + R::HALF * u.phi * slope_of_g_velocity_in_dynamic_pressure * velocity_2)
+        + d_f_velocity_d_rho_0; // ft^4/s^2/slug
     let d_f_gamma_eta_d_rho_0 = p.s * density_ratio
-        * (d_f_gamma_eta_d_m_term_1 * p.half_over_m * x.velocity
-            + d_gamma_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * c_n_1 * velocity_2
-            + d_gamma_rate_printed_d_chi_2 * p.half_inv_omega_2_2 * c_n_2 * velocity_2
-            + d_gamma_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * c_n_3 * velocity_2); // rad*ft^3/s/slug
-    let d_f_gamma_d_rho_0 = d_f_gamma_d_m_term_1 * p.half_s_over_m * x.velocity
-        * density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
-    let d_g_gamma_d_rho_0 = d_g_gamma_d_m_term_1 * p.half_s_over_m * x.velocity
-        * density_ratio; // ft^3/s/slug
-    let d_gamma_rate_printed_d_rho_0_term_1 = d_gamma_rate_printed_d_m_term_1
-        * p.half_s_over_m * x.velocity * density_ratio;
-    let d_gamma_rate_printed_d_rho_0 = d_gamma_rate_printed_d_rho_0_term_1
-        + d_f_gamma_d_rho_0
-        + x.alpha * d_g_gamma_d_rho_0; // rad*ft^3/s/slug
-    let d_f_alpha_eta_d_rho_0 = -d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
-    let d_f_alpha_d_rho_0 = d_f_alpha_eta_d_rho_0
-        - d_f_alpha_d_m_term_2 * p.half_s_over_m * x.velocity * density_ratio; // rad*ft^3/s/slug
-    let d_alpha_rate_printed_d_rho_0 = d_f_alpha_d_rho_0
-        - d_gamma_rate_printed_d_rho_0_term_1; // rad*ft^3/s/slug
+        * (slope_of_f_gamma_eta_in_turn_factor * p.half_over_m * x.velocity
+            + R::HALF * slope_of_f_gamma_eta_in_generalized_force_1 * c_n_1 * velocity_2
+            + R::HALF * slope_of_f_gamma_eta_in_generalized_force_2 * c_n_2 * velocity_2
+            + R::HALF * slope_of_f_gamma_eta_in_generalized_force_3 * c_n_3
+                * velocity_2); // rad*ft^3/s/slug
+    let d_f_gamma_d_rho_0 = slope_of_f_gamma_in_turn_factor * p.half_s_over_m
+        * x.velocity * density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
+    let d_gamma_rate_printed_d_rho_0 = p.s_over_m * density_ratio
+        * (R::HALF * slope_of_gamma_rate_printed_in_turn_factor * x.velocity
+            + R::HALF * x.alpha * slope_of_g_gamma_in_turn_factor * x.velocity)
+        + d_f_gamma_d_rho_0; // rad*ft^3/s/slug
+    let d_f_alpha_eta_d_rho_0 = p.s * density_ratio
+        * (slope_of_f_alpha_eta_in_turn_factor * p.half_over_m * x.velocity
+            + R::HALF * slope_of_f_alpha_eta_in_generalized_force_1 * c_n_1 * velocity_2
+            + R::HALF * slope_of_f_alpha_eta_in_generalized_force_2 * c_n_2 * velocity_2
+            + R::HALF * slope_of_f_alpha_eta_in_generalized_force_3 * c_n_3
+                * velocity_2); // rad*ft^3/s/slug
+    let d_f_alpha_d_rho_0 = slope_of_f_alpha_in_turn_factor * p.half_s_over_m
+        * x.velocity * density_ratio + d_f_alpha_eta_d_rho_0; // rad*ft^3/s/slug
+    let d_alpha_rate_printed_d_rho_0 = slope_of_alpha_rate_printed_in_turn_factor
+        * p.half_s_over_m * x.velocity * density_ratio + d_f_alpha_d_rho_0; // rad*ft^3/s/slug
     let d_f_pitch_rate_eta_d_rho_0 = p.s * density_ratio
         * (p.half_over_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1 * velocity_2
             + d_pitch_rate_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * c_n_1
@@ -460,13 +492,12 @@ pub fn parameter_jacobian_values<R: Real>(
                 * velocity_2
             + d_pitch_rate_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * c_n_3
                 * velocity_2); // rad*ft^3/s^2/slug
-    let d_f_pitch_rate_d_rho_0 = d_f_pitch_rate_d_i_yy_term_2 * p.half_s_over_i_yy
+    let d_f_pitch_rate_d_rho_0 = R::HALF * slope_of_f_pitch_rate_in_dynamic_pressure
         * velocity_2 * density_ratio + d_f_pitch_rate_eta_d_rho_0; // rad*ft^3/s^2/slug
-    let d_g_pitch_rate_d_rho_0 = p.d_g_pitch_rate_d_rho_0_constant_1 * velocity_2
-        * density_ratio; // ft^3/s^2/slug
-    let d_pitch_rate_rate_printed_d_rho_0 = p.half_s_over_i_yy
-        * d_pitch_rate_rate_printed_d_i_yy_term_1 * velocity_2 * density_ratio
-        + d_f_pitch_rate_d_rho_0 + u.delta_e * d_g_pitch_rate_d_rho_0; // rad*ft^3/s^2/slug
+    let d_pitch_rate_rate_printed_d_rho_0 = density_ratio
+        * (p.half_s_over_i_yy * d_pitch_rate_rate_printed_d_i_yy_term_1 * velocity_2
+            + u.delta_e * p.d_pitch_rate_rate_printed_d_rho_0_constant_1 * velocity_2)
+        + d_f_pitch_rate_d_rho_0; // rad*ft^3/s^2/slug
     let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * velocity_2 * d_density_d_h_0; // lb/ft^3
@@ -474,36 +505,38 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_generalized_force_1_d_h_0 = c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_2_d_h_0 = c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_0 = c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_m
-        * d_f_velocity_eta_d_m_term_1
+    let d_f_velocity_eta_d_h_0 = slope_of_f_velocity_eta_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_0
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d_generalized_force_3_d_h_0; // 1/s^2
-    let d_f_velocity_d_h_0 = d_f_velocity_d_m_term_1 * d_reference_force_d_h_0 * p.inv_m
-        + d_f_velocity_eta_d_h_0; // 1/s^2
-    let d_g_velocity_d_h_0 = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * d_reference_force_d_h_0 * p.inv_m; // 1/s^2
+    let d_f_velocity_d_h_0 = slope_of_f_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_0 + d_f_velocity_eta_d_h_0; // 1/s^2
+    let d_g_velocity_d_h_0 = slope_of_g_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_0; // 1/s^2
     let d_velocity_rate_printed_d_h_0 = d_reference_force_d_h_0 * p.inv_m * d_velocity_rate_printed_d_m_term_1
         + d_f_velocity_d_h_0
         + u.phi * d_g_velocity_d_h_0; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_f_gamma_eta_d_h_0 = d_f_gamma_eta_d_m_term_1 * d_turn_factor_d_h_0
-        + d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // rad/s/ft
-    let d_f_gamma_d_h_0 = d_f_gamma_d_m_term_1 * d_turn_factor_d_h_0
+    let d_f_gamma_eta_d_h_0 = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_h_0
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
+    let d_f_gamma_d_h_0 = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_h_0
         + d_f_gamma_eta_d_h_0; // rad/s/ft
-    let d_g_gamma_d_h_0 = d_g_gamma_d_m_term_1 * d_turn_factor_d_h_0; // 1/s/ft
-    let d_gamma_rate_printed_d_h_0_term_1 = d_gamma_rate_printed_d_m_term_1
-        * d_turn_factor_d_h_0;
-    let d_gamma_rate_printed_d_h_0 = d_gamma_rate_printed_d_h_0_term_1
+    let d_g_gamma_d_h_0 = slope_of_g_gamma_in_turn_factor * d_turn_factor_d_h_0; // 1/s/ft
+    let d_gamma_rate_printed_d_h_0 = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_h_0
         + d_f_gamma_d_h_0
         + x.alpha * d_g_gamma_d_h_0; // rad/s/ft
-    let d_f_alpha_eta_d_h_0 = -d_f_gamma_eta_d_h_0; // rad/s/ft
-    let d_f_alpha_d_h_0 = d_f_alpha_eta_d_h_0
-        - d_f_alpha_d_m_term_2 * d_turn_factor_d_h_0; // rad/s/ft
-    let d_alpha_rate_printed_d_h_0 = d_f_alpha_d_h_0 - d_gamma_rate_printed_d_h_0_term_1; // rad/s/ft
+    let d_f_alpha_eta_d_h_0 = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_h_0
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
+    let d_f_alpha_d_h_0 = slope_of_f_alpha_in_turn_factor * d_turn_factor_d_h_0
+        + d_f_alpha_eta_d_h_0; // rad/s/ft
+    let d_alpha_rate_printed_d_h_0 = slope_of_alpha_rate_printed_in_turn_factor
+        * d_turn_factor_d_h_0 + d_f_alpha_d_h_0; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy
         * d_f_pitch_rate_eta_d_i_yy_term_1
         + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
@@ -512,9 +545,10 @@ pub fn parameter_jacobian_values<R: Real>(
             * d_generalized_force_2_d_h_0
         + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d_generalized_force_3_d_h_0; // rad/s^2/ft
-    let d_f_pitch_rate_d_h_0 = d_f_pitch_rate_d_i_yy_term_2 * d_reference_force_d_h_0
-        * p.inv_i_yy + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
-    let d_g_pitch_rate_d_h_0 = p.g_pitch_rate_constant_1 * d_reference_force_d_h_0; // 1/s^2/ft
+    let d_f_pitch_rate_d_h_0 = slope_of_f_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_0 + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
+    let d_g_pitch_rate_d_h_0 = p.slope_of_g_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_0; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy
         * d_pitch_rate_rate_printed_d_i_yy_term_1 + d_f_pitch_rate_d_h_0
         + u.delta_e * d_g_pitch_rate_d_h_0; // rad/s^2/ft
@@ -525,36 +559,38 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_generalized_force_1_d_h_s = c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_2_d_h_s = c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_s = c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_h_s = d_reference_force_d_h_s * p.inv_m
-        * d_f_velocity_eta_d_m_term_1
+    let d_f_velocity_eta_d_h_s = slope_of_f_velocity_eta_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_s
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d_generalized_force_3_d_h_s; // 1/s^2
-    let d_f_velocity_d_h_s = d_f_velocity_d_m_term_1 * d_reference_force_d_h_s * p.inv_m
-        + d_f_velocity_eta_d_h_s; // 1/s^2
-    let d_g_velocity_d_h_s = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * d_reference_force_d_h_s * p.inv_m; // 1/s^2
+    let d_f_velocity_d_h_s = slope_of_f_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_s + d_f_velocity_eta_d_h_s; // 1/s^2
+    let d_g_velocity_d_h_s = slope_of_g_velocity_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_s; // 1/s^2
     let d_velocity_rate_printed_d_h_s = d_reference_force_d_h_s * p.inv_m * d_velocity_rate_printed_d_m_term_1
         + d_f_velocity_d_h_s
         + u.phi * d_g_velocity_d_h_s; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_f_gamma_eta_d_h_s = d_f_gamma_eta_d_m_term_1 * d_turn_factor_d_h_s
-        + d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // rad/s/ft
-    let d_f_gamma_d_h_s = d_f_gamma_d_m_term_1 * d_turn_factor_d_h_s
+    let d_f_gamma_eta_d_h_s = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_h_s
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
+    let d_f_gamma_d_h_s = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_h_s
         + d_f_gamma_eta_d_h_s; // rad/s/ft
-    let d_g_gamma_d_h_s = d_g_gamma_d_m_term_1 * d_turn_factor_d_h_s; // 1/s/ft
-    let d_gamma_rate_printed_d_h_s_term_1 = d_gamma_rate_printed_d_m_term_1
-        * d_turn_factor_d_h_s;
-    let d_gamma_rate_printed_d_h_s = d_gamma_rate_printed_d_h_s_term_1
+    let d_g_gamma_d_h_s = slope_of_g_gamma_in_turn_factor * d_turn_factor_d_h_s; // 1/s/ft
+    let d_gamma_rate_printed_d_h_s = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_h_s
         + d_f_gamma_d_h_s
         + x.alpha * d_g_gamma_d_h_s; // rad/s/ft
-    let d_f_alpha_eta_d_h_s = -d_f_gamma_eta_d_h_s; // rad/s/ft
-    let d_f_alpha_d_h_s = d_f_alpha_eta_d_h_s
-        - d_f_alpha_d_m_term_2 * d_turn_factor_d_h_s; // rad/s/ft
-    let d_alpha_rate_printed_d_h_s = d_f_alpha_d_h_s - d_gamma_rate_printed_d_h_s_term_1; // rad/s/ft
+    let d_f_alpha_eta_d_h_s = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_h_s
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
+    let d_f_alpha_d_h_s = slope_of_f_alpha_in_turn_factor * d_turn_factor_d_h_s
+        + d_f_alpha_eta_d_h_s; // rad/s/ft
+    let d_alpha_rate_printed_d_h_s = slope_of_alpha_rate_printed_in_turn_factor
+        * d_turn_factor_d_h_s + d_f_alpha_d_h_s; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_s = d_reference_force_d_h_s * p.inv_i_yy
         * d_f_pitch_rate_eta_d_i_yy_term_1
         + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
@@ -563,21 +599,22 @@ pub fn parameter_jacobian_values<R: Real>(
             * d_generalized_force_2_d_h_s
         + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d_generalized_force_3_d_h_s; // rad/s^2/ft
-    let d_f_pitch_rate_d_h_s = d_f_pitch_rate_d_i_yy_term_2 * d_reference_force_d_h_s
-        * p.inv_i_yy + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
-    let d_g_pitch_rate_d_h_s = p.g_pitch_rate_constant_1 * d_reference_force_d_h_s; // 1/s^2/ft
+    let d_f_pitch_rate_d_h_s = slope_of_f_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_s + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
+    let d_g_pitch_rate_d_h_s = p.slope_of_g_pitch_rate_in_dynamic_pressure
+        * d_dynamic_pressure_d_h_s; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_h_s = d_reference_force_d_h_s * p.inv_i_yy
         * d_pitch_rate_rate_printed_d_i_yy_term_1 + d_f_pitch_rate_d_h_s
         + u.delta_e * d_g_pitch_rate_d_h_s; // rad/s^2/ft
     let radius_ratio_2 = radius_ratio * radius_ratio;
-    let d_radius_ratio_d_r_e = radius_ratio_2 * x.altitude * p.earth_curvature_over_r_e; // 1/ft
-    let d_gravity_d_r_e = p.two_g * radius_ratio * d_radius_ratio_d_r_e; // 1/s^2
-    let d_f_velocity_d_r_e = -sin_gamma * d_gravity_d_r_e; // 1/s^2
-    let velocity_radius_ratio_over_r_e = x.velocity * radius_ratio * p.inv_r_e;
+    let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
     let inv_velocity = x.velocity.recip();
-    let d_gravity_turn_d_r_e = p.earth_curvature
-        * (velocity_radius_ratio_over_r_e - x.velocity * d_radius_ratio_d_r_e)
-        + d_gravity_d_r_e * inv_velocity; // 1/s/ft
+    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
+        * inv_velocity;
+    let d_gravity_turn_d_r_e = p.inv_r_e
+        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+            + x.velocity * p.earth_curvature_2
+                * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_f_gamma_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_f_alpha_d_r_e = cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_f_velocity_eta_d_omega_1 = d_velocity_rate_printed_d_chi_1 * eta_static_1
@@ -616,10 +653,13 @@ pub fn parameter_jacobian_values<R: Real>(
             + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
                 * u.delta_c); // ft/s^2
     let d_f_gamma_eta_d_canard_command = reference_force
-        * (d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
-            + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_c
-            + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_c); // rad/s
-    let d_f_alpha_eta_d_canard_command = -d_f_gamma_eta_d_canard_command; // rad/s
+        * (slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
+            + slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
+            + slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_c); // rad/s
+    let d_f_alpha_eta_d_canard_command = reference_force
+        * (slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
+            + slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
+            + slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_c); // rad/s
     let d_f_pitch_rate_eta_d_canard_command = reference_force
         * (d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
             + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c
@@ -635,13 +675,18 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_f_velocity_d_canard_slaving = reference_force
         * p.d_f_velocity_d_canard_slaving_constant_1 * u.delta_e
         + d_f_velocity_eta_d_canard_slaving; // ft/s^2
-    let d_f_gamma_eta_d_canard_slaving_term_1 = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
-        + d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
-        + d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
-    let d_f_gamma_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
-        * reference_force * d_f_gamma_eta_d_canard_slaving_term_1; // rad/s
-    let d_f_alpha_eta_d_canard_slaving = p.c_l_delta_e_over_c_l_delta_c * reference_force
-        * d_f_gamma_eta_d_canard_slaving_term_1; // rad/s
+    let d_f_gamma_eta_d_canard_slaving_term_1 =
+        slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
+        + slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
+        + slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
+    let d_f_gamma_eta_d_canard_slaving = -reference_force
+        * p.c_l_delta_e_over_c_l_delta_c * d_f_gamma_eta_d_canard_slaving_term_1; // rad/s
+    let d_f_alpha_eta_d_canard_slaving_term_1 =
+        slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
+        + slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
+        + slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
+    let d_f_alpha_eta_d_canard_slaving = -reference_force
+        * p.c_l_delta_e_over_c_l_delta_c * d_f_alpha_eta_d_canard_slaving_term_1; // rad/s
     let d_f_pitch_rate_eta_d_canard_slaving_term_1 = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
         + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
@@ -651,13 +696,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_pitch_rate_rate_printed_d_canard_slaving = d_f_pitch_rate_eta_d_canard_slaving
         - u.delta_e * reference_force
             * p.d_pitch_rate_rate_printed_d_canard_slaving_constant_1; // rad/s^2
-    let d_radius_ratio_d_spherical_earth = -radius_ratio_2 * x.altitude * p.inv_r_e;
-    let d_gravity_d_spherical_earth = p.two_g * radius_ratio
-        * d_radius_ratio_d_spherical_earth; // ft/s^2
-    let d_f_velocity_d_spherical_earth = -sin_gamma * d_gravity_d_spherical_earth; // ft/s^2
-    let d_gravity_turn_d_spherical_earth = d_gravity_d_spherical_earth * inv_velocity
-        - velocity_radius_ratio_over_r_e
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_spherical_earth; // 1/s
+    let d_gravity_turn_d_spherical_earth = p.inv_r_e
+        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_f_gamma_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_f_alpha_d_spherical_earth = cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // ft^0.5*slug^0.5/s
@@ -686,10 +727,10 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_f_velocity_d_c_l_delta_e = reference_force
         * p.d_f_velocity_d_c_l_delta_e_constant_1 * u.delta_e
         + d_f_velocity_eta_d_c_l_delta_e; // ft*rad/s^2
-    let d_f_gamma_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
-        * reference_force * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
-    let d_f_alpha_eta_d_c_l_delta_e = p.canard_slaving_over_c_l_delta_c * reference_force
-        * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
+    let d_f_gamma_eta_d_c_l_delta_e = -reference_force
+        * p.canard_slaving_over_c_l_delta_c * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
+    let d_f_alpha_eta_d_c_l_delta_e = -reference_force
+        * p.canard_slaving_over_c_l_delta_c * d_f_alpha_eta_d_canard_slaving_term_1; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
         * reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad^2/s^2
     let d_pitch_rate_rate_printed_d_c_l_delta_e = d_f_pitch_rate_eta_d_c_l_delta_e
@@ -699,9 +740,12 @@ pub fn parameter_jacobian_values<R: Real>(
         * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_c = d_f_velocity_eta_d_c_l_delta_c
         - reference_force * p.d_f_velocity_d_c_l_delta_c_constant_1 * u.delta_e; // ft*rad/s^2
-    let d_f_gamma_eta_d_c_l_delta_c = p.d_f_velocity_eta_d_c_l_delta_c_constant_1
-        * reference_force * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
-    let d_f_alpha_eta_d_c_l_delta_c = -d_f_gamma_eta_d_c_l_delta_c; // rad^2/s
+    let d_f_gamma_eta_d_c_l_delta_c = reference_force
+        * p.d_f_velocity_eta_d_c_l_delta_c_constant_1
+        * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
+    let d_f_alpha_eta_d_c_l_delta_c = reference_force
+        * p.d_f_velocity_eta_d_c_l_delta_c_constant_1
+        * d_f_alpha_eta_d_canard_slaving_term_1; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_c = p.d_f_velocity_eta_d_c_l_delta_c_constant_1
         * reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad^2/s^2
     let d_pitch_rate_rate_printed_d_c_l_delta_c = d_f_pitch_rate_eta_d_c_l_delta_c
@@ -724,107 +768,62 @@ pub fn parameter_jacobian_values<R: Real>(
         * eta_3; // rad*ft^0.5*slug^0.5/s^2
     let d_f_velocity_eta_d_c_n_1_alpha_2 = d_velocity_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_gamma_eta_d_c_n_1_alpha_2 = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * reference_force * alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_1_alpha_2 = -d_f_gamma_eta_d_c_n_1_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_1_alpha_2 = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_1_alpha = d_velocity_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_1_alpha = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * reference_force * x.alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_1_alpha = -d_f_gamma_eta_d_c_n_1_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_1_alpha = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_1_delta_e = d_velocity_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_1_delta_e = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * reference_force * u.delta_e; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_1_delta_e = -d_f_gamma_eta_d_c_n_1_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_1_delta_e = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_1_delta_c = d_velocity_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_1_delta_c = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * reference_force * canard_deflection; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_1_delta_c = -d_f_gamma_eta_d_c_n_1_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_1_delta_c = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_1_0 = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
         * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_gamma_eta_d_c_n_1_0 = d_gamma_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * reference_force; // rad*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_1_0 = -d_f_gamma_eta_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_1_0 = d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * reference_force; // rad*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_alpha_2 = d_velocity_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_gamma_eta_d_c_n_2_alpha_2 = d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-        * reference_force * alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_2_alpha_2 = -d_f_gamma_eta_d_c_n_2_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_2_alpha_2 = d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_alpha = d_velocity_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_2_alpha = d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-        * reference_force * x.alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_2_alpha = -d_f_gamma_eta_d_c_n_2_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_2_alpha = d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_delta_e = d_velocity_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_2_delta_e = d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-        * reference_force * u.delta_e; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_2_delta_e = -d_f_gamma_eta_d_c_n_2_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_2_delta_e = d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_delta_c = d_velocity_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_2_delta_c = d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-        * reference_force * canard_deflection; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_2_delta_c = -d_f_gamma_eta_d_c_n_2_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_2_delta_c = d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_0 = d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
         * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_gamma_eta_d_c_n_2_0 = d_gamma_rate_printed_d_chi_2 * p.inv_omega_2_2
-        * reference_force; // rad*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_2_0 = -d_f_gamma_eta_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_2_0 = d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * reference_force; // rad*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_alpha_2 = d_velocity_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_gamma_eta_d_c_n_3_alpha_2 = d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-        * reference_force * alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_3_alpha_2 = -d_f_gamma_eta_d_c_n_3_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_3_alpha_2 = d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_alpha = d_velocity_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_3_alpha = d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-        * reference_force * x.alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_3_alpha = -d_f_gamma_eta_d_c_n_3_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_3_alpha = d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_delta_e = d_velocity_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_3_delta_e = d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-        * reference_force * u.delta_e; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_3_delta_e = -d_f_gamma_eta_d_c_n_3_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_3_delta_e = d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_delta_c = d_velocity_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_gamma_eta_d_c_n_3_delta_c = d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-        * reference_force * canard_deflection; // rad^2*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_3_delta_c = -d_f_gamma_eta_d_c_n_3_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_3_delta_c = d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_0 = d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
         * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_gamma_eta_d_c_n_3_0 = d_gamma_rate_printed_d_chi_3 * p.inv_omega_3_2
-        * reference_force; // rad*slug^0.5/s/ft^0.5
-    let d_f_alpha_eta_d_c_n_3_0 = -d_f_gamma_eta_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5
     let d_f_pitch_rate_eta_d_c_n_3_0 = d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * reference_force; // rad*slug^0.5/s^2/ft^0.5
 
@@ -835,13 +834,15 @@ pub fn parameter_jacobian_values<R: Real>(
         d_velocity_rate_printed_d_h_0,
         d_velocity_rate_printed_d_h_s,
         -sin_gamma * radius_ratio_2,
-        d_f_velocity_d_r_e,
+        sin_gamma * p.two_g_earth_curvature_over_r_e * radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
         d_f_velocity_eta_d_omega_1,
         d_f_velocity_eta_d_omega_2,
         d_f_velocity_eta_d_omega_3,
         d_f_velocity_eta_d_canard_command,
         d_f_velocity_d_canard_slaving,
-        d_f_velocity_d_spherical_earth,
+        sin_gamma * p.minus_two_g_over_r_e * radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
         u.phi * reference_force * p.inv_m * cos_alpha * x.alpha,
         u.phi * reference_force * p.inv_m * cos_alpha,
         reference_force * p.inv_m * cos_alpha * x.alpha,
@@ -900,21 +901,24 @@ pub fn parameter_jacobian_values<R: Real>(
         d_gamma_rate_printed_d_c_l_eta_1,
         d_gamma_rate_printed_d_c_l_eta_2,
         d_gamma_rate_printed_d_c_l_eta_3,
-        d_f_gamma_eta_d_c_n_1_alpha_2,
-        d_f_gamma_eta_d_c_n_1_alpha,
-        d_f_gamma_eta_d_c_n_1_delta_e,
-        d_f_gamma_eta_d_c_n_1_delta_c,
-        d_f_gamma_eta_d_c_n_1_0,
-        d_f_gamma_eta_d_c_n_2_alpha_2,
-        d_f_gamma_eta_d_c_n_2_alpha,
-        d_f_gamma_eta_d_c_n_2_delta_e,
-        d_f_gamma_eta_d_c_n_2_delta_c,
-        d_f_gamma_eta_d_c_n_2_0,
-        d_f_gamma_eta_d_c_n_3_alpha_2,
-        d_f_gamma_eta_d_c_n_3_alpha,
-        d_f_gamma_eta_d_c_n_3_delta_e,
-        d_f_gamma_eta_d_c_n_3_delta_c,
-        d_f_gamma_eta_d_c_n_3_0,
+        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force * alpha_2,
+        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force * x.alpha,
+        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force * u.delta_e,
+        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force
+            * canard_deflection,
+        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force,
+        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force * alpha_2,
+        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force * x.alpha,
+        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force * u.delta_e,
+        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force
+            * canard_deflection,
+        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force,
+        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force * alpha_2,
+        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force * x.alpha,
+        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force * u.delta_e,
+        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force
+            * canard_deflection,
+        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force,
         d_alpha_rate_printed_d_m,
         d_alpha_rate_printed_d_s,
         d_alpha_rate_printed_d_rho_0,
@@ -942,21 +946,24 @@ pub fn parameter_jacobian_values<R: Real>(
         d_alpha_rate_printed_d_c_l_eta_1,
         d_alpha_rate_printed_d_c_l_eta_2,
         d_alpha_rate_printed_d_c_l_eta_3,
-        d_f_alpha_eta_d_c_n_1_alpha_2,
-        d_f_alpha_eta_d_c_n_1_alpha,
-        d_f_alpha_eta_d_c_n_1_delta_e,
-        d_f_alpha_eta_d_c_n_1_delta_c,
-        d_f_alpha_eta_d_c_n_1_0,
-        d_f_alpha_eta_d_c_n_2_alpha_2,
-        d_f_alpha_eta_d_c_n_2_alpha,
-        d_f_alpha_eta_d_c_n_2_delta_e,
-        d_f_alpha_eta_d_c_n_2_delta_c,
-        d_f_alpha_eta_d_c_n_2_0,
-        d_f_alpha_eta_d_c_n_3_alpha_2,
-        d_f_alpha_eta_d_c_n_3_alpha,
-        d_f_alpha_eta_d_c_n_3_delta_e,
-        d_f_alpha_eta_d_c_n_3_delta_c,
-        d_f_alpha_eta_d_c_n_3_0,
+        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force * alpha_2,
+        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force * x.alpha,
+        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force * u.delta_e,
+        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force
+            * canard_deflection,
+        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force,
+        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force * alpha_2,
+        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force * x.alpha,
+        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force * u.delta_e,
+        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force
+            * canard_deflection,
+        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force,
+        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force * alpha_2,
+        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force * x.alpha,
+        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force * u.delta_e,
+        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force
+            * canard_deflection,
+        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force,
         d_pitch_rate_rate_printed_d_i_yy,
         d_pitch_rate_rate_printed_d_s,
         d_pitch_rate_rate_printed_d_c_bar,
@@ -1020,267 +1027,5 @@ pub fn parameter_jacobian<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ParameterJacobian<R> {
-    let [velocity_by_m, velocity_by_s, velocity_by_rho_0, velocity_by_h_0,
-    velocity_by_h_s, velocity_by_g, velocity_by_r_e, velocity_by_omega_1,
-    velocity_by_omega_2, velocity_by_omega_3, velocity_by_canard_command,
-    velocity_by_canard_slaving, velocity_by_spherical_earth, velocity_by_c_t_phi_alpha,
-    velocity_by_c_t_phi, velocity_by_c_t_alpha, velocity_by_c_t_0, velocity_by_c_t_eta_1,
-    velocity_by_c_t_eta_2, velocity_by_c_t_eta_3, velocity_by_c_l_delta_e,
-    velocity_by_c_l_delta_c, velocity_by_c_d_alpha, velocity_by_c_d_delta_e,
-    velocity_by_c_d_delta_c, velocity_by_c_d_0, velocity_by_c_d_eta_1,
-    velocity_by_c_d_eta_2, velocity_by_c_d_eta_3, velocity_by_c_n_1_alpha_2,
-    velocity_by_c_n_1_alpha, velocity_by_c_n_1_delta_e, velocity_by_c_n_1_delta_c,
-    velocity_by_c_n_1_0, velocity_by_c_n_2_alpha_2, velocity_by_c_n_2_alpha,
-    velocity_by_c_n_2_delta_e, velocity_by_c_n_2_delta_c, velocity_by_c_n_2_0,
-    velocity_by_c_n_3_alpha_2, velocity_by_c_n_3_alpha, velocity_by_c_n_3_delta_e,
-    velocity_by_c_n_3_delta_c, velocity_by_c_n_3_0, gamma_by_m, gamma_by_s,
-    gamma_by_rho_0, gamma_by_h_0, gamma_by_h_s, gamma_by_g, gamma_by_r_e,
-    gamma_by_omega_1, gamma_by_omega_2, gamma_by_omega_3, gamma_by_canard_command,
-    gamma_by_canard_slaving, gamma_by_spherical_earth, gamma_by_c_t_phi_alpha,
-    gamma_by_c_t_phi, gamma_by_c_t_alpha, gamma_by_c_t_0, gamma_by_c_t_eta_1,
-    gamma_by_c_t_eta_2, gamma_by_c_t_eta_3, gamma_by_c_l_alpha, gamma_by_c_l_delta_e,
-    gamma_by_c_l_delta_c, gamma_by_c_l_0, gamma_by_c_l_eta_1, gamma_by_c_l_eta_2,
-    gamma_by_c_l_eta_3, gamma_by_c_n_1_alpha_2, gamma_by_c_n_1_alpha,
-    gamma_by_c_n_1_delta_e, gamma_by_c_n_1_delta_c, gamma_by_c_n_1_0,
-    gamma_by_c_n_2_alpha_2, gamma_by_c_n_2_alpha, gamma_by_c_n_2_delta_e,
-    gamma_by_c_n_2_delta_c, gamma_by_c_n_2_0, gamma_by_c_n_3_alpha_2,
-    gamma_by_c_n_3_alpha, gamma_by_c_n_3_delta_e, gamma_by_c_n_3_delta_c,
-    gamma_by_c_n_3_0, alpha_by_m, alpha_by_s, alpha_by_rho_0, alpha_by_h_0, alpha_by_h_s,
-    alpha_by_g, alpha_by_r_e, alpha_by_omega_1, alpha_by_omega_2, alpha_by_omega_3,
-    alpha_by_canard_command, alpha_by_canard_slaving, alpha_by_spherical_earth,
-    alpha_by_c_t_phi_alpha, alpha_by_c_t_phi, alpha_by_c_t_alpha, alpha_by_c_t_0,
-    alpha_by_c_t_eta_1, alpha_by_c_t_eta_2, alpha_by_c_t_eta_3, alpha_by_c_l_alpha,
-    alpha_by_c_l_delta_e, alpha_by_c_l_delta_c, alpha_by_c_l_0, alpha_by_c_l_eta_1,
-    alpha_by_c_l_eta_2, alpha_by_c_l_eta_3, alpha_by_c_n_1_alpha_2, alpha_by_c_n_1_alpha,
-    alpha_by_c_n_1_delta_e, alpha_by_c_n_1_delta_c, alpha_by_c_n_1_0,
-    alpha_by_c_n_2_alpha_2, alpha_by_c_n_2_alpha, alpha_by_c_n_2_delta_e,
-    alpha_by_c_n_2_delta_c, alpha_by_c_n_2_0, alpha_by_c_n_3_alpha_2,
-    alpha_by_c_n_3_alpha, alpha_by_c_n_3_delta_e, alpha_by_c_n_3_delta_c,
-    alpha_by_c_n_3_0, pitch_rate_by_i_yy, pitch_rate_by_s, pitch_rate_by_c_bar,
-    pitch_rate_by_z_t, pitch_rate_by_rho_0, pitch_rate_by_h_0, pitch_rate_by_h_s,
-    pitch_rate_by_omega_1, pitch_rate_by_omega_2, pitch_rate_by_omega_3,
-    pitch_rate_by_canard_command, pitch_rate_by_canard_slaving,
-    pitch_rate_by_c_t_phi_alpha, pitch_rate_by_c_t_phi, pitch_rate_by_c_t_alpha,
-    pitch_rate_by_c_t_0, pitch_rate_by_c_t_eta_1, pitch_rate_by_c_t_eta_2,
-    pitch_rate_by_c_t_eta_3, pitch_rate_by_c_l_delta_e, pitch_rate_by_c_l_delta_c,
-    pitch_rate_by_c_m_alpha_2, pitch_rate_by_c_m_alpha, pitch_rate_by_c_m_delta_e,
-    pitch_rate_by_c_m_delta_c, pitch_rate_by_c_m_0, pitch_rate_by_c_m_eta_1,
-    pitch_rate_by_c_m_eta_2, pitch_rate_by_c_m_eta_3, pitch_rate_by_c_n_1_alpha_2,
-    pitch_rate_by_c_n_1_alpha, pitch_rate_by_c_n_1_delta_e, pitch_rate_by_c_n_1_delta_c,
-    pitch_rate_by_c_n_1_0, pitch_rate_by_c_n_2_alpha_2, pitch_rate_by_c_n_2_alpha,
-    pitch_rate_by_c_n_2_delta_e, pitch_rate_by_c_n_2_delta_c, pitch_rate_by_c_n_2_0,
-    pitch_rate_by_c_n_3_alpha_2, pitch_rate_by_c_n_3_alpha, pitch_rate_by_c_n_3_delta_e,
-    pitch_rate_by_c_n_3_delta_c, pitch_rate_by_c_n_3_0, chi_1_by_omega_1,
-    chi_1_by_zeta_1, chi_1_by_moment_matching, chi_2_by_omega_2, chi_2_by_zeta_2,
-    chi_2_by_moment_matching, chi_3_by_omega_3, chi_3_by_zeta_3, chi_3_by_moment_matching,
-    ] = parameter_jacobian_values(x, u, p);
-
-    // Result
-    let no_parameter = Parameters::splat(R::ZERO);
-    let no_state_parameter = State::splat(no_parameter);
-    State {
-        velocity: Parameters {
-            m: velocity_by_m,
-            s: velocity_by_s,
-            rho_0: velocity_by_rho_0,
-            h_0: velocity_by_h_0,
-            h_s: velocity_by_h_s,
-            g: velocity_by_g,
-            r_e: velocity_by_r_e,
-            omega_1: velocity_by_omega_1,
-            omega_2: velocity_by_omega_2,
-            omega_3: velocity_by_omega_3,
-            canard_command: velocity_by_canard_command,
-            canard_slaving: velocity_by_canard_slaving,
-            spherical_earth: velocity_by_spherical_earth,
-            c_t_phi_alpha: velocity_by_c_t_phi_alpha,
-            c_t_phi: velocity_by_c_t_phi,
-            c_t_alpha: velocity_by_c_t_alpha,
-            c_t_0: velocity_by_c_t_0,
-            c_t_eta_1: velocity_by_c_t_eta_1,
-            c_t_eta_2: velocity_by_c_t_eta_2,
-            c_t_eta_3: velocity_by_c_t_eta_3,
-            c_l_delta_e: velocity_by_c_l_delta_e,
-            c_l_delta_c: velocity_by_c_l_delta_c,
-            c_d_alpha: velocity_by_c_d_alpha,
-            c_d_delta_e: velocity_by_c_d_delta_e,
-            c_d_delta_c: velocity_by_c_d_delta_c,
-            c_d_0: velocity_by_c_d_0,
-            c_d_eta_1: velocity_by_c_d_eta_1,
-            c_d_eta_2: velocity_by_c_d_eta_2,
-            c_d_eta_3: velocity_by_c_d_eta_3,
-            c_n_1_alpha_2: velocity_by_c_n_1_alpha_2,
-            c_n_1_alpha: velocity_by_c_n_1_alpha,
-            c_n_1_delta_e: velocity_by_c_n_1_delta_e,
-            c_n_1_delta_c: velocity_by_c_n_1_delta_c,
-            c_n_1_0: velocity_by_c_n_1_0,
-            c_n_2_alpha_2: velocity_by_c_n_2_alpha_2,
-            c_n_2_alpha: velocity_by_c_n_2_alpha,
-            c_n_2_delta_e: velocity_by_c_n_2_delta_e,
-            c_n_2_delta_c: velocity_by_c_n_2_delta_c,
-            c_n_2_0: velocity_by_c_n_2_0,
-            c_n_3_alpha_2: velocity_by_c_n_3_alpha_2,
-            c_n_3_alpha: velocity_by_c_n_3_alpha,
-            c_n_3_delta_e: velocity_by_c_n_3_delta_e,
-            c_n_3_delta_c: velocity_by_c_n_3_delta_c,
-            c_n_3_0: velocity_by_c_n_3_0,
-            ..no_parameter
-        },
-        gamma: Parameters {
-            m: gamma_by_m,
-            s: gamma_by_s,
-            rho_0: gamma_by_rho_0,
-            h_0: gamma_by_h_0,
-            h_s: gamma_by_h_s,
-            g: gamma_by_g,
-            r_e: gamma_by_r_e,
-            omega_1: gamma_by_omega_1,
-            omega_2: gamma_by_omega_2,
-            omega_3: gamma_by_omega_3,
-            canard_command: gamma_by_canard_command,
-            canard_slaving: gamma_by_canard_slaving,
-            spherical_earth: gamma_by_spherical_earth,
-            c_t_phi_alpha: gamma_by_c_t_phi_alpha,
-            c_t_phi: gamma_by_c_t_phi,
-            c_t_alpha: gamma_by_c_t_alpha,
-            c_t_0: gamma_by_c_t_0,
-            c_t_eta_1: gamma_by_c_t_eta_1,
-            c_t_eta_2: gamma_by_c_t_eta_2,
-            c_t_eta_3: gamma_by_c_t_eta_3,
-            c_l_alpha: gamma_by_c_l_alpha,
-            c_l_delta_e: gamma_by_c_l_delta_e,
-            c_l_delta_c: gamma_by_c_l_delta_c,
-            c_l_0: gamma_by_c_l_0,
-            c_l_eta_1: gamma_by_c_l_eta_1,
-            c_l_eta_2: gamma_by_c_l_eta_2,
-            c_l_eta_3: gamma_by_c_l_eta_3,
-            c_n_1_alpha_2: gamma_by_c_n_1_alpha_2,
-            c_n_1_alpha: gamma_by_c_n_1_alpha,
-            c_n_1_delta_e: gamma_by_c_n_1_delta_e,
-            c_n_1_delta_c: gamma_by_c_n_1_delta_c,
-            c_n_1_0: gamma_by_c_n_1_0,
-            c_n_2_alpha_2: gamma_by_c_n_2_alpha_2,
-            c_n_2_alpha: gamma_by_c_n_2_alpha,
-            c_n_2_delta_e: gamma_by_c_n_2_delta_e,
-            c_n_2_delta_c: gamma_by_c_n_2_delta_c,
-            c_n_2_0: gamma_by_c_n_2_0,
-            c_n_3_alpha_2: gamma_by_c_n_3_alpha_2,
-            c_n_3_alpha: gamma_by_c_n_3_alpha,
-            c_n_3_delta_e: gamma_by_c_n_3_delta_e,
-            c_n_3_delta_c: gamma_by_c_n_3_delta_c,
-            c_n_3_0: gamma_by_c_n_3_0,
-            ..no_parameter
-        },
-        alpha: Parameters {
-            m: alpha_by_m,
-            s: alpha_by_s,
-            rho_0: alpha_by_rho_0,
-            h_0: alpha_by_h_0,
-            h_s: alpha_by_h_s,
-            g: alpha_by_g,
-            r_e: alpha_by_r_e,
-            omega_1: alpha_by_omega_1,
-            omega_2: alpha_by_omega_2,
-            omega_3: alpha_by_omega_3,
-            canard_command: alpha_by_canard_command,
-            canard_slaving: alpha_by_canard_slaving,
-            spherical_earth: alpha_by_spherical_earth,
-            c_t_phi_alpha: alpha_by_c_t_phi_alpha,
-            c_t_phi: alpha_by_c_t_phi,
-            c_t_alpha: alpha_by_c_t_alpha,
-            c_t_0: alpha_by_c_t_0,
-            c_t_eta_1: alpha_by_c_t_eta_1,
-            c_t_eta_2: alpha_by_c_t_eta_2,
-            c_t_eta_3: alpha_by_c_t_eta_3,
-            c_l_alpha: alpha_by_c_l_alpha,
-            c_l_delta_e: alpha_by_c_l_delta_e,
-            c_l_delta_c: alpha_by_c_l_delta_c,
-            c_l_0: alpha_by_c_l_0,
-            c_l_eta_1: alpha_by_c_l_eta_1,
-            c_l_eta_2: alpha_by_c_l_eta_2,
-            c_l_eta_3: alpha_by_c_l_eta_3,
-            c_n_1_alpha_2: alpha_by_c_n_1_alpha_2,
-            c_n_1_alpha: alpha_by_c_n_1_alpha,
-            c_n_1_delta_e: alpha_by_c_n_1_delta_e,
-            c_n_1_delta_c: alpha_by_c_n_1_delta_c,
-            c_n_1_0: alpha_by_c_n_1_0,
-            c_n_2_alpha_2: alpha_by_c_n_2_alpha_2,
-            c_n_2_alpha: alpha_by_c_n_2_alpha,
-            c_n_2_delta_e: alpha_by_c_n_2_delta_e,
-            c_n_2_delta_c: alpha_by_c_n_2_delta_c,
-            c_n_2_0: alpha_by_c_n_2_0,
-            c_n_3_alpha_2: alpha_by_c_n_3_alpha_2,
-            c_n_3_alpha: alpha_by_c_n_3_alpha,
-            c_n_3_delta_e: alpha_by_c_n_3_delta_e,
-            c_n_3_delta_c: alpha_by_c_n_3_delta_c,
-            c_n_3_0: alpha_by_c_n_3_0,
-            ..no_parameter
-        },
-        pitch_rate: Parameters {
-            i_yy: pitch_rate_by_i_yy,
-            s: pitch_rate_by_s,
-            c_bar: pitch_rate_by_c_bar,
-            z_t: pitch_rate_by_z_t,
-            rho_0: pitch_rate_by_rho_0,
-            h_0: pitch_rate_by_h_0,
-            h_s: pitch_rate_by_h_s,
-            omega_1: pitch_rate_by_omega_1,
-            omega_2: pitch_rate_by_omega_2,
-            omega_3: pitch_rate_by_omega_3,
-            canard_command: pitch_rate_by_canard_command,
-            canard_slaving: pitch_rate_by_canard_slaving,
-            c_t_phi_alpha: pitch_rate_by_c_t_phi_alpha,
-            c_t_phi: pitch_rate_by_c_t_phi,
-            c_t_alpha: pitch_rate_by_c_t_alpha,
-            c_t_0: pitch_rate_by_c_t_0,
-            c_t_eta_1: pitch_rate_by_c_t_eta_1,
-            c_t_eta_2: pitch_rate_by_c_t_eta_2,
-            c_t_eta_3: pitch_rate_by_c_t_eta_3,
-            c_l_delta_e: pitch_rate_by_c_l_delta_e,
-            c_l_delta_c: pitch_rate_by_c_l_delta_c,
-            c_m_alpha_2: pitch_rate_by_c_m_alpha_2,
-            c_m_alpha: pitch_rate_by_c_m_alpha,
-            c_m_delta_e: pitch_rate_by_c_m_delta_e,
-            c_m_delta_c: pitch_rate_by_c_m_delta_c,
-            c_m_0: pitch_rate_by_c_m_0,
-            c_m_eta_1: pitch_rate_by_c_m_eta_1,
-            c_m_eta_2: pitch_rate_by_c_m_eta_2,
-            c_m_eta_3: pitch_rate_by_c_m_eta_3,
-            c_n_1_alpha_2: pitch_rate_by_c_n_1_alpha_2,
-            c_n_1_alpha: pitch_rate_by_c_n_1_alpha,
-            c_n_1_delta_e: pitch_rate_by_c_n_1_delta_e,
-            c_n_1_delta_c: pitch_rate_by_c_n_1_delta_c,
-            c_n_1_0: pitch_rate_by_c_n_1_0,
-            c_n_2_alpha_2: pitch_rate_by_c_n_2_alpha_2,
-            c_n_2_alpha: pitch_rate_by_c_n_2_alpha,
-            c_n_2_delta_e: pitch_rate_by_c_n_2_delta_e,
-            c_n_2_delta_c: pitch_rate_by_c_n_2_delta_c,
-            c_n_2_0: pitch_rate_by_c_n_2_0,
-            c_n_3_alpha_2: pitch_rate_by_c_n_3_alpha_2,
-            c_n_3_alpha: pitch_rate_by_c_n_3_alpha,
-            c_n_3_delta_e: pitch_rate_by_c_n_3_delta_e,
-            c_n_3_delta_c: pitch_rate_by_c_n_3_delta_c,
-            c_n_3_0: pitch_rate_by_c_n_3_0,
-            ..no_parameter
-        },
-        chi_1: Parameters {
-            omega_1: chi_1_by_omega_1,
-            zeta_1: chi_1_by_zeta_1,
-            moment_matching: chi_1_by_moment_matching,
-            ..no_parameter
-        },
-        chi_2: Parameters {
-            omega_2: chi_2_by_omega_2,
-            zeta_2: chi_2_by_zeta_2,
-            moment_matching: chi_2_by_moment_matching,
-            ..no_parameter
-        },
-        chi_3: Parameters {
-            omega_3: chi_3_by_omega_3,
-            zeta_3: chi_3_by_zeta_3,
-            moment_matching: chi_3_by_moment_matching,
-            ..no_parameter
-        },
-        ..no_state_parameter
-    }
+    PARAMETER_JACOBIAN_PATTERN.dense(&parameter_jacobian_values(x, u, p))
 }

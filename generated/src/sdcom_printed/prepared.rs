@@ -126,6 +126,8 @@ pub struct Prepared<R> {
     pub chi_decay_2: R,
     /// Decay rate of the coloured noise of mode 3, 1/s.
     pub chi_decay_3: R,
+    /// `s * inv_m`.
+    pub s_over_m: R,
     /// `2 * g`.
     pub two_g: R,
     /// `2 * c_n_1_alpha_2`.
@@ -134,12 +136,18 @@ pub struct Prepared<R> {
     pub two_c_n_2_alpha_2: R,
     /// `2 * c_n_3_alpha_2`.
     pub two_c_n_3_alpha_2: R,
+    /// `inv_m * c_t_phi_alpha`.
+    pub c_t_phi_alpha_over_m: R,
+    /// `s * inv_i_yy`.
+    pub s_over_i_yy: R,
     /// `z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * inv_omega_1_2`.
     pub d_f_pitch_rate_eta_d_velocity_constant_1: R,
     /// `z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * inv_omega_2_2`.
     pub d_f_pitch_rate_eta_d_velocity_constant_2: R,
     /// `z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * inv_omega_3_2`.
     pub d_f_pitch_rate_eta_d_velocity_constant_3: R,
+    /// Partial derivative of g of the pitch_rate row with respect to dynamic pressure, ft^2/s^2/lb.
+    pub slope_of_g_pitch_rate_in_dynamic_pressure: R,
     /// `2 * c_m_alpha_2`.
     pub two_c_m_alpha_2: R,
     /// `inv_i_yy * z_t_c_t_eta_1_plus_c_bar_c_m_eta_1`.
@@ -172,8 +180,6 @@ pub struct Prepared<R> {
     pub z_t_over_i_yy: R,
     /// `inv_m * inv_m`.
     pub inv_m_2: R,
-    /// `R::HALF * inv_m`.
-    pub half_over_m: R,
     /// `R::HALF * inv_omega_1_2`.
     pub half_inv_omega_1_2: R,
     /// `R::HALF * inv_omega_2_2`.
@@ -182,8 +188,8 @@ pub struct Prepared<R> {
     pub half_inv_omega_3_2: R,
     /// `inv_h_s * inv_h_s`.
     pub inv_h_s_2: R,
-    /// `earth_curvature * inv_r_e`.
-    pub earth_curvature_over_r_e: R,
+    /// `2 * g * earth_curvature * inv_r_e`.
+    pub two_g_earth_curvature_over_r_e: R,
     /// `R::from_f64(-2.0) * inv_omega_1`.
     pub minus_two_over_omega_1: R,
     /// `R::from_f64(-2.0) * inv_omega_2`.
@@ -200,8 +206,8 @@ pub struct Prepared<R> {
     pub d_f_velocity_d_canard_slaving_constant_1: R,
     /// `c_l_delta_e * inv_c_l_delta_c`.
     pub c_l_delta_e_over_c_l_delta_c: R,
-    /// `1 / r_e`.
-    pub inv_r_e: R,
+    /// `R::from_f64(-2.0) * g * inv_r_e`.
+    pub minus_two_g_over_r_e: R,
     /// `inv_m * c_d_delta_c * canard_slaving * inv_c_l_delta_c`.
     pub d_f_velocity_d_c_l_delta_e_constant_1: R,
     /// `canard_slaving * inv_c_l_delta_c`.
@@ -212,8 +218,12 @@ pub struct Prepared<R> {
     pub d_f_velocity_d_c_l_delta_c_constant_1: R,
     /// `inv_m * canard_gain`.
     pub canard_gain_over_m: R,
-    /// `R::from_f64(-0.5) * inv_m_2`.
-    pub minus_half_inv_m_2: R,
+    /// `R::HALF * inv_m`.
+    pub half_over_m: R,
+    /// `1 / r_e`.
+    pub inv_r_e: R,
+    /// `earth_curvature * earth_curvature`.
+    pub earth_curvature_2: R,
     /// `R::HALF * inv_m_2`.
     pub half_inv_m_2: R,
     /// `2 * inv_omega_1`.
@@ -236,10 +246,10 @@ pub struct Prepared<R> {
     pub d_g_pitch_rate_d_c_bar_constant_1: R,
     /// `R::HALF * s * inv_i_yy`.
     pub half_s_over_i_yy: R,
+    /// `R::HALF * slope_of_g_pitch_rate_in_dynamic_pressure`.
+    pub d_pitch_rate_rate_printed_d_rho_0_constant_1: R,
     /// `R::HALF * inv_i_yy`.
     pub half_over_i_yy: R,
-    /// `R::HALF * c_m_delta_e_plus_canard_gain_c_m_delta_c * c_bar * s * inv_i_yy`.
-    pub d_g_pitch_rate_d_rho_0_constant_1: R,
     /// `c_bar * inv_i_yy * c_m_delta_c * c_l_delta_e * inv_c_l_delta_c`.
     pub d_pitch_rate_rate_printed_d_canard_slaving_constant_1: R,
     /// `c_bar * inv_i_yy * c_m_delta_c * canard_slaving * inv_c_l_delta_c`.
@@ -268,8 +278,6 @@ pub struct Prepared<R> {
     pub d_chi_decay_3_d_zeta_3: R,
     /// Derivative of decay rate of the coloured noise of mode 3 with respect to moment_matching, 1/s.
     pub d_chi_decay_3_d_moment_matching: R,
-    /// `s * inv_m`.
-    pub s_over_m: R,
     /// `2 * earth_curvature_2`.
     pub two_earth_curvature_2: R,
     /// `c_t_eta_1 * inv_omega_1_2`.
@@ -278,16 +286,14 @@ pub struct Prepared<R> {
     pub c_t_eta_2_inv_omega_2_2: R,
     /// `c_t_eta_3 * inv_omega_3_2`.
     pub c_t_eta_3_inv_omega_3_2: R,
+    /// `inv_m * c_t_alpha`.
+    pub c_t_alpha_over_m: R,
     /// `inv_m * c_t_eta_1`.
     pub c_t_eta_1_over_m: R,
     /// `inv_m * c_t_eta_2`.
     pub c_t_eta_2_over_m: R,
     /// `inv_m * c_t_eta_3`.
     pub c_t_eta_3_over_m: R,
-    /// `s * inv_i_yy`.
-    pub s_over_i_yy: R,
-    /// `c_m_delta_e_plus_canard_gain_c_m_delta_c * c_bar * s * inv_i_yy`.
-    pub d2_g_pitch_rate_d_velocity_d_velocity_constant_1: R,
     /// `2 * inv_i_yy * c_bar * c_m_alpha_2`.
     pub two_c_bar_c_m_alpha_2_over_i_yy: R,
     /// Intensity of the white noise w_alpha, rad*s^0.5.
@@ -364,7 +370,7 @@ pub struct Prepared<R> {
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 215 operations: 31 additions, 172 multiplications, 11 divisions, 1 sqrt.
+/// 217 operations: 31 additions, 174 multiplications, 11 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
@@ -391,6 +397,13 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let d_chi_decay_3_d_omega_3 = p.zeta_3
         + p.moment_matching * half_inv_zeta_3_minus_zeta_3; // 1/rad
     let chi_decay_3 = p.omega_3 * d_chi_decay_3_d_omega_3; // 1/s
+
+    // Derivatives with respect to velocity
+    let c_m_delta_e_plus_canard_gain_c_m_delta_c = p.c_m_delta_e
+        + canard_gain * p.c_m_delta_c;
+    let inv_i_yy = p.i_yy.recip();
+    let slope_of_g_pitch_rate_in_dynamic_pressure = c_m_delta_e_plus_canard_gain_c_m_delta_c
+        * p.c_bar * p.s * inv_i_yy; // ft^2/s^2/lb
 
     // Derivatives with respect to delta_e
     let d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * canard_gain; // ft^0.5/slug^0.5/rad
@@ -440,17 +453,14 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let inv_omega_1_2 = inv_omega_1 * inv_omega_1;
     let inv_omega_2_2 = inv_omega_2 * inv_omega_2;
     let inv_omega_3_2 = inv_omega_3 * inv_omega_3;
-    let inv_i_yy = p.i_yy.recip();
     let z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 = p.z_t * p.c_t_eta_1 + p.c_bar * p.c_m_eta_1;
     let z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 = p.z_t * p.c_t_eta_2 + p.c_bar * p.c_m_eta_2;
     let z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 = p.z_t * p.c_t_eta_3 + p.c_bar * p.c_m_eta_3;
-    let c_m_delta_e_plus_canard_gain_c_m_delta_c = p.c_m_delta_e
-        + canard_gain * p.c_m_delta_c;
     let inv_m_2 = inv_m * inv_m;
     let inv_h_s_2 = inv_h_s * inv_h_s;
     let inv_c_l_delta_c_2 = inv_c_l_delta_c * inv_c_l_delta_c;
-    let inv_i_yy_2 = inv_i_yy * inv_i_yy;
     let earth_curvature_2 = earth_curvature * earth_curvature;
+    let inv_i_yy_2 = inv_i_yy * inv_i_yy;
     let w_alpha_2 = p.w_alpha * p.w_alpha;
 
     Prepared {
@@ -514,16 +524,20 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         chi_decay_1,
         chi_decay_2,
         chi_decay_3,
+        s_over_m: p.s * inv_m,
         two_g: R::TWO * p.g,
         two_c_n_1_alpha_2: R::TWO * p.c_n_1_alpha_2,
         two_c_n_2_alpha_2: R::TWO * p.c_n_2_alpha_2,
         two_c_n_3_alpha_2: R::TWO * p.c_n_3_alpha_2,
+        c_t_phi_alpha_over_m: inv_m * p.c_t_phi_alpha,
+        s_over_i_yy: p.s * inv_i_yy,
         d_f_pitch_rate_eta_d_velocity_constant_1: z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
             * inv_omega_1_2,
         d_f_pitch_rate_eta_d_velocity_constant_2: z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
             * inv_omega_2_2,
         d_f_pitch_rate_eta_d_velocity_constant_3: z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
             * inv_omega_3_2,
+        slope_of_g_pitch_rate_in_dynamic_pressure,
         two_c_m_alpha_2: R::TWO * p.c_m_alpha_2,
         d_pitch_rate_rate_printed_d_chi_1_constant_1: inv_i_yy
             * z_t_c_t_eta_1_plus_c_bar_c_m_eta_1,
@@ -544,12 +558,11 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_n_3_delta_c_canard_command: p.c_n_3_delta_c * p.canard_command,
         z_t_over_i_yy: inv_i_yy * p.z_t,
         inv_m_2,
-        half_over_m: R::HALF * inv_m,
         half_inv_omega_1_2: R::HALF * inv_omega_1_2,
         half_inv_omega_2_2: R::HALF * inv_omega_2_2,
         half_inv_omega_3_2: R::HALF * inv_omega_3_2,
         inv_h_s_2,
-        earth_curvature_over_r_e: earth_curvature * inv_r_e,
+        two_g_earth_curvature_over_r_e: R::TWO * p.g * earth_curvature * inv_r_e,
         minus_two_over_omega_1: R::from_f64(-2.0) * inv_omega_1,
         minus_two_over_omega_2: R::from_f64(-2.0) * inv_omega_2,
         minus_two_over_omega_3: R::from_f64(-2.0) * inv_omega_3,
@@ -559,7 +572,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         d_f_velocity_d_canard_slaving_constant_1: inv_m * p.c_d_delta_c * p.c_l_delta_e
             * inv_c_l_delta_c,
         c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
-        inv_r_e,
+        minus_two_g_over_r_e: R::from_f64(-2.0) * p.g * inv_r_e,
         d_f_velocity_d_c_l_delta_e_constant_1: inv_m * p.c_d_delta_c * p.canard_slaving
             * inv_c_l_delta_c,
         canard_slaving_over_c_l_delta_c: p.canard_slaving * inv_c_l_delta_c,
@@ -568,7 +581,9 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         d_f_velocity_d_c_l_delta_c_constant_1: inv_m * p.c_d_delta_c * p.canard_slaving
             * p.c_l_delta_e * inv_c_l_delta_c_2,
         canard_gain_over_m: inv_m * canard_gain,
-        minus_half_inv_m_2: R::from_f64(-0.5) * inv_m_2,
+        half_over_m: R::HALF * inv_m,
+        inv_r_e,
+        earth_curvature_2,
         half_inv_m_2: R::HALF * inv_m_2,
         two_over_omega_1: R::TWO * inv_omega_1,
         two_over_omega_2: R::TWO * inv_omega_2,
@@ -582,9 +597,9 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         d_g_pitch_rate_d_c_bar_constant_1: c_m_delta_e_plus_canard_gain_c_m_delta_c
             * inv_i_yy,
         half_s_over_i_yy: R::HALF * p.s * inv_i_yy,
+        d_pitch_rate_rate_printed_d_rho_0_constant_1: R::HALF
+            * slope_of_g_pitch_rate_in_dynamic_pressure,
         half_over_i_yy: R::HALF * inv_i_yy,
-        d_g_pitch_rate_d_rho_0_constant_1: R::HALF
-            * c_m_delta_e_plus_canard_gain_c_m_delta_c * p.c_bar * p.s * inv_i_yy,
         d_pitch_rate_rate_printed_d_canard_slaving_constant_1: p.c_bar * inv_i_yy
             * p.c_m_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
         d_pitch_rate_rate_printed_d_c_l_delta_e_constant_1: p.c_bar * inv_i_yy
@@ -602,17 +617,14 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         d_chi_decay_3_d_omega_3,
         d_chi_decay_3_d_zeta_3,
         d_chi_decay_3_d_moment_matching,
-        s_over_m: p.s * inv_m,
         two_earth_curvature_2: R::TWO * earth_curvature_2,
         c_t_eta_1_inv_omega_1_2: p.c_t_eta_1 * inv_omega_1_2,
         c_t_eta_2_inv_omega_2_2: p.c_t_eta_2 * inv_omega_2_2,
         c_t_eta_3_inv_omega_3_2: p.c_t_eta_3 * inv_omega_3_2,
+        c_t_alpha_over_m: inv_m * p.c_t_alpha,
         c_t_eta_1_over_m: inv_m * p.c_t_eta_1,
         c_t_eta_2_over_m: inv_m * p.c_t_eta_2,
         c_t_eta_3_over_m: inv_m * p.c_t_eta_3,
-        s_over_i_yy: p.s * inv_i_yy,
-        d2_g_pitch_rate_d_velocity_d_velocity_constant_1: c_m_delta_e_plus_canard_gain_c_m_delta_c
-            * p.c_bar * p.s * inv_i_yy,
         two_c_bar_c_m_alpha_2_over_i_yy: R::TWO * inv_i_yy * p.c_bar * p.c_m_alpha_2,
         w_alpha: p.w_alpha,
         w_gamma: p.w_gamma,

@@ -33,21 +33,21 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -141,8 +141,10 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let cos_alpha = x.alpha.cos();
 
     // Strict-feedback form, (28)
-    reference_force * p.inv_m
-        * (cos_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi) - p.c_d_alpha)
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
+        * (p.c_t_alpha + p.c_t_phi_alpha * u.phi); // 1/rad
+
+    reference_force * p.inv_m * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha)
 }
 
 /// Part of f_V from the static flexible coordinates, eq. (29). Unit: ft/s^2.
@@ -166,21 +168,21 @@ pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -232,21 +234,21 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -259,12 +261,20 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
     // Strict-feedback form, (31)
-    let f_gamma_eta = turn_factor
-        * ((sin_alpha * p.c_t_eta_1 + p.c_l_eta_1) * eta_static_1
-            + (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2) * eta_static_2
-            + (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3) * eta_static_3); // rad/s
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
+    let slope_of_f_gamma_in_turn_factor = p.c_l_0
+        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0); // rad
 
-    turn_factor * (p.c_l_0 + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0))
+    turn_factor * slope_of_f_gamma_in_turn_factor
         - gravity_turn * cos_gamma
         + f_gamma_eta
 }
@@ -285,7 +295,10 @@ pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Strict-feedback form, (30)
-    turn_factor * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi))
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+
+    turn_factor * slope_of_g_gamma_in_turn_factor
 }
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
@@ -304,16 +317,22 @@ pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Derivatives with respect to chi_1
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
     let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
     let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
     let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
 
     [
         d_gamma_rate_printed_d_chi_1,
@@ -338,7 +357,10 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Strict-feedback form, (30)
-    turn_factor * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi))
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+
+    turn_factor * slope_of_g_gamma_in_turn_factor
 }
 
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
@@ -365,21 +387,21 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -392,10 +414,17 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
     // Strict-feedback form, (31)
-    turn_factor
-        * ((sin_alpha * p.c_t_eta_1 + p.c_l_eta_1) * eta_static_1
-            + (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2) * eta_static_2
-            + (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3) * eta_static_3)
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+
+    turn_factor * slope_of_f_gamma_eta_in_turn_factor
 }
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
@@ -431,21 +460,21 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -458,10 +487,16 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
     // Strict-feedback form, (31)
-    let f_gamma_eta = turn_factor
-        * ((sin_alpha * p.c_t_eta_1 + p.c_l_eta_1) * eta_static_1
-            + (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2) * eta_static_2
-            + (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3) * eta_static_3); // rad/s
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
 
     gravity_turn * cos_gamma
@@ -496,18 +531,24 @@ pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Derivatives with respect to chi_1
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
     let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * (sin_alpha * p.c_t_eta_1 + p.c_l_eta_1); // rad/s/ft^0.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
     let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2); // rad/s/ft^0.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
     let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3); // rad/s/ft^0.5/slug^0.5
+        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
 
     [
@@ -533,8 +574,9 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Strict-feedback form, (30)
-    let g_gamma = turn_factor
-        * (p.c_l_alpha + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi)); // 1/s
+    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
 
     -g_gamma
 }
@@ -563,21 +605,21 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -590,10 +632,16 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
     // Strict-feedback form, (31)
-    let f_gamma_eta = turn_factor
-        * ((sin_alpha * p.c_t_eta_1 + p.c_l_eta_1) * eta_static_1
-            + (sin_alpha * p.c_t_eta_2 + p.c_l_eta_2) * eta_static_2
-            + (sin_alpha * p.c_t_eta_3 + p.c_l_eta_3) * eta_static_3); // rad/s
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
+        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
+        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
+        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
 
     -f_gamma_eta
 }
@@ -616,21 +664,21 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
@@ -739,21 +787,21 @@ pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_alpha_2 * alpha_2
+    let c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * alpha_2
         + p.c_n_1_alpha * x.alpha
         + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection
-        + p.c_n_1_0; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_alpha_2 * alpha_2
+        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * alpha_2
         + p.c_n_2_alpha * x.alpha
         + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection
-        + p.c_n_2_0; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_alpha_2 * alpha_2
+        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
+    let c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * alpha_2
         + p.c_n_3_alpha * x.alpha
         + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection
-        + p.c_n_3_0; // (ft/slug)^0.5
+        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
 
     // Generalized forces, (2)
     let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2

@@ -137,12 +137,21 @@ def define_forces(m: Model, variables: Mapping[str, ca.SX]) -> ca.SX:
     define_force(m, "lift", "L", "lb/ft", "lift", force * fit["C_L"])
     define_force(m, "drag", "D", "lb/ft", "drag", force * fit["C_D"])
     define_force(m, "pitching_moment", "M", "lb", "pitching moment", total_moment(m, thrust, force * fit["C_M"]))
-    return total_turn(m, fit["C_L"], fit["C_T"])
+    across = m.graph.define(
+        "normal_coefficient",
+        normal_coefficient(m, fit["C_L"], fit["C_T"]),
+        symbol=r"C_L+C_T\sin\alpha",
+        unit="1",
+        doc="coefficient of the force across the flight path",
+        equation="(1)",
+        section="Forces and moment",
+    )
+    return m["turn_factor"] * across
 
 
-def total_turn(m: Model, c_l: ca.SX, c_t: ca.SX) -> ca.SX:
-    """(L + T sin(alpha))/(m V) of (1)."""
-    return m["turn_factor"] * (c_l + c_t * m["sin_alpha"])
+def normal_coefficient(m: Model, c_l: ca.SX, c_t: ca.SX) -> ca.SX:
+    """L + T sin(alpha) of (1) over the dynamic pressure times S."""
+    return c_l + c_t * m["sin_alpha"]
 
 
 def total_moment(m: Model, thrust: ca.SX, force_times_c_m: ca.SX) -> ca.SX:

@@ -10,7 +10,7 @@ from .. import units
 from ..model import Model
 from ..polynomial import Polynomial
 from ..schema import FLEXIBLE
-from .dcom import slaved_fits, total_moment, total_turn
+from .dcom import normal_coefficient, slaved_fits, total_moment
 from .strict_feedback import GROUP, ROWS, Parts, Row, add_row, define_part
 from .vehicle import Resultants, coefficient_symbols, rigid_rates
 
@@ -38,7 +38,8 @@ class StrictFeedback:
         thrust = force * self.fits["C_T"]
         moment = total_moment(m, thrust, force * self.fits["C_M"])
         along = thrust * m["cos_alpha"] - force * self.fits["C_D"]
-        acting = Resultants(along, total_turn(m, self.fits["C_L"], self.fits["C_T"]), moment)
+        across = m["turn_factor"] * normal_coefficient(m, self.fits["C_L"], self.fits["C_T"])
+        acting = Resultants(along, across, moment)
         self.polynomials = slaved_fits(m)
         self.exprs = rigid_rates(m, acting)
         self.exprs["alpha"] = m["pitch_rate"] - self.exprs["gamma"]

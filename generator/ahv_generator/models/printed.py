@@ -22,7 +22,7 @@ def build_sdcom_printed(table: Table) -> Model:
     modes = table.schema.modes
     m = Model(
         "sdcom_printed",
-        "stochastic decoupled control-oriented model, the paper's truncated form without its misprints",
+        "stochastic decoupled control-oriented model as printed, without its misprints",
         "(24)-(35)",
         table,
         {

@@ -9,10 +9,30 @@ const DCOM: &str = "generator/tables/dcom.toml";
 
 /// A changed number, with what git has to say of `generated/src`: one line of one file.
 const CHANGES: [(&str, &str, &str, &str); 4] = [
-    ("a value", "value = 4.6773,", "value = 4.7773,", "c_l_alpha: 4.7773,"),
-    ("a value of a set", "value = 191.3,", "value = 191.4,", "m: 191.4,"),
-    ("a choice", "canard = \"none\"", "canard = \"slaved\"", "canard_slaving: 1.0,"),
-    ("another choice", "reduction = \"printed\"", "reduction = \"moment\"", "moment_matching: 1.0,"),
+    (
+        "a value",
+        "value = 4.6773,",
+        "value = 4.7773,",
+        "c_l_alpha: 4.7773,",
+    ),
+    (
+        "a value of a set",
+        "value = 191.3,",
+        "value = 191.4,",
+        "m: 191.4,",
+    ),
+    (
+        "a choice",
+        "canard = \"none\"",
+        "canard = \"slaved\"",
+        "canard_slaving: 1.0,",
+    ),
+    (
+        "another choice",
+        "reduction = \"printed\"",
+        "reduction = \"moment\"",
+        "moment_matching: 1.0,",
+    ),
 ];
 
 /// One value: one line of Rust, one line of provenance, and git says so. The documentation shows values, too.
@@ -34,15 +54,22 @@ fn a_changed_value_is_one_line_for_git() {
         scratch.edit(DCOM, from, to);
         assert_eq!(scratch.generate(&[]).code, 0, "{name}");
         git(&["add", "--all"]);
-        let changed = |how: &str, place: &[&str]| git(&[&["diff", "--cached", how, "--"], place].concat());
+        let changed =
+            |how: &str, place: &[&str]| git(&[&["diff", "--cached", how, "--"], place].concat());
         assert_eq!(
             changed("--numstat", &["generated/src"]),
             "1\t1\tgenerated/src/dcom/nominal.rs\n",
             "{name}"
         );
-        assert!(changed("-U0", &["generated/src"]).contains(&format!("+    {line}\n")), "{name}");
+        assert!(
+            changed("-U0", &["generated/src"]).contains(&format!("+    {line}\n")),
+            "{name}"
+        );
         assert_eq!(
-            changed("--numstat", &["generated", ":!generated/src", ":!generated/docs"]),
+            changed(
+                "--numstat",
+                &["generated", ":!generated/src", ":!generated/docs"]
+            ),
             "1\t1\tgenerated/manifest.json\n",
             "{name}"
         );
@@ -52,22 +79,24 @@ fn a_changed_value_is_one_line_for_git() {
 /// At most this many changed lines for each term that a new monomial adds, Jacobians included.
 const LINES_A_TERM: usize = 3;
 
-/// Additions of all functions of a package, as their documentation counts them.
-fn additions(folder: &Path) -> usize {
+/// Terms of all functions of a package: the additions that their documentation counts, and the entries of compressed
+/// arrays, each a term of its own.
+fn terms_in(folder: &Path) -> usize {
     let mut sum = 0;
     for entry in fs::read_dir(folder).expect("readable") {
         let path = entry.expect("readable").path();
         if path.is_dir() {
-            sum += additions(&path);
+            sum += terms_in(&path);
             continue;
         }
         let text = fs::read_to_string(&path).expect("a text file");
-        let counts = text.lines().filter(|line| line.starts_with("/// ") && line.contains(" operations: "));
-        for part in counts.flat_map(|line| line.split([':', ','])) {
-            let (count, what) = part.trim().split_once(' ').unwrap_or_default();
-            if what.starts_with("addition") {
-                sum += count.parse::<usize>().expect("a number");
+        for line in text.lines() {
+            if line.starts_with("/// ") && line.contains(" operations: ") {
+                let mut parts = line.split([':', ',']).map(str::trim);
+                let additions = parts.find_map(|part| part.split_once(" addition"));
+                sum += additions.map_or(0, |(count, _)| count.parse().expect("a number"));
             }
+            sum += line.matches("ahv_core::at!").count();
         }
     }
     sum
@@ -85,12 +114,16 @@ fn a_new_monomial_is_a_few_lines_a_term() {
     }
     assert_eq!(scratch.generate(&[]).code, 0);
     let (before, after) = (before.join("src"), scratch.path("generated/src"));
-    let terms = additions(&after) - additions(&before);
+    let terms = terms_in(&after) - terms_in(&before);
     let mut git = Command::new("git");
-    git.args(["diff", "--no-index", "--numstat"]).args([&before, &after]);
+    git.args(["diff", "--no-index", "--numstat"])
+        .args([&before, &after]);
     let answer = crate::common::answer(&mut git);
     assert_eq!(answer.code, 1, "{}", answer.stderr);
-    let inserted = answer.stdout.lines().filter_map(|line| line.split('\t').next()?.parse::<usize>().ok());
+    let inserted = answer
+        .stdout
+        .lines()
+        .filter_map(|line| line.split('\t').next()?.parse::<usize>().ok());
     let lines: usize = inserted.sum();
     println!("{lines} lines for {terms} terms");
     assert!(terms > 50, "{terms} terms");

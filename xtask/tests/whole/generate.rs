@@ -79,19 +79,84 @@ fn bad_tables_have_exit_code_2_and_a_place() {
             "",
             "[vehicle]",
         ),
-        ("no choices", "[choices]", "[choises]", "did you mean `choices`?"),
-        ("unknown choice", "canard = \"none\"", "canrad = \"none\"", "did you mean `canard`?"),
-        ("unknown option", "canard = \"none\"", "canard = \"slave\"", "did you mean `slaved`?"),
-        ("unknown section of a set", SET, &SET.replace(".vehicle", ".vehicel"), "did you mean `vehicle`?"),
-        ("unknown key of a set", SET, &SET.replace("m =", "mm ="), "no `mm` to replace"),
-        ("bad name of a set", SET, &SET.replace("section5.3", "Section 5.3"), "a set has a name of its own"),
-        ("set of the table's name", SET, &SET.replace("section5.3", "section5.1"), "a set has a name of its own"),
-        ("unit in a set", SET, &SET.replace("slug/ft", "ft"), "does not fit"),
-        ("value in a set", "omega_1 = { value = 20.5,", "omega_1 = { value = 0.0,", "must be positive"),
-        ("models of two families", "\"sdcom_gust\"]", "\"com\"]", "models of one family"),
-        ("models in another order", "[\"dcom\", \"sdcom\",", "[\"sdcom\", \"dcom\",", "in this order"),
-        ("no gust", "gust_rms =", "gust_rmse =", "did you mean `gust_rms`?"),
-        ("unit system", "units = \"ft-slug-s-rad\"", "units = \"SI\"", "did you mean `si`?"),
+        (
+            "no choices",
+            "[choices]",
+            "[choises]",
+            "did you mean `choices`?",
+        ),
+        (
+            "unknown choice",
+            "canard = \"none\"",
+            "canrad = \"none\"",
+            "did you mean `canard`?",
+        ),
+        (
+            "unknown option",
+            "canard = \"none\"",
+            "canard = \"slave\"",
+            "did you mean `slaved`?",
+        ),
+        (
+            "unknown section of a set",
+            SET,
+            &SET.replace(".vehicle", ".vehicel"),
+            "did you mean `vehicle`?",
+        ),
+        (
+            "unknown key of a set",
+            SET,
+            &SET.replace("m =", "mm ="),
+            "no `mm` to replace",
+        ),
+        (
+            "bad name of a set",
+            SET,
+            &SET.replace("section5.3", "Section 5.3"),
+            "a set has a name of its own",
+        ),
+        (
+            "set of the table's name",
+            SET,
+            &SET.replace("section5.3", "section5.1"),
+            "a set has a name of its own",
+        ),
+        (
+            "unit in a set",
+            SET,
+            &SET.replace("slug/ft", "ft"),
+            "does not fit",
+        ),
+        (
+            "value in a set",
+            "omega_1 = { value = 20.5,",
+            "omega_1 = { value = 0.0,",
+            "must be positive",
+        ),
+        (
+            "models of two families",
+            "\"sdcom_gust\"]",
+            "\"com\"]",
+            "models of one family",
+        ),
+        (
+            "models in another order",
+            "[\"dcom\", \"sdcom\",",
+            "[\"sdcom\", \"dcom\",",
+            "in this order",
+        ),
+        (
+            "no gust",
+            "gust_rms =",
+            "gust_rmse =",
+            "did you mean `gust_rms`?",
+        ),
+        (
+            "unit system",
+            "units = \"ft-slug-s-rad\"",
+            "units = \"SI\"",
+            "did you mean `si`?",
+        ),
     ];
     for (name, from, to, offending) in cases {
         let scratch = Scratch::new();
@@ -101,8 +166,18 @@ fn bad_tables_have_exit_code_2_and_a_place() {
         assert_eq!(answer.code, 2, "{name}: {}", answer.stderr);
         let place = answer.stderr.split("generator/tables/dcom.toml:").nth(1);
         let place = place.and_then(|rest| rest.split(']').next());
-        let numbers = place.map(|place| place.split(':').filter(|it| it.parse::<u32>().is_ok()).count());
-        assert_eq!(numbers, Some(2), "{name}: no line and column in {}", answer.stderr);
+        let numbers = place.map(|place| {
+            place
+                .split(':')
+                .filter(|it| it.parse::<u32>().is_ok())
+                .count()
+        });
+        assert_eq!(
+            numbers,
+            Some(2),
+            "{name}: no line and column in {}",
+            answer.stderr
+        );
         assert!(
             answer.stderr.contains(offending),
             "{name}: {}",
@@ -117,9 +192,15 @@ fn bad_tables_have_exit_code_2_and_a_place() {
 #[test]
 fn an_inertia_that_the_modes_use_up_has_a_place() {
     let set = "[sets.\"section5.3\"]";
-    let light = format!("{set}\n[sets.\"section5.3\".vehicle]\nI_yy = {{ value = 86723.0, unit = \"slug*ft\" }}");
+    let light = format!(
+        "{set}\n[sets.\"section5.3\".vehicle]\nI_yy = {{ value = 86723.0, unit = \"slug*ft\" }}"
+    );
     for (from, to, line) in [
-        ("I_yy = { value = 5.0e5", "I_yy = { value = 2.4e5", "I_yy = { value = 2.4e5"),
+        (
+            "I_yy = { value = 5.0e5",
+            "I_yy = { value = 2.4e5",
+            "I_yy = { value = 2.4e5",
+        ),
         (set, light.as_str(), set),
     ] {
         let scratch = Scratch::new();
@@ -127,9 +208,20 @@ fn an_inertia_that_the_modes_use_up_has_a_place() {
         let answer = scratch.generate(&[]);
         assert_eq!(answer.code, 2, "{}", answer.stderr);
         let text = fs::read_to_string(scratch.path(COM)).expect("a text file");
-        let line = 1 + text.lines().position(|it| it.starts_with(line)).expect("there");
-        assert!(answer.stderr.contains("must exceed the sum of the squares"), "{}", answer.stderr);
-        assert!(answer.stderr.contains(&format!("{COM}:{line}:")), "{}", answer.stderr);
+        let line = 1 + text
+            .lines()
+            .position(|it| it.starts_with(line))
+            .expect("there");
+        assert!(
+            answer.stderr.contains("must exceed the sum of the squares"),
+            "{}",
+            answer.stderr
+        );
+        assert!(
+            answer.stderr.contains(&format!("{COM}:{line}:")),
+            "{}",
+            answer.stderr
+        );
     }
 }
 
@@ -139,10 +231,21 @@ fn a_package_in_si() {
     let scratch = Scratch::new();
     assert_eq!(scratch.generate(&["--units", "si"]).code, 0);
     assert_eq!(scratch.generate(&["--check", "--units", "si"]).code, 0);
-    assert_eq!(scratch.generate(&["--check", "--units", "si", "--from-ir"]).code, 0);
+    assert_eq!(
+        scratch
+            .generate(&["--check", "--units", "si", "--from-ir"])
+            .code,
+        0
+    );
     let answer = scratch.generate(&["--check", "--from-ir"]);
     assert_eq!(answer.code, 1);
-    assert!(answer.stderr.contains("+pub const UNIT_SYSTEM: &str = \"ft-slug-s-rad\";"), "{}", answer.stderr);
+    assert!(
+        answer
+            .stderr
+            .contains("+pub const UNIT_SYSTEM: &str = \"ft-slug-s-rad\";"),
+        "{}",
+        answer.stderr
+    );
 }
 
 #[test]

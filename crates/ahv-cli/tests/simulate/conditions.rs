@@ -38,6 +38,16 @@ fn every_model_flies() {
 }
 
 #[test]
+fn who_picks_the_printed_form_is_told() {
+    let bench = Bench::new();
+    let told = |model| {
+        let output = bench.succeed(&flight(model, &[]));
+        String::from_utf8_lossy(&output.stderr).contains("the paper's truncated form")
+    };
+    assert!(told("sdcom_printed") && !told("sdcom"));
+}
+
+#[test]
 fn the_set_decides_the_trim() {
     let bench = Bench::new();
     let own = alpha(&bench, "dcom", &[]);

@@ -26,9 +26,11 @@ fn a_changed_value_changes_one_line() {
     for line in [&[][..], &["--from-ir"]] {
         let text = scratch.disagreement(line);
         assert!(
-            text.starts_with(&format!("error: {NOMINAL} does not match {DCOM}\n")),
+            text.contains(&format!("error: {NOMINAL} does not match {DCOM}\n")),
             "{text}"
         );
+        // Of the Rust, that is all.
+        assert_eq!(text.matches("error: generated/src/").count(), 1, "{text}");
         assert!(
             text.contains(&format!("--- a/{NOMINAL}\n+++ b/{NOMINAL}\n@@ -")),
             "{text}"
@@ -45,9 +47,11 @@ fn a_changed_value_changes_one_line() {
     let text = scratch.generate(&[]).expect("generated").text();
     assert!(text.contains(&format!("{NOMINAL}  +1 −1\n")), "{text}");
     assert!(
-        text.contains("2 files changed, 0 created, 0 removed (derive "),
+        text.contains(" files changed, 0 created, 0 removed (derive "),
         "{text}"
     );
+    assert_eq!(text.matches("generated/src/").count(), 1, "{text}");
+    assert!(text.contains("generated/manifest.json  +1 −1\n"), "{text}");
     assert!(scratch.check(&[]).expect("checked").agrees());
 }
 
@@ -202,7 +206,7 @@ fn an_ir_of_another_schema_version_is_refused() {
     let scratch = Scratch::new();
     scratch.edit(
         "generated/ir/dcom.json",
-        "\"schema_version\": 1",
+        "\"schema_version\": 2",
         "\"schema_version\": 99",
     );
     let failure = scratch
@@ -351,6 +355,84 @@ fn the_command_names_the_flags_that_were_given() {
         text.contains("run:  cargo xtask generate --package my-models"),
         "{text}"
     );
+}
+
+#[test]
+fn si_is_a_flag_that_the_command_keeps() {
+    let scratch = Scratch::new();
+    assert!(!scratch.check(&["--units", "si"]).expect("checked").agrees());
+    assert!(
+        scratch
+            .check(&["--units", "ft-slug-s-rad"])
+            .expect("checked")
+            .agrees()
+    );
+    scratch.generate(&["--units", "si"]).expect("generated");
+
+    let nominal = scratch.read(NOMINAL);
+    // 300 slug/ft and 17 ft; of the set section5.3, 191.3 slug/ft; 7000 ft/s of the box.
+    for line in [
+        "UNIT_SYSTEM: &str = \"si\";",
+        "    m: 14364.07769",
+        "    s: 5.1816",
+        "    m: 9159.49354",
+        "    velocity: Bounds::new(2133.6, ",
+    ] {
+        assert!(nominal.contains(line), "no {line:?} in\n{nominal}");
+    }
+    assert!(
+        scratch
+            .read("generated/src/dcom/parameters.rs")
+            .contains("m: [\"kg/m\", \"kg/m\", 1.0]")
+    );
+    let module = scratch.read("generated/src/dcom/mod.rs");
+    assert!(
+        module.contains("m/s") && !module.contains("ft/s"),
+        "{module}"
+    );
+    assert!(
+        scratch
+            .read("generated/src/lib.rs")
+            .contains("metre, kilogram, second and radian")
+    );
+    for page in ["generated/docs/dcom.md", "generated/docs/dcom-table.md"] {
+        let text = scratch.read(page);
+        // The table's page ends with what each unit is in the other system.
+        let own = text
+            .split("One unit of this table")
+            .next()
+            .unwrap_or_default();
+        assert!(own.contains("kg") && !own.contains("slug/"), "{page}");
+    }
+
+    for line in [&["--units", "si"][..], &["--units", "si", "--from-ir"]] {
+        assert!(scratch.check(line).expect("checked").agrees(), "{line:?}");
+    }
+    let text = scratch.disagreement(&[]);
+    assert!(
+        text.contains("error: generated/src/dcom/nominal.rs does not match"),
+        "{text}"
+    );
+    assert!(text.ends_with("run:  ahv generate\n"), "{text}");
+    scratch.edit(NOMINAL, "    s: 5.1816", "    s: 5.1");
+    let text = scratch.disagreement(&["--units", "si"]);
+    assert!(text.ends_with("run:  ahv generate --units si\n"), "{text}");
+}
+
+#[test]
+fn tables_in_two_unit_systems_need_a_choice() {
+    let mut scratch = Scratch::new();
+    let ir = scratch.path("generated/ir/flexible_mode.json");
+    let system = "s/\"system\": \"ft-slug-s-rad\"/\"system\": \"si\"/; s/\"other\": \"si\"/\"other\": \"ft-slug-s-rad\"/";
+    let folder = ir.parent().expect("a folder").display();
+    let derive = format!("cp {folder}/*.json \"$8\"; sed -i '{system}' \"$8/flexible_mode.json\"");
+    scratch.use_python(scratch.interpreter("3 11", "", &derive));
+    let message = scratch.refusal();
+    assert_eq!(
+        message,
+        "error: the tables are in different unit systems; choose one with --units"
+    );
+    assert!(scratch.generate(&["--units", "si"]).is_ok());
 }
 
 #[test]
