@@ -1,6 +1,6 @@
 //! What a model can do.
 
-use crate::{Real, Vector};
+use crate::{NoiseClass, Real, Vector};
 
 /// dx/dt = f(x, u) of a time-invariant model.
 pub trait Model {
@@ -47,4 +47,51 @@ pub trait StochasticModel: Model {
 
     /// G(x, u) dW, in the units of the state. Itô: x is the state before the increment.
     fn noise_increment(&self, x: &Self::State, u: &Self::Input, dw: &Self::Noise) -> Self::State;
+
+    /// How column `channel` of G depends on the state. Without an implementation of its own a model makes no
+    /// promise: every column is general.
+    #[inline]
+    fn noise_class(channel: usize) -> NoiseClass {
+        let _ = channel;
+        NoiseClass::General
+    }
+
+    /// Whether L^j b^k = L^k b^j for columns j = `first` and k = `second` of G at every state and input, with
+    /// L^j = Σ_i b^j_i ∂/∂x_i. Without an implementation of its own a model makes no promise.
+    #[inline]
+    fn noise_commutes(first: usize, second: usize) -> bool {
+        first == second
+    }
+}
+
+/// A model that knows what its drift in the Itô sense has over that in the Stratonovich sense.
+pub trait ItoCorrected: StochasticModel {
+    /// ½ Σ_k L^k b^k at (x, u), in the units of the state per second: the Itô equation with drift f is the
+    /// Stratonovich equation with drift f less this.
+    fn ito_correction(&self, x: &Self::State, u: &Self::Input) -> Self::State;
+}
+
+/// A model with the exact derivatives of its diffusion along the columns.
+pub trait DifferentiableNoise: ItoCorrected {
+    /// Σ_j Σ_k L^j b^k(x, u) I_jk for the iterated integrals I_jk = `integral(j, k)`, dW_j inside and dW_k outside,
+    /// in s. In the units of the state; columns by their index.
+    fn iterated_increment(
+        &self,
+        x: &Self::State,
+        u: &Self::Input,
+        integral: impl FnMut(usize, usize) -> Self::Scalar,
+    ) -> Self::State;
+}
+
+/// A model whose columns of G all are constant over the state: the Itô and the Stratonovich sense agree.
+pub trait AdditiveNoise: StochasticModel {}
+
+/// A model of which every two columns of G commute, [`StochasticModel::noise_commutes`].
+pub trait CommutativeNoise: DifferentiableNoise {}
+
+/// A model some of whose states are Ornstein–Uhlenbeck processes by themselves: dχ = −a χ dt + b·dW with a rate a
+/// and a row b of G that depend on parameters alone.
+pub trait ColouredNoise: StochasticModel {
+    /// The rate a of state number `state`, in 1/s; `None` where the state is no such process, whatever the parameters.
+    fn decay(&self, state: usize) -> Option<Self::Scalar>;
 }

@@ -11,11 +11,14 @@ use crate::error::{accept, step_size};
 /// limit the Itô integral. Strong order 1/2 (1 for additive noise), weak order 1
 /// (Kloeden and Platen 1992, section 10.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EulerMaruyama {
+pub struct ItoEulerMaruyama {
     dt: f64,
 }
 
-impl EulerMaruyama {
+/// The same.
+pub type EulerMaruyama = ItoEulerMaruyama;
+
+impl ItoEulerMaruyama {
     /// A stepper of step size `dt`, in s; [`step`](Self::step) refuses one that is not positive and finite.
     pub const fn new(dt: f64) -> Self {
         Self { dt }

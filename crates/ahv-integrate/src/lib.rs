@@ -1,17 +1,79 @@
 //! Steppers for models that implement the traits of `ahv-core`.
 //!
-//! * [`Rk4`]: deterministic models, order 4.
-//! * [`EulerMaruyama`]: stochastic models in the Itô sense, strong order 1/2, weak order 1.
+//! * [`Euler`], [`Heun`], [`Rk4`]: deterministic models, fixed step, orders 1, 2, 4.
+//! * [`DormandPrince54`], [`Tsit5`]: explicit pairs of orders 5 and 4; [`Rodas4`]: L-stable pair of orders 4 and 3 for
+//!   stiff models. [`Adaptive`] runs them with control of the step size, dense output and events, [`Fixed`] with a
+//!   fixed step.
+//! * [`Exponential`]: linear flexible modes exactly, the rest with order 4.
+//! * [`Constant`], [`Held`], [`Interpolated`], [`Feedback`], [`Saturated`]: what drives a run.
+//!
+//! Stochastic models, each scheme in the sense that its name says:
+//!
+//! | scheme | noise | strong order | weak order |
+//! |---|---|---|---|
+//! | [`ItoEulerMaruyama`] | any | 1/2, additive 1 | 1 |
+//! | [`StratonovichHeun`], [`ItoHeun`] | any | 1/2, commutative 1 | 1 |
+//! | [`ItoMilstein`] | commutative | 1 | 1 |
+//! | [`ItoSra1`] | additive | 3/2 | 2 |
+//! | [`ItoDri1`] | any | none | 2 |
+//! | [`ItoStrangSplitting`] | coloured noise exact, else the inner scheme's | none | the inner scheme's, to 2 |
+//! | [`LinearTransition`] | linear equations with additive noise | exact in law | exact |
+//!
+//! Noise comes from the caller: [`WienerIntegrals`], [`WeakIncrements`], a [`BrownianPath`] that can be refined, and, by
+//! feature, `KeyedNormals` (`chacha`) and `RandNormals` (`rand`). A scheme that needs additive or commutative noise asks for
+//! it by a trait; [`AdditiveChannels`] and [`CommutativeChannels`] check it at run time.
 //!
 //! A step allocates nothing and does not panic. A step whose result is not finite is an error that
 //! names the component, and leaves the state as it was.
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod adaptive;
+mod brownian;
+mod channels;
+mod controller;
+mod dense;
+mod embedded;
 mod error;
 mod euler_maruyama;
-mod rk4;
+mod events;
+mod exponential;
+mod failure;
+mod fixed;
+mod heun;
+mod input;
+mod linear;
+mod method;
+mod milstein;
+mod noise;
+mod ornstein_uhlenbeck;
+mod rosenbrock;
+mod splitting;
+mod sra;
+mod vector;
+mod weak;
 
+pub use adaptive::{Adaptive, Ending, Observer, Problem, Progress};
+pub use brownian::{BrownianPath, NormalSource, WienerIntegrals, bisect};
+pub use channels::{AdditiveChannels, CommutativeChannels, NoiseError};
+pub use dense::Dense;
+pub use embedded::{DormandPrince54, EmbeddedPair, Tableau, Tsit5};
 pub use error::StepError;
-pub use euler_maruyama::EulerMaruyama;
-pub use rk4::Rk4;
+pub use euler_maruyama::{EulerMaruyama, ItoEulerMaruyama};
+pub use events::{ComponentLimit, Crossing, Event, Located, When};
+pub use exponential::{Exponential, FlexibleMode};
+pub use failure::{Anywhere, Failure, Leaving, Validity, Within};
+pub use fixed::{Euler, Heun, Rk4};
+pub use heun::{ItoHeun, StratonovichHeun};
+pub use input::{Constant, Feedback, Held, InputSource, Interpolated, Saturated, saturate};
+pub use method::{Attempt, Fixed, Method, Start};
+pub use milstein::ItoMilstein;
+#[cfg(feature = "rand")]
+pub use noise::RandNormals;
+#[cfg(feature = "chacha")]
+pub use noise::{KeyedNormals, NormalStream};
+pub use ornstein_uhlenbeck::LinearTransition;
+pub use rosenbrock::{Rodas4, RosenbrockTableau};
+pub use splitting::{HeldColoured, ItoStrangSplitting};
+pub use sra::ItoSra1;
+pub use weak::{ItoDri1, WeakIncrements};

@@ -4,7 +4,11 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use ahv_core::Vector;
-use ahv_integrate::{EulerMaruyama, Rk4, StepError};
+use ahv_integrate::{
+    Adaptive, ComponentLimit, Constant, Ending, Euler, EulerMaruyama, Event, Exponential, Fixed,
+    FlexibleMode, Heun, Leaving, Problem, Progress, Rk4, Rodas4, Saturated, StepError, Tsit5,
+    Within,
+};
 use ahv_models::{dcom, sdcom};
 
 thread_local! {
@@ -76,6 +80,46 @@ fn no_step_allocates() {
                 Ok(())
             );
         }
+    });
+    assert_eq!(count, 0);
+}
+
+#[test]
+fn no_run_allocates() {
+    let model = dcom::Model::new(&dcom::NOMINAL);
+    let start = dcom::State {
+        velocity: VELOCITY,
+        altitude: ALTITUDE,
+        ..dcom::State::splat(0.0)
+    };
+    let u = dcom::Input::splat(0.2);
+    let count = allocations_in(|| {
+        let input = Saturated::new(Constant(u), dcom::INPUT_BOUNDS);
+        let floor = ComponentLimit::at_least::<dcom::Model<f64>>("floor", "altitude", 80_000.0);
+        let floor = floor.expect("there is an altitude");
+        let events: [&dyn Event<dcom::Model<f64>>; 1] = [&floor];
+        let within = Within::new(dcom::STATE_BOUNDS, Leaving::Warn);
+        let problem = Problem::new(&model, &input)
+            .validity(within)
+            .events(&events);
+        let tolerance = dcom::State::splat(1e-6);
+        let mut explicit = Progress::new(0.0, start);
+        let ending =
+            Adaptive::new(Tsit5, 1e-6, tolerance).run(&problem, &mut explicit, 0.2, &mut ());
+        assert_eq!(ending, Ok(Ending::Time));
+        let mut stiff = Progress::new(0.0, start);
+        let ending = Adaptive::new(Rodas4, 1e-6, tolerance).run(&problem, &mut stiff, 0.2, &mut ());
+        assert_eq!(ending, Ok(Ending::Time));
+        let mode = FlexibleMode::new::<dcom::Model<f64>>("eta_1", "eta_dot_1", 19.7437, 0.7);
+        let mode = mode.expect("a good mode");
+        let mut x = start;
+        assert_eq!(
+            Exponential::new(0.001, [mode]).step(&model, &mut x, &u),
+            Ok(())
+        );
+        assert_eq!(Fixed::new(Rodas4, 0.001).step(&model, &mut x, &u), Ok(()));
+        assert_eq!(Euler::new(0.001).step(&model, &mut x, &u), Ok(()));
+        assert_eq!(Heun::new(0.001).step(&model, &mut x, &u), Ok(()));
     });
     assert_eq!(count, 0);
 }

@@ -1,0 +1,162 @@
+//! How long the next step is.
+
+use ahv_core::{Model, Real, Vector};
+
+use crate::{InputSource, Start};
+
+/// The part of the step that the error estimate allows which is taken.
+const SAFETY: f64 = 0.9;
+/// Gustafsson's stabilisation: the weight of the error of the step before.
+const BETA: f64 = 0.04;
+/// A step becomes at most so many times as long,
+const GROWTH: f64 = 5.0;
+/// and at least this part as long.
+const SHRINK: f64 = 0.2;
+/// After a step that is not finite.
+const RETREAT: f64 = 0.1;
+/// Smaller errors are taken for this one.
+const LEAST_ERROR: f64 = 1e-4;
+
+/// PI control of the step size (Gustafsson 1991), with the constants of Hairer, Nørsett and Wanner's DOPRI5.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Controller {
+    exponent: f64,
+    previous: f64,
+    refused: bool,
+}
+
+impl Controller {
+    /// A controller for an error that falls with this power of the step.
+    pub(crate) fn new(error_order: u8) -> Self {
+        Self {
+            exponent: 1.0 / f64::from(error_order),
+            previous: LEAST_ERROR,
+            refused: false,
+        }
+    }
+
+    /// What the step is multiplied with after an error of `norm` ≤ 1.
+    pub(crate) fn accept(&mut self, norm: f64) -> f64 {
+        let norm = norm.max(LEAST_ERROR * LEAST_ERROR);
+        let proportional = power(norm, 0.75 * BETA - self.exponent);
+        let factor = SAFETY * proportional * power(self.previous, BETA);
+        // A step does not grow right after a refusal.
+        let most = if self.refused { 1.0 } else { GROWTH };
+        self.previous = norm.max(LEAST_ERROR);
+        self.refused = false;
+        factor.max(SHRINK).min(most)
+    }
+
+    /// What the step is multiplied with after an error of `norm` > 1, or one that is not finite.
+    pub(crate) fn refuse(&mut self, norm: f64) -> f64 {
+        self.refused = true;
+        if norm.is_finite() {
+            (SAFETY * power(norm, -self.exponent)).clamp(SHRINK, SAFETY)
+        } else {
+            RETREAT
+        }
+    }
+}
+
+/// Root mean square of the error in units of the tolerances, and the component that is farthest out.
+///
+/// The unit of a component is `absolute` + `relative` times its greater value at the two ends.
+pub(crate) fn error_norm<R, X>(
+    error: &X,
+    ends: [&X; 2],
+    relative: f64,
+    absolute: &X,
+) -> (f64, Option<usize>)
+where
+    R: Real + Into<f64>,
+    X: Vector<R>,
+{
+    let (mut sum, mut worst, mut farthest) = (0.0, None, 0.0);
+    for index in 0..X::LEN {
+        let at = |x: &X| x.get(index).map_or(f64::NAN, Into::into);
+        let [first, last] = ends.map(|x| at(x).abs());
+        let part = at(error) / (at(absolute) + relative * first.max(last));
+        sum += part * part;
+        if worst.is_none() || part.abs() > farthest {
+            (worst, farthest) = (Some(index), part.abs());
+        }
+    }
+    (Real::sqrt(sum / X::LEN as f64), worst)
+}
+
+/// A first step, by Hairer, Nørsett and Wanner's rule: an explicit Euler step shows how fast the slope changes.
+pub(crate) fn first_step<M, I>(
+    model: &M,
+    input: &I,
+    start: &Start<M::State>,
+    slope: &M::State,
+    relative: f64,
+    absolute: &M::State,
+    error_order: u8,
+) -> f64
+where
+    M: Model,
+    M::Scalar: Into<f64>,
+    I: InputSource<M>,
+{
+    let x = start.state;
+    let norm = |v: &M::State| error_norm::<M::Scalar, _>(v, [&x, &x], relative, absolute).0;
+    let (size, speed) = (norm(&x), norm(slope));
+    let guess = if size < 1e-5 || speed < 1e-5 {
+        1e-6
+    } else {
+        0.01 * size / speed
+    };
+    let h = M::Scalar::from_f64(guess);
+    let euler = x.zip_with(*slope, |x, k| x + h * k);
+    let time = start.time + guess;
+    let later = model.drift(&euler, &input.at(start.time, time, &euler));
+    let bend = norm(&later.zip_with(*slope, |a, b| a - b)) / guess;
+    let steepest = speed.max(bend);
+    let second = if steepest <= 1e-15 {
+        (guess * 1e-3).max(1e-6)
+    } else {
+        power(0.01 / steepest, 1.0 / f64::from(error_order))
+    };
+    let step = second.min(100.0 * guess);
+    if step.is_finite() && step > 0.0 {
+        step
+    } else {
+        guess
+    }
+}
+
+/// `x` to the power `exponent` for positive, normal `x`: to seven digits, which is more than a step size needs.
+fn power(x: f64, exponent: f64) -> f64 {
+    Real::exp(exponent * logarithm(x))
+}
+
+/// Natural logarithm of a positive, normal number to seven digits: `core` has none.
+fn logarithm(x: f64) -> f64 {
+    const MANTISSA: u64 = (1 << 52) - 1;
+    let bits = x.to_bits();
+    let exponent = ((bits >> 52) & 0x7ff) as f64 - 1023.0;
+    let mantissa = f64::from_bits((bits & MANTISSA) | 1.0_f64.to_bits());
+    // ln m = ln √2 + 2 artanh((m − √2)/(m + √2)), where the argument is below 0.172.
+    let s = (mantissa - core::f64::consts::SQRT_2) / (mantissa + core::f64::consts::SQRT_2);
+    let s_2 = s * s;
+    let artanh = s * (1.0 + s_2 * (1.0 / 3.0 + s_2 * (0.2 + s_2 / 7.0)));
+    core::f64::consts::LN_2 * (exponent + 0.5) + 2.0 * artanh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::power;
+
+    #[test]
+    fn powers_have_seven_digits() {
+        extern crate std;
+        for x in [1e-300, 1e-9, 0.3, 0.999, 1.0, 1.414, 2.0, 77.7, 1e9] {
+            for exponent in [-0.25, -0.2, 0.04, 0.17] {
+                let exact = std::primitive::f64::powf(x, exponent);
+                let error = (power(x, exponent) / exact - 1.0).abs();
+                assert!(error < 1e-7, "{x}^{exponent}: {error:e}");
+            }
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! A splitting that steps coloured noise exactly.
+
+use core::array::from_fn;
+
+use ahv_core::{ColouredNoise, ItoCorrected, Model, NoiseClass, Real, StochasticModel, Vector};
+
+use crate::error::accept;
+use crate::vector::{component, unit};
+use crate::{ItoHeun, LinearTransition, NoiseError, StepError};
+
+/// Strang's splitting for Itô equations with `N` states of coloured noise, with a fixed step and a held input.
+///
+/// Half a step of the Ornstein–Uhlenbeck processes by their exact transition, a step of the other states by a scheme of
+/// the caller's with the processes held, half a step of the processes again (Strang 1968). The processes have their exact
+/// law, with the covariance of those that share white noise, at any step size. Weak order 2 where the scheme for the
+/// other states has it, else that scheme's; the step has to resolve the processes' decay only as far as the other states
+/// feel it. As a strong scheme it has no order: the normal numbers stand for no Wiener path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ItoStrangSplitting<R, const N: usize> {
+    half: LinearTransition<R, N>,
+    dt: f64,
+}
+
+impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
+    /// The splitting of `model` for a step size `dt`, in s. `x` and `u` are any state and input in the model's domain; the
+    /// transition does not depend on them.
+    ///
+    /// # Errors
+    ///
+    /// [`NoiseError`]: the model has not `N` states of coloured noise; a channel that drives them is not additive, or
+    /// moves other states at (x, u) too; `dt` is not positive and finite.
+    pub fn new<M: ColouredNoise<Scalar = R>>(
+        model: &M,
+        x: &M::State,
+        u: &M::Input,
+        dt: f64,
+    ) -> Result<Self, NoiseError> {
+        let found = coloured(model).count();
+        if found != N {
+            return Err(NoiseError::ColouredStates { expected: N, found });
+        }
+        let mut intensity = [[R::ZERO; N]; N];
+        for channel in 0..M::Noise::LEN {
+            let column = model.noise_increment(x, u, &unit(channel));
+            if moves(&column, |state| model.decay(state).is_some()).is_none() {
+                continue;
+            }
+            let name = M::Noise::NAMES.get(channel).copied().unwrap_or("");
+            let class = M::noise_class(channel);
+            if class != NoiseClass::Constant {
+                return Err(NoiseError::NotAdditive {
+                    channel: name,
+                    class,
+                });
+            }
+            if let Some(state) = moves(&column, |state| model.decay(state).is_none()) {
+                return Err(NoiseError::SharedChannel {
+                    channel: name,
+                    state,
+                });
+            }
+            let part: [R; N] = gathered(model, &column);
+            for (row, &a) in intensity.iter_mut().zip(&part) {
+                for (entry, &b) in row.iter_mut().zip(&part) {
+                    *entry = *entry + a * b;
+                }
+            }
+        }
+        let mut rates = coloured(model).filter_map(|state| model.decay(state));
+        let rates: [R; N] = from_fn(|_| rates.next().unwrap_or(R::ZERO));
+        let mut a = [[R::ZERO; N]; N];
+        for (index, (row, rate)) in a.iter_mut().zip(rates).enumerate() {
+            if let Some(entry) = row.get_mut(index) {
+                *entry = -rate;
+            }
+        }
+        let half = LinearTransition::new(a, intensity, 0.5 * dt)
+            .map_err(|_| NoiseError::StepSize { dt })?;
+        Ok(Self { half, dt })
+    }
+
+    /// Advances `x` by one step; `u` is held over the step.
+    ///
+    /// `normals` are independent standard normal numbers for the two half steps of the coloured noise. `others` steps
+    /// the other states over the given time, in s, by any scheme for stochastic or deterministic models: it gets the model
+    /// without the coloured noise's motion. Increments that it uses must be independent of `normals`.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`], also that of `others`; `x` is then the state before the step.
+    #[inline]
+    pub fn step<M: ColouredNoise<Scalar = R>>(
+        &self,
+        model: &M,
+        x: &mut M::State,
+        normals: &[[R; N]; 2],
+        others: impl FnOnce(&HeldColoured<'_, M>, &mut M::State, f64) -> Result<(), StepError<R>>,
+    ) -> Result<(), StepError<R>> {
+        let [first, second] = normals;
+        let mut next = self.coloured_half(model, *x, first);
+        others(&HeldColoured { model }, &mut next, self.dt)?;
+        accept(x, self.coloured_half(model, next, second))
+    }
+
+    /// The same with [`ItoHeun`] for the other states; `dw` are the Wiener increments over the step, in s^½, of which those
+    /// that drive coloured noise are not used.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`]; `x` is then the state before the step.
+    #[inline]
+    pub fn step_heun<M: ColouredNoise<Scalar = R> + ItoCorrected>(
+        &self,
+        model: &M,
+        x: &mut M::State,
+        u: &M::Input,
+        dw: &M::Noise,
+        normals: &[[R; N]; 2],
+    ) -> Result<(), StepError<R>> {
+        self.step(model, x, normals, |others, x, dt| {
+            ItoHeun::new(dt).step(others, x, u, dw)
+        })
+    }
+
+    #[inline]
+    fn coloured_half<M: ColouredNoise<Scalar = R>>(
+        &self,
+        model: &M,
+        x: M::State,
+        normals: &[R; N],
+    ) -> M::State {
+        let before = gathered(model, &x);
+        let after = self.half.step(&before, &[R::ZERO; N], normals);
+        let mut next = x;
+        for (state, value) in coloured(model).zip(after) {
+            // The index is one of the state's own.
+            let _ = next.set(state, value);
+        }
+        next
+    }
+}
+
+/// A model whose coloured noise stands still: the equation of the other states alone.
+#[derive(Clone, Copy, Debug)]
+pub struct HeldColoured<'m, M> {
+    model: &'m M,
+}
+
+impl<M: ColouredNoise> HeldColoured<'_, M> {
+    #[inline]
+    fn held(&self, rate: M::State) -> M::State {
+        M::State::from_fn(|state| match self.model.decay(state) {
+            Some(_) => M::Scalar::ZERO,
+            None => component(&rate, state),
+        })
+    }
+}
+
+impl<M: ColouredNoise> Model for HeldColoured<'_, M> {
+    type Scalar = M::Scalar;
+    type State = M::State;
+    type Input = M::Input;
+
+    #[inline]
+    fn drift(&self, x: &M::State, u: &M::Input) -> M::State {
+        self.held(self.model.drift(x, u))
+    }
+}
+
+impl<M: ColouredNoise> StochasticModel for HeldColoured<'_, M> {
+    type Noise = M::Noise;
+
+    #[inline]
+    fn noise_increment(&self, x: &M::State, u: &M::Input, dw: &M::Noise) -> M::State {
+        self.held(self.model.noise_increment(x, u, dw))
+    }
+
+    fn noise_class(channel: usize) -> NoiseClass {
+        M::noise_class(channel)
+    }
+
+    fn noise_commutes(first: usize, second: usize) -> bool {
+        M::noise_commutes(first, second)
+    }
+}
+
+impl<M: ColouredNoise + ItoCorrected> ItoCorrected for HeldColoured<'_, M> {
+    /// That of the model: the columns of coloured noise are constant and add nothing to it.
+    #[inline]
+    fn ito_correction(&self, x: &M::State, u: &M::Input) -> M::State {
+        self.held(self.model.ito_correction(x, u))
+    }
+}
+
+/// The states of coloured noise.
+fn coloured<M: ColouredNoise>(model: &M) -> impl Iterator<Item = usize> + '_ {
+    (0..M::State::LEN).filter(|&state| model.decay(state).is_some())
+}
+
+/// The components of coloured noise.
+#[inline]
+fn gathered<M: ColouredNoise, const N: usize>(model: &M, x: &M::State) -> [M::Scalar; N] {
+    let mut states = coloured(model);
+    from_fn(|_| {
+        states
+            .next()
+            .map_or(M::Scalar::ZERO, |state| component(x, state))
+    })
+}
+
+/// The name of the first of these states that a column moves.
+fn moves<R: Real, X: Vector<R>>(column: &X, among: impl Fn(usize) -> bool) -> Option<&'static str> {
+    (0..X::LEN)
+        .filter(|&state| among(state))
+        .find(|&state| component(column, state).to_f64() != 0.0)
+        .and_then(|state| X::NAMES.get(state).copied())
+}

@@ -1,0 +1,152 @@
+//! Sources of noise, and the path that can be refined.
+#![forbid(unsafe_code)]
+
+mod common;
+
+use ahv_core::Vector;
+use ahv_integrate::{
+    BrownianPath, KeyedNormals, NormalSource, NormalStream, RandNormals, WeakIncrements,
+    WienerIntegrals, bisect,
+};
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use common::vector;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+vector!(Two, w_1, w_2);
+
+const SOURCE: KeyedNormals = KeyedNormals { seed: 1, member: 2 };
+
+/// Computed apart from this project's code, in Python: ChaCha8 after RFC 8439's layout, then Box–Muller; seed 1, member 2,
+/// step 3, channels 0 to 5.
+const FIXED: [u64; 6] = [
+    0x3FF3_672B_6EBA_0FB1,
+    0x3FF7_D82B_DE0B_C1D8,
+    0xBFF0_FA72_90E1_F3B7,
+    0xBFFF_BA5D_F99D_F3D9,
+    0x3FD3_0379_4BBF_91FA,
+    0x3FA3_A2BA_6850_60B4,
+];
+
+#[test]
+fn keyed_numbers_are_fixed_and_do_not_depend_on_order() {
+    for (channel, bits) in FIXED.iter().enumerate() {
+        assert_eq!({ SOURCE }.normal(3, channel).to_bits(), *bits);
+        let mut stream = NormalStream::new(1, 2, channel as u64);
+        for step in [3, 0, 3, 2, 3, 1000, 3] {
+            assert_eq!(stream.normal(step), { SOURCE }.normal(step, channel));
+        }
+    }
+}
+
+/// Variances of ΔW and ΔZ, their covariance, and the covariance of neighbours.
+fn moments(steps: &[WienerIntegrals<Two<f64>>]) -> [f64; 4] {
+    let mean = |f: &dyn Fn(usize) -> f64| {
+        (0..steps.len() - 1).map(f).sum::<f64>() / (steps.len() - 1) as f64
+    };
+    [
+        mean(&|i| steps[i].dw.w_1 * steps[i].dw.w_1),
+        mean(&|i| steps[i].dw.w_2 * steps[i].dz.w_2),
+        mean(&|i| steps[i].dz.w_1 * steps[i].dz.w_1),
+        mean(&|i| steps[i].dw.w_1 * steps[i + 1].dw.w_1),
+    ]
+}
+
+#[test]
+fn every_level_of_a_path_has_the_law_of_a_wiener_process() {
+    let mut path = BrownianPath::new(SOURCE, 16.0);
+    let level = 12;
+    let h = path.dt(level);
+    assert_eq!(h, 1.0 / 256.0);
+    let steps: Vec<WienerIntegrals<Two<f64>>> = (0..1 << level)
+        .map(|index| path.integrals(level, index).expect("a step of the path"))
+        .collect();
+    let [dw, both, dz, neighbours] = moments(&steps);
+    // A standard error of 4096 products is 1/45 of a variance.
+    assert_relative_eq!(dw, h, max_relative = 0.07);
+    assert_relative_eq!(both, h * h / 2.0, max_relative = 0.07);
+    assert_relative_eq!(dz, h.powi(3) / 3.0, max_relative = 0.07);
+    assert_abs_diff_eq!(neighbours, 0.0, epsilon = 0.05 * h);
+}
+
+#[test]
+fn finer_steps_add_up_to_coarser_ones() {
+    let mut path = BrownianPath::new(SOURCE, 3.0);
+    for level in 0..6 {
+        for index in 0..1 << level {
+            let whole: WienerIntegrals<Two<f64>> = path.integrals(level, index).expect("a step");
+            let halves = [0, 1].map(|half| path.integrals(level + 1, 2 * index + half));
+            let [Some(left), Some(right)] = halves else {
+                panic!("both halves are steps of the path");
+            };
+            let again = left.then(right, path.dt(level + 1));
+            for channel in 0..2 {
+                let pair = |w: &Two<f64>| w.get(channel).expect("two channels");
+                assert_abs_diff_eq!(pair(&again.dw), pair(&whole.dw), epsilon = 1e-14);
+                assert_abs_diff_eq!(pair(&again.dz), pair(&whole.dz), epsilon = 1e-14);
+            }
+        }
+    }
+    assert_eq!(path.integrals::<f64, Two<f64>>(3, 8), None);
+    assert_eq!(path.integrals::<f64, Two<f64>>(63, 0), None);
+    assert!(path.integrals::<f64, Two<f64>>(62, (1 << 62) - 1).is_some());
+}
+
+#[test]
+fn the_plain_bridge_halves_an_increment() {
+    let dw = Two {
+        w_1: 0.3,
+        w_2: -0.1,
+    };
+    let (left, right) = bisect(
+        dw,
+        0.04,
+        Two {
+            w_1: 1.0,
+            w_2: -2.0,
+        },
+    );
+    assert_relative_eq!(left.w_1 + right.w_1, dw.w_1, max_relative = 1e-15);
+    // Var = dt/4 given the whole.
+    assert_relative_eq!(left.w_1, 0.15 + 0.1, max_relative = 1e-15);
+    assert_relative_eq!(left.w_2, -0.05 - 0.2, max_relative = 1e-15);
+}
+
+#[test]
+fn any_generator_of_rand_gives_wiener_increments() {
+    let mut source = RandNormals::new(ChaCha8Rng::from_seed([7; 32]));
+    let h = 0.04;
+    let steps: Vec<WienerIntegrals<Two<f64>>> = (0..20_000).map(|_| source.integrals(h)).collect();
+    let [dw, both, dz, neighbours] = moments(&steps);
+    assert_relative_eq!(dw, h, max_relative = 0.03);
+    assert_relative_eq!(both, h * h / 2.0, max_relative = 0.03);
+    assert_relative_eq!(dz, h.powi(3) / 3.0, max_relative = 0.03);
+    assert_abs_diff_eq!(neighbours, 0.0, epsilon = 0.03 * h);
+
+    let again = RandNormals::new(ChaCha8Rng::from_seed([7; 32])).integrals::<f64, _>(h);
+    assert_eq!(steps[0], again);
+    let mut borrowed = ChaCha8Rng::from_seed([7; 32]);
+    let dw: Two<f64> = RandNormals::new(&mut borrowed).increments(h);
+    assert_eq!(dw, steps[0].dw);
+}
+
+#[test]
+fn weak_increments_take_their_values_with_their_probabilities() {
+    let mut source = RandNormals::new(ChaCha8Rng::from_seed([9; 32]));
+    let (h, count) = (0.01_f64, 60_000);
+    let mut found = [0; 3];
+    let mut positive = 0;
+    for _ in 0..count {
+        let weak: WeakIncrements<Two<f64>> = source.weak_increments(h);
+        let level = weak.three_point.w_1 / (3.0 * h).sqrt();
+        assert!(level == 0.0 || level.abs() == 1.0);
+        found[(level + 1.0) as usize] += 1;
+        assert_relative_eq!(weak.two_point.w_2.abs(), h.sqrt());
+        positive += i32::from(weak.two_point.w_2 > 0.0);
+    }
+    for (count_here, probability) in found.into_iter().zip([1.0, 4.0, 1.0].map(|p| p / 6.0)) {
+        let share = f64::from(count_here) / f64::from(count);
+        assert_abs_diff_eq!(share, probability, epsilon = 0.006);
+    }
+    assert_abs_diff_eq!(f64::from(positive) / f64::from(count), 0.5, epsilon = 0.007);
+}

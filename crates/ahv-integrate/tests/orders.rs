@@ -1,0 +1,56 @@
+//! The orders of convergence that `docs/integrators.md` prints.
+#![forbid(unsafe_code)]
+
+#[path = "common/order.rs"]
+mod order;
+#[path = "common/orders.rs"]
+mod orders;
+
+use order::observed_order;
+
+#[test]
+fn the_methods_have_their_orders_and_the_documentation_says_so() {
+    let rows = orders::observed();
+    let table = orders::table(&rows);
+    for row in &rows {
+        // More is no fault: terms of a higher order are still felt where those of the order itself are small.
+        let near = |observed: f64, order: u8| (-0.15..0.5).contains(&(observed - f64::from(order)));
+        assert!(near(row.flight, row.order), "{}\n{table}", row.name);
+        let mode = row.mode.is_none_or(|observed| near(observed, row.order));
+        assert!(mode, "{}\n{table}", row.name);
+        let dense = row
+            .dense
+            .is_none_or(|(order, observed)| near(observed, order));
+        assert!(dense, "{}\n{table}", row.name);
+    }
+    let documentation = include_str!("../../../docs/integrators.md");
+    let mut lines = documentation.lines();
+    let Some(head) = table.lines().next() else {
+        panic!("the table is empty");
+    };
+    assert!(
+        lines.any(|line| line == head),
+        "no table in docs/integrators.md"
+    );
+    for (measured, documented) in table.lines().skip(1).zip(lines) {
+        assert!(
+            agree(measured, documented),
+            "docs/integrators.md has another table than `cargo run -p ahv-integrate --example orders`:\n{table}"
+        );
+    }
+}
+
+/// Whether two lines are equal, numbers to a tenth: another table of coefficients moves them by less.
+fn agree(measured: &str, documented: &str) -> bool {
+    let cell = |pair: (&str, &str)| {
+        let numbers = pair
+            .0
+            .trim()
+            .parse::<f64>()
+            .ok()
+            .zip(pair.1.trim().parse::<f64>().ok());
+        numbers.map_or(pair.0 == pair.1, |(a, b)| (a - b).abs() < 0.1)
+    };
+    measured.split('|').count() == documented.split('|').count()
+        && measured.split('|').zip(documented.split('|')).all(cell)
+}
