@@ -16,7 +16,7 @@ pub use provenance::*;
 {%- endif %}
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, {% if model.noise.is_some() %}NoiseClass, {% endif %}Real};
+use ahv_core::{Bounds, {% if model.noise.is_some() %}NoiseClass, {% endif %}Real{% if model.noise.is_some() %}, Vector{% endif %}};
 
 {%- for (v, implementation) in vectors %}
 /// {{ v.doc }} of {{ label }}.
@@ -125,5 +125,62 @@ impl<R: Real> ahv_core::StochasticModel for Model<R> {
     fn noise_increment(&self, x: &State<R>, u: &Input<R>, dw: &Noise<R>) -> State<R> {
         noise_increment(x, u, &self.prepared, dw)
     }
+
+    #[inline]
+    fn noise_class(channel: usize) -> NoiseClass {
+        NOISE_CLASS.get(channel).unwrap_or(NoiseClass::General)
+    }
+
+    #[inline]
+    fn noise_commutes(first: usize, second: usize) -> bool {
+        NOISE_COMMUTES.get(first).and_then(|row| row.get(second)).unwrap_or(false)
+    }
 }
+
+impl<R: Real> ahv_core::ItoCorrected for Model<R> {
+    #[inline]
+    fn ito_correction(&self, x: &State<R>, u: &Input<R>) -> State<R> {
+        ito_correction(x, u, &self.prepared)
+    }
+}
+
+impl<R: Real> ahv_core::DifferentiableNoise for Model<R> {
+    #[inline]
+    fn iterated_increment(
+        &self,
+        x: &State<R>,
+        u: &Input<R>,
+        mut integral: impl FnMut(usize, usize) -> R,
+    ) -> State<R> {
+        let values = noise_derivatives_values(x, u, &self.prepared);
+        let mut sum = State::splat(R::ZERO).to_array();
+        for (value, &[row, j, k]) in values.into_iter().zip(NOISE_DERIVATIVES_PATTERN.at) {
+            if let Some(component) = sum.get_mut(row) {
+                *component = *component + value * integral(j, k);
+            }
+        }
+        State::from_array(sum)
+    }
+}
+{%- if is_additive() %}
+
+impl<R: Real> ahv_core::AdditiveNoise for Model<R> {}
+{%- endif %}
+{%- if is_commutative() %}
+
+impl<R: Real> ahv_core::CommutativeNoise for Model<R> {}
+{%- endif %}
+{%- if !coloured.is_empty() %}
+
+impl<R: Real> ahv_core::ColouredNoise for Model<R> {
+    #[inline]
+    fn decay(&self, state: usize) -> Option<R> {
+        let mut decays = State::splat(None);
+{%- for (state, rate) in coloured %}
+        decays.{{ state }} = Some(self.prepared.{{ rate }});
+{%- endfor %}
+        decays.get(state).flatten()
+    }
+}
+{%- endif %}
 {%- endif %}

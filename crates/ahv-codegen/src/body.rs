@@ -93,6 +93,11 @@ impl Prepared {
         found
     }
 
+    /// The field that holds a node.
+    pub(crate) fn field(&self, id: Id) -> Option<&str> {
+        self.names.get(&id).map(String::as_str)
+    }
+
     fn visit(
         &mut self,
         dag: &mut Dag,

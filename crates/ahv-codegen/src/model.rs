@@ -27,6 +27,8 @@ struct ModelTemplate<'a> {
     shared: Vec<String>,
     /// Vectors, each with its implementation.
     vectors: Vec<(Vector<'a>, String)>,
+    /// States that decay by themselves, each with its rate as a field of `Prepared`.
+    coloured: Vec<(String, String)>,
 }
 
 impl ModelTemplate<'_> {
@@ -37,6 +39,18 @@ impl ModelTemplate<'_> {
             "diagonal" => "Diagonal",
             _ => "General",
         }
+    }
+
+    /// Whether no column of the diffusion depends on the state.
+    fn is_additive(&self) -> bool {
+        let columns = self.model.noise.as_ref().map(|noise| &noise.columns);
+        columns.is_some_and(|columns| columns.iter().all(|column| column.class == "constant"))
+    }
+
+    /// Whether every two columns of the diffusion commute.
+    fn is_commutative(&self) -> bool {
+        let columns = self.model.noise.as_ref().map(|noise| &noise.columns);
+        columns.is_some_and(|all| all.iter().all(|j| all.iter().all(|k| self.commute(j, k))))
     }
 
     /// Whether two columns of the diffusion commute.
@@ -246,7 +260,30 @@ impl<'a> ModelEmitter<'a> {
             modules,
             groups,
             vectors: vectors.into_iter().zip(lists).collect(),
+            coloured: self.coloured(),
         }))
+    }
+
+    /// States whose rate is minus a parameter times themselves, each with the field that holds the parameter.
+    fn coloured(&self) -> Vec<(String, String)> {
+        let mut found = Vec::new();
+        let functions = self.model.functions.iter().zip(&self.roots);
+        for (function, roots) in functions.filter(|(function, _)| function.name == "drift") {
+            let entries = function.outputs.iter().flat_map(|output| &output.entries);
+            for (entry, root) in entries.zip(roots) {
+                let Node::Product(-1.0, factors) = self.dag.node(*root) else {
+                    continue;
+                };
+                let is_own = |&id: &Id| matches!(self.dag.node(id), Node::Leaf(Kind::State, name) if *name == entry.at[0]);
+                if let [a, b] = factors.as_slice()
+                    && is_own(a) != is_own(b)
+                    && let Some(rate) = self.prepared.field(if is_own(a) { *b } else { *a })
+                {
+                    found.push((entry.at[0].clone(), rate.to_owned()));
+                }
+            }
+        }
+        found
     }
 
     fn prepare(&mut self) -> String {

@@ -27,7 +27,7 @@ pub use crate::dcom::{
 
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, NoiseClass, Real};
+use ahv_core::{Bounds, NoiseClass, Real, Vector};
 
 /// State of SDCOM_GUST.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -273,5 +273,58 @@ impl<R: Real> ahv_core::StochasticModel for Model<R> {
     #[inline]
     fn noise_increment(&self, x: &State<R>, u: &Input<R>, dw: &Noise<R>) -> State<R> {
         noise_increment(x, u, &self.prepared, dw)
+    }
+
+    #[inline]
+    fn noise_class(channel: usize) -> NoiseClass {
+        NOISE_CLASS.get(channel).unwrap_or(NoiseClass::General)
+    }
+
+    #[inline]
+    fn noise_commutes(first: usize, second: usize) -> bool {
+        NOISE_COMMUTES.get(first).and_then(|row| row.get(second)).unwrap_or(false)
+    }
+}
+
+impl<R: Real> ahv_core::ItoCorrected for Model<R> {
+    #[inline]
+    fn ito_correction(&self, x: &State<R>, u: &Input<R>) -> State<R> {
+        ito_correction(x, u, &self.prepared)
+    }
+}
+
+impl<R: Real> ahv_core::DifferentiableNoise for Model<R> {
+    #[inline]
+    fn iterated_increment(
+        &self,
+        x: &State<R>,
+        u: &Input<R>,
+        mut integral: impl FnMut(usize, usize) -> R,
+    ) -> State<R> {
+        let values = noise_derivatives_values(x, u, &self.prepared);
+        let mut sum = State::splat(R::ZERO).to_array();
+        for (value, &[row, j, k]) in values.into_iter().zip(NOISE_DERIVATIVES_PATTERN.at)
+        {
+            if let Some(component) = sum.get_mut(row) {
+                *component = *component + value * integral(j, k);
+            }
+        }
+        State::from_array(sum)
+    }
+}
+
+impl<R: Real> ahv_core::AdditiveNoise for Model<R> {}
+
+impl<R: Real> ahv_core::CommutativeNoise for Model<R> {}
+
+impl<R: Real> ahv_core::ColouredNoise for Model<R> {
+    #[inline]
+    fn decay(&self, state: usize) -> Option<R> {
+        let mut decays = State::splat(None);
+        decays.chi_1 = Some(self.prepared.chi_decay_1);
+        decays.chi_2 = Some(self.prepared.chi_decay_2);
+        decays.chi_3 = Some(self.prepared.chi_decay_3);
+        decays.alpha_gust = Some(self.prepared.inv_gust_time);
+        decays.get(state).flatten()
     }
 }
