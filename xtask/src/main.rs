@@ -46,7 +46,7 @@ fn main() -> ExitCode {
         Task::Generate(args) => return ahv_generate::run(&args).into(),
         Task::Setup => python::set_up(),
         Task::Test => steps::run(),
-        Task::Audit { points } => audit(points, &["--release"]),
+        Task::Audit { points } => audit(points),
         Task::Vectors => vectors::run(),
         Task::Bench => bench::run(),
         Task::Book => book::run(),
@@ -61,11 +61,18 @@ fn main() -> ExitCode {
     }
 }
 
-fn audit(points: u32, profile: &[&str]) -> Result<(), String> {
+fn audit(points: u32) -> Result<(), String> {
     let python = python::development()?;
     let mut audit = shell::cargo();
-    audit.arg("run").args(profile);
-    audit.args(["--package", "ahv-tests", "--bin", "audit", "--"]);
+    audit.args([
+        "run",
+        "--release",
+        "--package",
+        "ahv-tests",
+        "--bin",
+        "audit",
+        "--",
+    ]);
     audit
         .args(["--points", &points.to_string(), "--python"])
         .arg(python);

@@ -1,4 +1,4 @@
-//! Calls every generated function (see build.rs) and both steppers, and links only while no panic can be reached.
+//! Calls every generated function (see build.rs) and the steppers, and links only while no panic can be reached.
 //!
 //! The panic handler calls a function that nobody defines. Where the linker finds the handler
 //! reachable it stops with `undefined symbol: a_panic_can_be_reached`. Values pass through
@@ -6,11 +6,13 @@
 #![no_std]
 #![no_main]
 
+mod deterministic;
+
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
-use ahv_core::{Bounds, DifferentiableModel, Real, StochasticModel, Vector, first_outside};
-use ahv_integrate::{EulerMaruyama, Rk4};
+use ahv_core::{Bounds, DifferentiableModel, DifferentiableNoise, Real, Vector, first_outside};
+use ahv_integrate::{EulerMaruyama, ItoDri1, ItoHeun, StratonovichHeun, WeakIncrements};
 use ahv_models::{com, com_rigid, dcom, flexible_mode, sdcom, sdcom_gust, sdcom_printed};
 
 unsafe extern "C" {
@@ -28,6 +30,8 @@ fn panic(_: &PanicInfo) -> ! {
 pub extern "C" fn _start() -> ! {
     every_model::<f64>();
     every_model::<f32>();
+    deterministic::all::<f64>();
+    deterministic::all::<f32>();
     #[cfg(feature = "plant")]
     black_box(dcom::State::<f64>::NAMES[black_box(0)]);
     loop {}
@@ -41,20 +45,28 @@ where
     X: Vector<Bounds>,
     U: Vector<Bounds>,
 {
-    let (mut x, u) = (unknown(), unknown());
+    let (x, u) = (unknown(), unknown());
     black_box(model.jacobians(&x, &u));
     black_box(model.drift_and_jacobians(&x, &u));
-    black_box(Rk4::new(black_box(0.01)).step(model, &mut x, &u).is_ok());
     black_box(first_outside(&x, states).is_some());
     black_box(first_outside(&u, inputs).is_some());
     vector::<M::Scalar, M::State>();
     vector::<M::Scalar, M::Input>();
 }
 
-fn stochastic<M: StochasticModel>(model: &M) {
+fn stochastic<M: DifferentiableNoise>(model: &M) {
     let (mut x, u, dw) = (unknown(), unknown(), unknown());
-    let stepper = EulerMaruyama::new(black_box(0.01));
-    black_box(stepper.step(model, &mut x, &u, &dw).is_ok());
+    let dt = black_box(0.01);
+    black_box(EulerMaruyama::new(dt).step(model, &mut x, &u, &dw).is_ok());
+    black_box(
+        StratonovichHeun::new(dt)
+            .step(model, &mut x, &u, &dw)
+            .is_ok(),
+    );
+    black_box(ItoHeun::new(dt).step(model, &mut x, &u, &dw).is_ok());
+    let weak = WeakIncrements::from_normals::<M::Scalar>(dt, |channel| black_box(channel as f64));
+    black_box(ItoDri1::new(dt).step(model, &mut x, &u, &weak).is_ok());
+    black_box(model.iterated_increment(&x, &u, |_, _| black_box(M::Scalar::ONE)));
     vector::<M::Scalar, M::Noise>();
 }
 
