@@ -5,8 +5,8 @@ use askama::Template;
 use crate::EmitError;
 use crate::emit::render;
 use crate::ir::{Choice, Document, Parameter, Variable, capitalised, status_variant};
-use crate::model::vector_impl;
 use crate::values::Values;
+use crate::wording::vector_impl;
 
 #[derive(Template)]
 #[template(path = "parameters.rs")]

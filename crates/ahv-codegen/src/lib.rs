@@ -19,6 +19,7 @@ mod print;
 mod shape;
 mod table;
 mod values;
+mod wording;
 
 use std::collections::BTreeMap;
 
