@@ -16,7 +16,7 @@ pub use provenance::*;
 {%- endif %}
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, {% if model.noise.is_some() %}NoiseClass, {% endif %}Real{% if model.noise.is_some() %}, Vector{% endif %}};
+use ahv_core::{Bounds, {% if model.noise.is_some() %}NoiseClass, {% endif %}Pattern, Real{% if model.noise.is_some() %}, Vector{% endif %}};
 
 {%- for (v, implementation) in vectors %}
 /// {{ v.doc }} of {{ label }}.
@@ -105,6 +105,8 @@ impl<R: Real> ahv_core::Model for Model<R> {
 impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     type StateJacobian = StateJacobian<R>;
     type InputJacobian = InputJacobian<R>;
+
+    const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
     #[inline]
     fn jacobians(&self, x: &State<R>, u: &Input<R>) -> (StateJacobian<R>, InputJacobian<R>) {

@@ -1,5 +1,7 @@
 """Command line: ``python -m ahv_oracle vectors --table T --model M --points N --seed S --out F``.
 
+``python -m ahv_oracle flights --table T --out F`` writes SciPy's flights, ``python -m ahv_oracle riccati --out F`` its
+solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`` its trims, poles and zeros.
 ``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
 """
 
@@ -8,9 +10,12 @@ import sys
 from pathlib import Path
 
 from .evaluate import Oracle
+from .flights import flight_lines
 from .model import MODELS
+from .riccati import riccati_lines
+from .roots import root_lines
 from .table import TableError
-from .vectors import write_vectors
+from .vectors import write_lines, write_vectors
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -24,8 +29,25 @@ def main(arguments: list[str] | None = None) -> int:
     vectors.add_argument("--seed", type=int, required=True)
     vectors.add_argument("--out", type=Path, required=True, help="file to write")
     vectors.add_argument("--functions", type=lambda text: text.split(","), help="comma-separated names (default: all)")
+    flights = commands.add_parser("flights", help="write reference flights")
+    flights.add_argument("--table", type=Path, required=True, help="coefficient table (TOML)")
+    flights.add_argument("--out", type=Path, required=True, help="file to write")
+    riccati = commands.add_parser("riccati", help="write reference solutions of Riccati equations")
+    riccati.add_argument("--out", type=Path, required=True, help="file to write")
+    roots = commands.add_parser("roots", help="write reference trims, poles and zeros")
+    roots.add_argument("--tables", type=Path, required=True, help="folder of the coefficient tables")
+    roots.add_argument("--out", type=Path, required=True, help="file to write")
     options = parser.parse_args(arguments)
+    if options.command == "riccati":
+        write_lines(riccati_lines(), options.out)
+        return 0
+    if options.command == "roots":
+        write_lines(root_lines(options.tables), options.out)
+        return 0
     try:
+        if options.command == "flights":
+            write_lines(flight_lines(options.table), options.out)
+            return 0
         oracle = Oracle(options.table, options.model, options.functions)
         write_vectors(oracle, options.points, options.seed, options.out)
     except (OSError, ValueError) as error:

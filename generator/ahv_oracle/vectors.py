@@ -7,7 +7,7 @@ there is no real value.
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import mpmath
@@ -19,11 +19,16 @@ from .sampling import Point, sample
 
 def write_vectors(oracle: Oracle, points: int, seed: int, out: Path) -> None:
     """Write `points` reference rows to `out`, all or nothing."""
+    write_lines(vector_lines(oracle, points, seed), out)
+
+
+def write_lines(lines: Iterable[str], out: Path) -> None:
+    """Write lines to `out`, all or nothing."""
     descriptor, name = tempfile.mkstemp(dir=out.parent, prefix=f".{out.name}.")
     temporary = Path(name)
     try:
         with os.fdopen(descriptor, "w", encoding="utf-8", newline="\n") as file:
-            file.writelines(f"{line}\n" for line in vector_lines(oracle, points, seed))
+            file.writelines(f"{line}\n" for line in lines)
         temporary.chmod(0o644)
         temporary.replace(out)
     except BaseException:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from ahv_oracle import MODELS, Oracle, sample, write_vectors
+from ahv_oracle.flights import SETS, SOLVERS, START, Flight, heading_lines
 from ahv_oracle.vectors import heading, vector_row
 
 ROOT = Path(__file__).parents[2]
@@ -46,3 +47,15 @@ def test_a_changed_value_changes_no_vector(tmp_path: Path) -> None:
         write_vectors(Oracle(table, "dcom", ["drift", "hessian"]), 20, 1, tmp_path / "fresh.txt")
         written.append((tmp_path / "fresh.txt").read_text(encoding="utf-8"))
     assert written[0] == written[1]
+
+
+@pytest.mark.parametrize("parameters", SETS)
+def test_checked_in_flights_are_up_to_date(parameters: str) -> None:
+    lines = (ROOT / "tests/vectors/dcom.flights.txt").read_text(encoding="utf-8").splitlines()
+    flight = Flight(ROOT / "generator/tables/dcom.toml", parameters)
+    assert lines[:2] == heading_lines(flight.states), "run `cargo xtask vectors`"
+    fields = [line.split(",") for line in lines[2:]]
+    rows = {solver: [float(value) for value in state] for name, solver, *state in fields if name == parameters}
+    assert list(rows) == ["start", *SOLVERS]
+    assert rows["start"] == [START.get(name, 0.0) for name in flight.states], "run `cargo xtask vectors`"
+    assert rows["DOP853"] == pytest.approx(flight.end("DOP853"), rel=1e-10), "run `cargo xtask vectors`"

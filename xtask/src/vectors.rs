@@ -16,7 +16,8 @@ const MODELS: [(&str, &str); 7] = [
     ("flexible_mode", "flexible_mode"),
 ];
 
-/// Writes the oracle's points and values, then CasADi's values at the same points.
+/// Writes the oracle's points and values and CasADi's values at the same points, then SciPy's flights, Riccati solutions, poles and
+/// zeros.
 pub(crate) fn run() -> Result<(), String> {
     let python = python::development()?;
     for (model, table) in MODELS {
@@ -41,5 +42,32 @@ pub(crate) fn run() -> Result<(), String> {
         shell::run(casadi.current_dir(shell::root().join("generator")))?;
         println!("tests/vectors/{model}.sympy.txt\ntests/vectors/{model}.casadi.txt");
     }
+    let mut scipy = shell::program(&python);
+    scipy.args(["-m", "ahv_oracle", "flights", "--table", "tables/dcom.toml"]);
+    scipy.args(["--out", "../tests/vectors/dcom.flights.txt"]);
+    shell::run(scipy.current_dir(shell::root().join("generator")))?;
+    println!("tests/vectors/dcom.flights.txt");
+    let mut riccati = shell::program(&python);
+    riccati.args([
+        "-m",
+        "ahv_oracle",
+        "riccati",
+        "--out",
+        "../tests/vectors/riccati.txt",
+    ]);
+    shell::run(riccati.current_dir(shell::root().join("generator")))?;
+    println!("tests/vectors/riccati.txt");
+    let mut roots = shell::program(&python);
+    roots.args([
+        "-m",
+        "ahv_oracle",
+        "roots",
+        "--tables",
+        "tables",
+        "--out",
+        "../tests/vectors/roots.txt",
+    ]);
+    shell::run(roots.current_dir(shell::root().join("generator")))?;
+    println!("tests/vectors/roots.txt");
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! What a model can do.
 
-use crate::{NoiseClass, Real, Vector};
+use crate::{NoiseClass, Pattern, Real, Vector};
 
 /// dx/dt = f(x, u) of a time-invariant model.
 pub trait Model {
@@ -23,6 +23,9 @@ pub trait DifferentiableModel: Model {
     type StateJacobian: Vector<Self::State>;
     /// ∂f/∂u: a vector over the rows of f; each row is a vector over the inputs.
     type InputJacobian: Vector<Self::Input>;
+
+    /// Where entries of ∂f/∂x can differ from 0; those elsewhere may go unread.
+    const STATE_JACOBIAN_PATTERN: Pattern<2>;
 
     /// ∂f/∂x and ∂f/∂u at (x, u); the unit of an entry is that of its row per second, over that of its column.
     fn jacobians(
@@ -84,9 +87,17 @@ pub trait DifferentiableNoise: ItoCorrected {
 }
 
 /// A model whose columns of G all are constant over the state: the Itô and the Stratonovich sense agree.
+#[diagnostic::on_unimplemented(
+    message = "the noise of `{Self}` is not known to be additive",
+    note = "`ahv_integrate::AdditiveChannels` admits those of its channels that are"
+)]
 pub trait AdditiveNoise: StochasticModel {}
 
 /// A model of which every two columns of G commute, [`StochasticModel::noise_commutes`].
+#[diagnostic::on_unimplemented(
+    message = "the noise of `{Self}` is not known to commute",
+    note = "`ahv_integrate::CommutativeChannels` admits those of its channels that do"
+)]
 pub trait CommutativeNoise: DifferentiableNoise {}
 
 /// A model some of whose states are Ornstein–Uhlenbeck processes by themselves: dχ = −a χ dt + b·dW with a rate a

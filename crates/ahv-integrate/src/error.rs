@@ -4,6 +4,8 @@ use core::fmt;
 
 use ahv_core::{Real, Vector};
 
+use crate::Failure;
+
 /// Why a step failed. The state is then the one before the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepError<R> {
@@ -19,6 +21,24 @@ pub enum StepError<R> {
         /// Its value, in its own unit.
         value: R,
     },
+}
+
+impl<R: Real> StepError<R> {
+    /// The failure of a run whose step from `time`, in s, ended like this.
+    #[must_use]
+    pub fn at(self, time: f64) -> Failure {
+        match self {
+            Self::StepSize { dt } => Failure::Setting {
+                name: "step",
+                value: dt,
+            },
+            Self::NonFinite { name, value } => Failure::NonFinite {
+                time,
+                name,
+                value: value.to_f64(),
+            },
+        }
+    }
 }
 
 impl<R: Real> fmt::Display for StepError<R> {

@@ -15,9 +15,6 @@ pub struct ItoEulerMaruyama {
     dt: f64,
 }
 
-/// The same.
-pub type EulerMaruyama = ItoEulerMaruyama;
-
 impl ItoEulerMaruyama {
     /// A stepper of step size `dt`, in s; [`step`](Self::step) refuses one that is not positive and finite.
     pub const fn new(dt: f64) -> Self {

@@ -3,7 +3,7 @@
 //! * [`Euler`], [`Heun`], [`Rk4`]: deterministic models, fixed step, orders 1, 2, 4.
 //! * [`DormandPrince54`], [`Tsit5`]: explicit pairs of orders 5 and 4; [`Rodas4`]: L-stable pair of orders 4 and 3 for
 //!   stiff models. [`Adaptive`] runs them with control of the step size, dense output and events, [`Fixed`] with a
-//!   fixed step.
+//!   fixed step. A [`TimeGrid`] numbers fixed steps and tells the time of a failure.
 //! * [`Exponential`]: linear flexible modes exactly, the rest with order 4.
 //! * [`Constant`], [`Held`], [`Interpolated`], [`Feedback`], [`Saturated`]: what drives a run.
 //!
@@ -20,8 +20,9 @@
 //! | [`LinearTransition`] | linear equations with additive noise | exact in law | exact |
 //!
 //! Noise comes from the caller: [`WienerIntegrals`], [`WeakIncrements`], a [`BrownianPath`] that can be refined, and, by
-//! feature, `KeyedNormals` (`chacha`) and `RandNormals` (`rand`). A scheme that needs additive or commutative noise asks for
-//! it by a trait; [`AdditiveChannels`] and [`CommutativeChannels`] check it at run time.
+//! feature, `WienerSource`, `NormalStream`, `KeyedNormals` (`chacha`) and `RandNormals` (`rand`). A scheme that needs
+//! additive or commutative noise asks for it by a trait; [`AdditiveChannels`] and [`CommutativeChannels`] check it at run
+//! time.
 //!
 //! A step allocates nothing and does not panic. A step whose result is not finite is an error that
 //! names the component, and leaves the state as it was.
@@ -40,6 +41,7 @@ mod events;
 mod exponential;
 mod failure;
 mod fixed;
+mod grid;
 mod heun;
 mod input;
 mod linear;
@@ -59,11 +61,12 @@ pub use channels::{AdditiveChannels, CommutativeChannels, NoiseError};
 pub use dense::Dense;
 pub use embedded::{DormandPrince54, EmbeddedPair, Tableau, Tsit5};
 pub use error::StepError;
-pub use euler_maruyama::{EulerMaruyama, ItoEulerMaruyama};
+pub use euler_maruyama::ItoEulerMaruyama;
 pub use events::{ComponentLimit, Crossing, Event, Located, When};
 pub use exponential::{Exponential, FlexibleMode};
 pub use failure::{Anywhere, Failure, Leaving, Validity, Within};
 pub use fixed::{Euler, Heun, Rk4};
+pub use grid::TimeGrid;
 pub use heun::{ItoHeun, StratonovichHeun};
 pub use input::{Constant, Feedback, Held, InputSource, Interpolated, Saturated, saturate};
 pub use method::{Attempt, Fixed, Method, Start};
@@ -71,7 +74,7 @@ pub use milstein::ItoMilstein;
 #[cfg(feature = "rand")]
 pub use noise::RandNormals;
 #[cfg(feature = "chacha")]
-pub use noise::{KeyedNormals, NormalStream};
+pub use noise::{KeyedNormals, NormalStream, WienerSource};
 pub use ornstein_uhlenbeck::LinearTransition;
 pub use rosenbrock::{Rodas4, RosenbrockTableau};
 pub use splitting::{HeldColoured, ItoStrangSplitting};

@@ -1,34 +1,152 @@
-//! Linear equations between vectors whose components have names.
+//! Linear equations between vectors whose components have names, with a matrix whose zeros are known.
 
-use ahv_core::{Real, Vector};
+use ahv_core::{Pattern, Real, Vector};
 
 /// Greatest number of unknowns.
 pub(crate) const MOST: usize = 16;
 
-/// A matrix as the product of a lower and an upper triangle, with its rows exchanged (partial pivoting).
+/// A set of indices below [`MOST`], a bit each.
+type Indices = u16;
+
+/// One step of the elimination: what the pivot on the diagonal meets among the rows and columns that are left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Pivot {
+    /// Row and column of the pivot.
+    index: u8,
+    /// Rows with an entry in its column.
+    rows: Indices,
+    /// Columns with an entry in its row.
+    columns: Indices,
+}
+
+/// The order of elimination of a matrix, with the entries that fill in: from the pattern alone, at compile time.
 ///
-/// Entries that are 0 are skipped, so that the structural zeros of a Jacobian cost a comparison, not a row operation.
-/// A singular matrix shows as a solution that is infinite or NaN.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Factors<R> {
-    /// Below the diagonal the multipliers, on it the reciprocal pivots.
-    rows: [[R; MOST]; MOST],
-    /// Which row of the matrix stands in each place.
-    order: [usize; MOST],
+/// Pivots stay on the diagonal; the next one is always that with the fewest products to take (Markowitz 1957).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Elimination {
+    pivots: [Pivot; MOST],
     length: usize,
 }
 
-impl<R: Real + Into<f64>> Factors<R> {
-    /// Factors `shift` · 1 − `matrix`.
-    #[inline]
-    pub(crate) fn of_shifted<X: Vector<R>, J: Vector<X>>(shift: R, matrix: &J) -> Self {
-        const { assert!(X::LEN <= MOST && J::LEN == X::LEN) };
-        let mut factors = Self {
-            rows: [[R::ZERO; MOST]; MOST],
-            order: core::array::from_fn(|place| place),
-            length: X::LEN,
+impl Elimination {
+    /// The elimination of a matrix of `length` rows with these entries, and a diagonal without zeros.
+    ///
+    /// # Panics
+    ///
+    /// If the pattern is of another size, or of more than [`MOST`] rows: at compile time.
+    pub(crate) const fn of(pattern: &Pattern<2>, length: usize) -> Self {
+        assert!(length <= MOST, "more than 16 states");
+        let [high, wide] = pattern.shape;
+        assert!(
+            high == length && wide == length,
+            "a pattern of another size"
+        );
+        let mut rows = [0; MOST];
+        let mut entry = 0;
+        while entry < pattern.len() {
+            let [row, column] = pattern.at[entry];
+            assert!(row < length && column < length, "an entry out of range");
+            rows[row] |= 1 << column;
+            entry += 1;
+        }
+        let unused = Pivot {
+            index: 0,
+            rows: 0,
+            columns: 0,
         };
-        let mut places = factors.rows.iter_mut().enumerate();
+        let mut pivots = [unused; MOST];
+        let mut left = ((1_u32 << length) - 1) as Indices;
+        let mut step = 0;
+        while step < length {
+            let pivot = cheapest(&rows, left);
+            left &= !(1 << pivot.index);
+            let mut row = 0;
+            while row < length {
+                if pivot.rows >> row & 1 == 1 {
+                    rows[row] |= pivot.columns;
+                }
+                row += 1;
+            }
+            pivots[step] = pivot;
+            step += 1;
+        }
+        Self { pivots, length }
+    }
+
+    fn pivots(&self) -> impl DoubleEndedIterator<Item = &Pivot> {
+        self.pivots.iter().take(self.length)
+    }
+}
+
+/// The pivot with the fewest products to take, among the indices that are `left`.
+const fn cheapest(rows: &[Indices; MOST], left: Indices) -> Pivot {
+    let mut best: Option<Pivot> = None;
+    let mut index = 0;
+    while index < MOST {
+        if left >> index & 1 == 1 {
+            let others = left & !(1 << index);
+            let mut pivot = Pivot {
+                index: index as u8,
+                rows: 0,
+                columns: rows[index] & others,
+            };
+            let mut row = 0;
+            while row < MOST {
+                if others >> row & rows[row] >> index & 1 == 1 {
+                    pivot.rows |= 1 << row;
+                }
+                row += 1;
+            }
+            let better = match best {
+                Some(best) => products(&pivot) < products(&best),
+                None => true,
+            };
+            if better {
+                best = Some(pivot);
+            }
+        }
+        index += 1;
+    }
+    match best {
+        Some(pivot) => pivot,
+        None => panic!("no index is left"),
+    }
+}
+
+const fn products(pivot: &Pivot) -> u32 {
+    pivot.rows.count_ones() * pivot.columns.count_ones()
+}
+
+/// The members of a set, in order.
+#[inline]
+fn members(mut set: Indices) -> impl Iterator<Item = usize> {
+    core::iter::from_fn(move || {
+        let member = (set != 0).then_some(set.trailing_zeros() as usize);
+        set &= set.wrapping_sub(1);
+        member
+    })
+}
+
+/// A matrix as the product of a lower and an upper triangle.
+///
+/// A singular matrix shows as a solution that is infinite or NaN.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Factors<R> {
+    /// Off the diagonal the multipliers and the upper triangle, on it the reciprocal pivots.
+    rows: [[R; MOST]; MOST],
+    elimination: &'static Elimination,
+}
+
+impl<R: Real> Factors<R> {
+    /// Factors `shift` · 1 − `matrix`, which is zero where `elimination` knows no entry.
+    #[inline]
+    pub(crate) fn of_shifted<X: Vector<R>, J: Vector<X>>(
+        shift: R,
+        matrix: &J,
+        elimination: &'static Elimination,
+    ) -> Self {
+        let mut rows = [[R::ZERO; MOST]; MOST];
+        let mut places = rows.iter_mut().enumerate();
         matrix.map(|row| {
             if let Some((index, place)) = places.next() {
                 let mut entries = place.iter_mut();
@@ -44,138 +162,51 @@ impl<R: Real + Into<f64>> Factors<R> {
             }
             row
         });
-        for column in 0..X::LEN {
-            factors.exchange(column);
-            factors.eliminate(column);
+        for pivot in elimination.pivots() {
+            eliminate(&mut rows, pivot);
         }
-        factors
-    }
-
-    /// Brings the row with the greatest entry in `column`, on or below the diagonal, up to the diagonal.
-    #[inline]
-    fn exchange(&mut self, column: usize) {
-        let (mut best, mut greatest) = (column, -1.0);
-        for (place, row) in self.rows.iter().enumerate().take(self.length).skip(column) {
-            let size = row.get(column).map_or(0.0, |entry| entry.abs().into());
-            if size > greatest {
-                (best, greatest) = (place, size);
-            }
-        }
-        if best != column {
-            exchange(&mut self.rows, column, best);
-            exchange(&mut self.order, column, best);
-        }
-    }
-
-    /// Clears `column` below the diagonal, and keeps the multipliers there.
-    #[inline]
-    fn eliminate(&mut self, column: usize) {
-        let mut below = self.rows.iter_mut().take(self.length).skip(column);
-        let Some(pivot_row) = below.next() else {
-            return;
-        };
-        let Some(pivot) = pivot_row.get_mut(column) else {
-            return;
-        };
-        let inverse = pivot.recip();
-        *pivot = inverse;
-        for row in below {
-            let Some(first) = row.get_mut(column) else {
-                continue;
-            };
-            let multiplier = *first * inverse;
-            let value: f64 = multiplier.into();
-            if value == 0.0 {
-                continue;
-            }
-            *first = multiplier;
-            let above = pivot_row.iter().take(self.length).skip(column + 1);
-            for (own, &above) in row.iter_mut().skip(column + 1).zip(above) {
-                *own = *own - multiplier * above;
-            }
-        }
+        Self { rows, elimination }
     }
 
     /// x of matrix · x = `right`.
     #[inline]
     pub(crate) fn solve<X: Vector<R>>(&self, right: &X) -> X {
-        let mut x = [R::ZERO; MOST];
-        let rows = || self.rows.iter().enumerate().take(X::LEN);
-        for ((index, row), &place) in rows().zip(&self.order) {
-            let known = product(row.iter().zip(&x).take(index));
-            if let (Some(x), Some(right)) = (x.get_mut(index), right.get(place)) {
-                *x = right - known;
+        let mut x: [R; MOST] = core::array::from_fn(|index| right.get(index).unwrap_or(R::ZERO));
+        for pivot in self.elimination.pivots() {
+            let column = usize::from(pivot.index) % MOST;
+            let known = x[column];
+            for row in members(pivot.rows) {
+                x[row % MOST] = x[row % MOST] - self.rows[row % MOST][column] * known;
             }
         }
-        for (index, row) in rows().rev() {
-            let known = product(row.iter().zip(&x).take(X::LEN).skip(index + 1));
-            if let (Some(x), Some(&inverse)) = (x.get_mut(index), row.get(index)) {
-                *x = (*x - known) * inverse;
-            }
+        for pivot in self.elimination.pivots().rev() {
+            let index = usize::from(pivot.index) % MOST;
+            let row = &self.rows[index];
+            let known = members(pivot.columns).fold(x[index], |sum, column| {
+                sum - row[column % MOST] * x[column % MOST]
+            });
+            x[index] = known * row[index];
         }
         X::from_fn(|index| x.get(index).copied().unwrap_or(R::ZERO))
     }
 }
 
-/// Σ a b.
+/// Clears the column of the pivot in the rows that are left, and keeps the multipliers there.
 #[inline]
-fn product<'a, R: Real>(pairs: impl Iterator<Item = (&'a R, &'a R)>) -> R {
-    pairs.fold(R::ZERO, |sum, (&a, &b)| sum + a * b)
-}
-
-/// `slice::swap` that does nothing out of range.
-#[inline]
-fn exchange<T: Copy, const N: usize>(items: &mut [T; N], one: usize, other: usize) {
-    let (Some(&a), Some(&b)) = (items.get(one), items.get(other)) else {
-        return;
-    };
-    if let Some(place) = items.get_mut(one) {
-        *place = b;
-    }
-    if let Some(place) = items.get_mut(other) {
-        *place = a;
+fn eliminate<R: Real>(rows: &mut [[R; MOST]; MOST], pivot: &Pivot) {
+    let index = usize::from(pivot.index) % MOST;
+    let inverse = rows[index][index].recip();
+    rows[index][index] = inverse;
+    let pivot_row = rows[index];
+    for row in members(pivot.rows) {
+        let row = &mut rows[row % MOST];
+        let multiplier = row[index] * inverse;
+        row[index] = multiplier;
+        for column in members(pivot.columns) {
+            row[column % MOST] = row[column % MOST] - multiplier * pivot_row[column % MOST];
+        }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::Factors;
-
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    struct Four<T> {
-        a: T,
-        b: T,
-        c: T,
-        d: T,
-    }
-
-    ahv_core::impl_vector! {
-        Four { a: ["1", "1", 1.0], b: ["1", "1", 1.0], c: ["1", "1", 1.0], d: ["1", "1", 1.0] }
-    }
-
-    #[test]
-    fn a_matrix_that_needs_exchanges_is_solved() {
-        let rows = [
-            [0.0, 2.0, 0.0, 1.0],
-            [1e-3, 0.0, 3.0, 0.0],
-            [4.0, 0.0, 0.0, -2.0],
-            [0.0, 1.0, 5.0, 0.0],
-        ];
-        let matrix = Four::<Four<f64>>::from_matrix(rows.map(|row| row.map(|a: f64| -a)));
-        let exact = [1.0, -2.0, 3.0, 0.5];
-        let right = rows.map(|row| row.iter().zip(exact).map(|(a, x)| a * x).sum::<f64>());
-        let factors = Factors::of_shifted(0.0, &matrix);
-        let solved: [f64; 4] = factors.solve(&Four::from(right)).into();
-        for (x, exact) in solved.iter().zip(exact) {
-            assert!((x - exact).abs() < 1e-14, "{x} is not {exact}");
-        }
-    }
-
-    #[test]
-    fn a_singular_matrix_has_no_finite_solution() {
-        let matrix = Four::<Four<f64>>::from_matrix([[1.0; 4]; 4]);
-        let factors = Factors::of_shifted(0.0, &matrix);
-        let solved: [f64; 4] = factors.solve(&Four::from([1.0, 2.0, 3.0, 4.0])).into();
-        assert!(solved.iter().any(|x| !x.is_finite()));
-    }
-}
+mod tests;

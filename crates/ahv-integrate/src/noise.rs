@@ -1,14 +1,16 @@
 //! Sources of normal numbers.
 
 #[cfg(feature = "chacha")]
-pub use keyed::{KeyedNormals, NormalStream};
+pub use keyed::{KeyedNormals, NormalStream, WienerSource};
 #[cfg(feature = "rand")]
 pub use sequential::RandNormals;
 
 #[cfg(feature = "chacha")]
 mod keyed {
+    use core::array::from_fn;
     use core::f64::consts::TAU;
 
+    use ahv_core::{Real, Vector};
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -22,6 +24,10 @@ mod keyed {
     /// The bits come from ChaCha8: seed, member and channel are its key, the step is the place in the stream.
     /// Box–Muller (Box and Muller 1958) turns them into normal numbers through `libm`, so that
     /// they are the same on every machine and in every order. Steps one after the other are cheapest.
+    ///
+    /// `rand_distr`'s normal distribution is not used: its logarithm is the platform's as soon as any crate of a build
+    /// enables `num-traits/std`, and it takes a random number of words, so that no step could be reached without the
+    /// ones before.
     #[derive(Clone, Debug)]
     pub struct NormalStream {
         stream: ChaCha8Rng,
@@ -81,6 +87,39 @@ mod keyed {
     impl NormalSource for KeyedNormals {
         fn normal(&mut self, step: u64, channel: usize) -> f64 {
             NormalStream::new(self.seed, self.member, channel as u64).normal(step)
+        }
+    }
+
+    /// Wiener increments of `N` channels, each a function of (seed, member, channel, step) alone.
+    ///
+    /// One [`NormalStream`] a channel.
+    /// Neither the order in which members run nor the machine matters.
+    #[derive(Clone, Debug)]
+    pub struct WienerSource<const N: usize> {
+        channels: [NormalStream; N],
+    }
+
+    impl<const N: usize> WienerSource<N> {
+        /// Channels 0 to `N` − 1 of run `member` of the experiment `seed`.
+        pub fn new(seed: u64, member: u64) -> Self {
+            Self {
+                channels: from_fn(|channel| NormalStream::new(seed, member, channel as u64)),
+            }
+        }
+
+        /// The increments over step `step` of length `dt`, in s^½: normal, mean 0, variance `dt` (in s).
+        ///
+        /// The step's number selects the underlying normal numbers, `dt` only scales them; every lane of a scalar with
+        /// lanes gets the same ones. That `W` has `N` components is checked at compile time.
+        pub fn increments<R: Real, W: Vector<R>>(&mut self, step: u64, dt: f64) -> W {
+            const { assert!(W::LEN == N, "one channel a component") };
+            let root = R::from_f64(dt).sqrt();
+            let mut channels = self.channels.iter_mut();
+            W::from_fn(|_| {
+                channels
+                    .next()
+                    .map_or(R::ZERO, |channel| root * R::from_f64(channel.normal(step)))
+            })
         }
     }
 

@@ -3,7 +3,7 @@
 use ahv_core::{DifferentiableModel, Real, Vector};
 
 use crate::dense::{add_scaled, weighted};
-use crate::linear::Factors;
+use crate::linear::{Elimination, Factors};
 use crate::method::STAGES;
 use crate::{Attempt, Dense, InputSource, Method, Start};
 
@@ -97,8 +97,11 @@ const DENSE: [[f64; 6]; 2] = [
 /// output of order 3.
 ///
 /// It takes the exact Jacobian of the model (of 16 states at most, or it does not compile), factors one matrix a step,
-/// and needs no iteration. Within a step an
-/// input is a function of time alone: a [feedback](crate::Feedback) is called with the state at the start of the
+/// and needs no iteration. Where the Jacobian is zero by its
+/// [pattern](DifferentiableModel::STATE_JACOBIAN_PATTERN), nothing is computed: order of elimination and fill-in are
+/// known at compile time. The pivots stay on the diagonal, where 1/(γh) is; a step in which one vanishes is not finite.
+///
+/// Within a step an input is a function of time alone: a [feedback](crate::Feedback) is called with the state at the start of the
 /// step, as a sampled controller would be. For its order to hold under an input that moves within a step, the input
 /// has to tell its [rate](InputSource::rate).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -130,10 +133,7 @@ impl Rodas4 {
     };
 }
 
-impl<M: DifferentiableModel> Method<M> for Rodas4
-where
-    M::Scalar: Into<f64>,
-{
+impl<M: DifferentiableModel> Method<M> for Rodas4 {
     const ERROR_ORDER: u8 = 4;
 
     #[inline]
@@ -148,7 +148,7 @@ where
         let held = input.at(since, since, &x);
         let (first, by_state, by_input) = model.drift_and_jacobians(&x, &held);
         let diagonal = M::Scalar::from_f64(1.0 / (step * GAMMA));
-        let factors = Factors::of_shifted(diagonal, &by_state);
+        let factors = Factors::of_shifted(diagonal, &by_state, elimination::<M>());
         let by_time = input
             .rate(since, &x)
             .map(|rate| along::<M>(&by_input, &rate));
@@ -205,6 +205,15 @@ where
                 M::State::splat(M::Scalar::ZERO),
             ],
         )
+    }
+}
+
+/// How the zeros of the model's Jacobian are made use of.
+#[inline]
+const fn elimination<M: DifferentiableModel>() -> &'static Elimination {
+    const {
+        let length = <M::State as Vector<M::Scalar>>::LEN;
+        &Elimination::of(&M::STATE_JACOBIAN_PATTERN, length)
     }
 }
 

@@ -6,7 +6,7 @@ mod common;
 mod order;
 
 use ahv_core::{Model, StochasticModel, Vector};
-use ahv_integrate::{EulerMaruyama, StepError};
+use ahv_integrate::{ItoEulerMaruyama, StepError};
 use approx::assert_relative_eq;
 use common::vector;
 use order::observed_order;
@@ -74,7 +74,7 @@ impl Normal {
 }
 
 fn path(dt: f64, increments: &[Noise<f64>]) -> State<f64> {
-    let stepper = EulerMaruyama::new(dt);
+    let stepper = ItoEulerMaruyama::new(dt);
     let mut x = START;
     for dw in increments {
         stepper
@@ -146,7 +146,7 @@ fn a_non_finite_increment_is_named_and_the_last_good_state_kept() {
         w_price: 0.0,
         w_ornstein: f64::INFINITY,
     };
-    let result = EulerMaruyama::new(0.1).step(&Pair, &mut x, &START, &dw);
+    let result = ItoEulerMaruyama::new(0.1).step(&Pair, &mut x, &START, &dw);
     assert_eq!(
         result,
         Err(StepError::NonFinite {
@@ -155,6 +155,6 @@ fn a_non_finite_increment_is_named_and_the_last_good_state_kept() {
         })
     );
     assert_eq!(x, START);
-    let result = EulerMaruyama::new(-0.1).step(&Pair, &mut x, &START, &Noise::splat(0.0));
+    let result = ItoEulerMaruyama::new(-0.1).step(&Pair, &mut x, &START, &Noise::splat(0.0));
     assert_eq!(result, Err(StepError::StepSize { dt: -0.1 }));
 }

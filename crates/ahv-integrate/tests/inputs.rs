@@ -3,7 +3,7 @@
 
 mod common;
 
-use ahv_core::{Bounds, DifferentiableModel, Model, Outside};
+use ahv_core::{Bounds, DifferentiableModel, Model, Outside, Pattern};
 use ahv_integrate::{
     Adaptive, Constant, Dense, DormandPrince54, Ending, Feedback, Held, InputSource, Interpolated,
     Method, Observer, Problem, Progress, Rodas4, Saturated, Tsit5, saturate,
@@ -35,6 +35,8 @@ impl Model for Tank {
 impl DifferentiableModel for Tank {
     type StateJacobian = State<State<f64>>;
     type InputJacobian = State<Input<f64>>;
+
+    const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new([2, 2], &[[0, 0]]);
 
     fn jacobians(&self, _: &State<f64>, _: &Input<f64>) -> (State<State<f64>>, State<Input<f64>>) {
         let none = State {

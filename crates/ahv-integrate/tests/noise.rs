@@ -6,8 +6,9 @@ mod common;
 use ahv_core::Vector;
 use ahv_integrate::{
     BrownianPath, KeyedNormals, NormalSource, NormalStream, RandNormals, WeakIncrements,
-    WienerIntegrals, bisect,
+    WienerIntegrals, WienerSource, bisect,
 };
+use ahv_models::sdcom::Noise;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use common::vector;
 use rand_chacha::ChaCha8Rng;
@@ -16,8 +17,9 @@ use rand_chacha::rand_core::SeedableRng;
 vector!(Two, w_1, w_2);
 
 const SOURCE: KeyedNormals = KeyedNormals { seed: 1, member: 2 };
+const CHANNELS: usize = Noise::<()>::LEN;
 
-/// Computed apart from this project's code, in Python: ChaCha8 after RFC 8439's layout, then Box–Muller; seed 1, member 2,
+/// A value that differs in its last bit on another machine would change every recorded run. Computed apart from this project's code, in Python: ChaCha8 after RFC 8439's layout, then Box–Muller; seed 1, member 2,
 /// step 3, channels 0 to 5.
 const FIXED: [u64; 6] = [
     0x3FF3_672B_6EBA_0FB1,
@@ -35,6 +37,63 @@ fn keyed_numbers_are_fixed_and_do_not_depend_on_order() {
         let mut stream = NormalStream::new(1, 2, channel as u64);
         for step in [3, 0, 3, 2, 3, 1000, 3] {
             assert_eq!(stream.normal(step), { SOURCE }.normal(step, channel));
+        }
+    }
+    let dw: Noise<f64> = WienerSource::<CHANNELS>::new(1, 2).increments(3, 1.0);
+    assert_eq!(dw.to_array().map(f64::to_bits), FIXED);
+}
+
+#[test]
+fn a_step_of_a_source_does_not_depend_on_the_steps_before_it() {
+    let mut source = WienerSource::<CHANNELS>::new(7, 0);
+    let forward: Vec<Noise<f64>> = (0..40).map(|step| source.increments(step, 0.01)).collect();
+    for step in [39, 0, 5, 4, 4, 5, 5, 38, 1, 2] {
+        assert_eq!(
+            source.increments::<_, Noise<_>>(step, 0.01),
+            forward[step as usize]
+        );
+    }
+    for step in [17, 32] {
+        let mut fresh = WienerSource::<CHANNELS>::new(7, 0);
+        assert_eq!(
+            fresh.increments::<_, Noise<_>>(step, 0.01),
+            forward[step as usize]
+        );
+    }
+}
+
+#[test]
+fn seeds_members_channels_and_steps_differ() {
+    let mut seen = std::collections::BTreeSet::new();
+    for (seed, member) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let mut source = WienerSource::<CHANNELS>::new(seed, member);
+        for step in 0..50 {
+            let dw: Noise<f64> = source.increments(step, 1.0);
+            seen.extend(dw.to_array().map(f64::to_bits));
+        }
+    }
+    assert_eq!(seen.len(), 2 * 2 * 50 * CHANNELS);
+}
+
+#[test]
+fn the_increments_are_normal_and_independent() {
+    let (steps, dt) = (100_000, 0.04);
+    let mut source = WienerSource::<CHANNELS>::new(3, 0);
+    let draws: Vec<Noise<f64>> = (0..steps).map(|step| source.increments(step, dt)).collect();
+    let mean = |f: &dyn Fn(usize) -> f64| (0..draws.len()).map(f).sum::<f64>() / draws.len() as f64;
+    let value = |i: usize, channel: usize| draws[i].get(channel).expect("six channels") / dt.sqrt();
+    // A standard error of a mean of 100 000 products is 0.0032; of fourth powers, 0.031.
+    for a in 0..CHANNELS {
+        assert_abs_diff_eq!(mean(&|i| value(i, a)), 0.0, epsilon = 0.015);
+        assert_relative_eq!(mean(&|i| value(i, a).powi(2)), 1.0, epsilon = 0.02);
+        assert_abs_diff_eq!(mean(&|i| value(i, a).powi(4)), 3.0, epsilon = 0.15);
+        assert_abs_diff_eq!(
+            mean(&|i| value(i, a) * value(i / 2, a)),
+            0.0,
+            epsilon = 0.02
+        );
+        for b in 0..a {
+            assert_abs_diff_eq!(mean(&|i| value(i, a) * value(i, b)), 0.0, epsilon = 0.015);
         }
     }
 }

@@ -1,10 +1,19 @@
 //! The orders of convergence that `docs/integrators.md` prints.
 #![forbid(unsafe_code)]
 
+mod common;
+#[path = "common/normal.rs"]
+mod normal;
 #[path = "common/order.rs"]
 mod order;
 #[path = "common/orders.rs"]
 mod orders;
+#[path = "common/stochastic.rs"]
+mod stochastic;
+#[path = "common/strong.rs"]
+mod strong;
+#[path = "common/weak.rs"]
+mod weak;
 
 use order::observed_order;
 
@@ -23,6 +32,25 @@ fn the_methods_have_their_orders_and_the_documentation_says_so() {
             .is_none_or(|(order, observed)| near(observed, order));
         assert!(dense, "{}\n{table}", row.name);
     }
+    documented(&table);
+}
+
+#[test]
+fn the_schemes_have_their_orders_and_the_documentation_says_so() {
+    let rows = stochastic::observed();
+    let table = stochastic::table(&rows);
+    let near = |(nominal, _): stochastic::Order, observed: f64| (observed - nominal).abs() < 0.12;
+    for row in &rows {
+        assert!(near(row.scheme.weak, row.weak), "{table}");
+        if let Some((order, observed)) = row.scheme.strong.zip(row.strong) {
+            assert!(near(order, observed), "{table}");
+        }
+    }
+    documented(&table);
+}
+
+/// Checks that the documentation has this table.
+fn documented(table: &str) {
     let documentation = include_str!("../../../docs/integrators.md");
     let mut lines = documentation.lines();
     let Some(head) = table.lines().next() else {

@@ -23,7 +23,7 @@ pub use crate::com::{
 
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, Real};
+use ahv_core::{Bounds, Pattern, Real};
 
 /// State of COM_RIGID.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,6 +137,7 @@ impl<R: Real> ahv_core::Model for Model<R> {
 impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     type StateJacobian = StateJacobian<R>;
     type InputJacobian = InputJacobian<R>;
+    const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
     #[inline]
     fn jacobians(

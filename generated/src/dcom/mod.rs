@@ -30,7 +30,7 @@ pub use parameters::{Parameters, Validity};
 pub use provenance::*;
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, NoiseClass, Real, Vector};
+use ahv_core::{Bounds, NoiseClass, Pattern, Real, Vector};
 
 /// State of DCOM.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -275,6 +275,7 @@ impl<R: Real> ahv_core::Model for Model<R> {
 impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     type StateJacobian = StateJacobian<R>;
     type InputJacobian = InputJacobian<R>;
+    const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
     #[inline]
     fn jacobians(

@@ -31,7 +31,7 @@ pub use crate::dcom::{
 
 pub use prepared::{Prepared, prepare};
 
-use ahv_core::{Bounds, NoiseClass, Real, Vector};
+use ahv_core::{Bounds, NoiseClass, Pattern, Real, Vector};
 
 /// State of SDCOM_PRINTED.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -264,6 +264,7 @@ impl<R: Real> ahv_core::Model for Model<R> {
 impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     type StateJacobian = StateJacobian<R>;
     type InputJacobian = InputJacobian<R>;
+    const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
     #[inline]
     fn jacobians(

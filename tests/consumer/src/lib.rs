@@ -2,7 +2,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-use ahv_integrate::{EulerMaruyama, Rk4, StepError};
+use ahv_integrate::{ItoEulerMaruyama, Rk4, StepError};
 use ahv_models::{dcom, sdcom};
 
 /// Flies DCOM for `steps` steps of `dt` seconds.
@@ -25,7 +25,7 @@ pub fn fly_sdcom(
     increments: &[sdcom::Noise<f32>],
 ) -> Result<(), StepError<f32>> {
     let model = sdcom::Model::new(&sdcom::NOMINAL.map_into(|value| value as f32));
-    increments.iter().try_for_each(|dw| EulerMaruyama::new(dt).step(&model, x, u, dw))
+    increments.iter().try_for_each(|dw| ItoEulerMaruyama::new(dt).step(&model, x, u, dw))
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Calls every generated function (see build.rs) and the steppers, and links only while no panic can be reached.
+//! Calls every generated function (see build.rs) and every stepper (see tests/steppers), and links only while no panic
+//! can be reached.
 //!
 //! The panic handler calls a function that nobody defines. Where the linker finds the handler
 //! reachable it stops with `undefined symbol: a_panic_can_be_reached`. Values pass through
@@ -6,14 +7,12 @@
 #![no_std]
 #![no_main]
 
-mod deterministic;
-
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
 use ahv_core::{Bounds, DifferentiableModel, DifferentiableNoise, Real, Vector, first_outside};
-use ahv_integrate::{EulerMaruyama, ItoDri1, ItoHeun, StratonovichHeun, WeakIncrements};
 use ahv_models::{com, com_rigid, dcom, flexible_mode, sdcom, sdcom_gust, sdcom_printed};
+use ahv_steppers::{Advance, Label, Visitor};
 
 unsafe extern "C" {
     fn a_panic_can_be_reached() -> !;
@@ -28,13 +27,23 @@ fn panic(_: &PanicInfo) -> ! {
 /// Where the linker starts to look for what is reachable.
 #[unsafe(no_mangle)]
 pub extern "C" fn _start() -> ! {
-    every_model::<f64>();
-    every_model::<f32>();
-    deterministic::all::<f64>();
-    deterministic::all::<f32>();
+    #[cfg(not(feature = "plant"))]
+    everything();
     #[cfg(feature = "plant")]
     black_box(dcom::State::<f64>::NAMES[black_box(0)]);
     loop {}
+}
+
+/// In both scalars. The planted panic stands alone, so that showing it costs little.
+#[cfg_attr(feature = "plant", expect(dead_code))]
+fn everything() {
+    every_model::<f64>();
+    every_model::<f32>();
+    ahv_steppers::all(&mut Anything);
+    ahv_steppers::drawn::<f64>(&mut Anything);
+    ahv_steppers::fixed::<f32>(&mut Anything);
+    ahv_steppers::controlled::<f32>(&mut Anything);
+    ahv_steppers::drawn::<f32>(&mut Anything);
 }
 
 include!(concat!(env!("OUT_DIR"), "/calls.rs"));
@@ -55,19 +64,33 @@ where
 }
 
 fn stochastic<M: DifferentiableNoise>(model: &M) {
-    let (mut x, u, dw) = (unknown(), unknown(), unknown());
-    let dt = black_box(0.01);
-    black_box(EulerMaruyama::new(dt).step(model, &mut x, &u, &dw).is_ok());
-    black_box(
-        StratonovichHeun::new(dt)
-            .step(model, &mut x, &u, &dw)
-            .is_ok(),
-    );
-    black_box(ItoHeun::new(dt).step(model, &mut x, &u, &dw).is_ok());
-    let weak = WeakIncrements::from_normals::<M::Scalar>(dt, |channel| black_box(channel as f64));
-    black_box(ItoDri1::new(dt).step(model, &mut x, &u, &weak).is_ok());
+    let (x, u) = (unknown(), unknown());
     black_box(model.iterated_increment(&x, &u, |_, _| black_box(M::Scalar::ONE)));
     vector::<M::Scalar, M::Noise>();
+}
+
+/// Takes a step from anywhere.
+struct Anything;
+
+impl<R: Real> Visitor<R> for Anything {
+    fn parameter(&mut self, nominal: f64) -> R {
+        black_box(R::from_f64(nominal))
+    }
+
+    fn within(&mut self, _: Bounds) -> R {
+        black_box(R::ONE)
+    }
+
+    fn visit(&mut self, _: Label, start: &[R], advance: &mut Advance<'_, R>) {
+        let mut buffer = [R::ONE; 16];
+        for (place, &component) in buffer.iter_mut().zip(start) {
+            *place = component;
+        }
+        if let Some(x) = buffer.get_mut(..start.len()) {
+            black_box(advance(black_box(x), black_box(0)));
+        }
+        black_box(buffer);
+    }
 }
 
 /// What `Vector` can do, at an index that may be out of range.

@@ -4,8 +4,8 @@
 macro_rules! vector {
     ($name:ident, $($field:ident),+) => {
         #[derive(Clone, Copy, Debug, PartialEq)]
-        struct $name<T> {
-            $($field: T,)+
+        pub(crate) struct $name<T> {
+            $(pub(crate) $field: T,)+
         }
 
         ahv_core::impl_vector!($name { $($field: ["1", "1", 1.0]),+ });

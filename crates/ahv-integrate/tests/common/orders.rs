@@ -179,9 +179,6 @@ fn steps_from(first: u32) -> [u32; 8] {
 
 fn order(first: u32, end: f64, error: impl Fn(u32) -> f64) -> f64 {
     let points = steps_from(first).map(|steps| (end / f64::from(steps), error(steps)));
-    if std::env::var("DBG").is_ok() {
-        eprintln!("{points:?}");
-    }
     observed_order(&points)
 }
 

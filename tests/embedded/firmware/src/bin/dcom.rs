@@ -1,0 +1,8 @@
+//! Flies `Dcom`.
+#![no_std]
+#![no_main]
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    firmware::run::<flights::Dcom>()
+}
