@@ -4,6 +4,8 @@
 mod bench;
 mod book;
 mod demo;
+mod determinism;
+mod firmware;
 mod no_panic;
 mod plot;
 mod python;
@@ -31,12 +33,20 @@ enum Task {
         #[arg(long, default_value_t = 10_000)]
         points: u32,
     },
+    /// Compare the bits of every stepper between builds of all optimisation levels
+    Determinism,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
     /// Measure the generated functions beside their peers, and write docs/benchmarks.md
     Bench,
     /// Build the documentation as pages for a browser, in target/book
     Book,
+    /// Fly on a Cortex-M7 under QEMU, compare with this machine bit for bit, and print what a step costs
+    Firmware {
+        /// Write the table of docs/embedded.md
+        #[arg(long)]
+        write: bool,
+    },
     /// Change a coefficient, regenerate, and fly both models with both values
     Demo,
 }
@@ -47,9 +57,11 @@ fn main() -> ExitCode {
         Task::Setup => python::set_up(),
         Task::Test => steps::run(),
         Task::Audit { points } => audit(points),
+        Task::Determinism => determinism::run(),
         Task::Vectors => vectors::run(),
         Task::Bench => bench::run(),
         Task::Book => book::run(),
+        Task::Firmware { write } => firmware::run(steps::BARE_METAL, write),
         Task::Demo => demo::run(),
     };
     match done {

@@ -3,9 +3,16 @@
 use std::process::Command;
 use std::time::Instant;
 
-use crate::{book, no_panic, python, shell};
+use crate::{book, determinism, firmware, no_panic, python, shell};
 
 const XTASK: [&str; 2] = ["--manifest-path", "xtask/Cargo.toml"];
+/// With what `cargo xtask` itself was built from.
+const XTASK_BUILT: [&str; 4] = [
+    "--manifest-path",
+    "xtask/Cargo.toml",
+    "--target-dir",
+    "target/xtask",
+];
 const CONSUMER: [&str; 4] = [
     "--manifest-path",
     "tests/consumer/Cargo.toml",
@@ -15,7 +22,7 @@ const CONSUMER: [&str; 4] = [
 /// Python of the benchmark, from the generator's folder.
 const PEERS: &str = "../crates/ahv-bench/peers";
 /// A microcontroller: no standard library, no heap.
-const BARE_METAL: &str = "thumbv7em-none-eabihf";
+pub(crate) const BARE_METAL: &str = "thumbv7em-none-eabihf";
 
 enum Outcome {
     Passed,
@@ -25,7 +32,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 16] = [
+const STEPS: [Step; 18] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK, &[])
@@ -38,7 +45,7 @@ const STEPS: [Step; 16] = [
         )
     }),
     ("clippy of xtask", || {
-        cargo(&["clippy", "--all-targets"], &XTASK, &DENY)
+        cargo(&["clippy", "--all-targets"], &XTASK_BUILT, &DENY)
     }),
     ("ruff", || module(&["ruff", "check", ".", PEERS])),
     ("ruff format", || {
@@ -47,14 +54,21 @@ const STEPS: [Step; 16] = [
     ("mypy", || {
         module(&["mypy", "ahv_generator", "ahv_oracle", "tests", PEERS])
     }),
-    ("pytest", || module(&["pytest", "--quiet"])),
+    ("pytest", || {
+        module(&["pytest", "--quiet", "--numprocesses", "2"])
+    }),
     ("generate --check", generate_check),
     ("cargo test", || {
         cargo(&["test", "--workspace", "--all-features"], &[], &[])
     }),
     ("audit", accuracy),
+    ("determinism", || {
+        determinism::run().map(|()| Outcome::Passed)
+    }),
     ("book", || book::run().map(|()| Outcome::Passed)),
-    ("cargo test of xtask", || cargo(&["test"], &XTASK, &[])),
+    ("cargo test of xtask", || {
+        cargo(&["test"], &XTASK_BUILT, &[])
+    }),
     ("consumer", || cargo(&["test"], &CONSUMER, &[])),
     ("consumer, no_std", || {
         bare_metal(|| cargo(&["build", "--lib", "--target", BARE_METAL], &CONSUMER, &[]))
@@ -62,6 +76,7 @@ const STEPS: [Step; 16] = [
     ("no panic path", || {
         bare_metal(|| no_panic::run(BARE_METAL).map(|()| Outcome::Passed))
     }),
+    ("firmware", || bare_metal(emulated_flights)),
 ];
 const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
@@ -144,4 +159,12 @@ fn bare_metal(step: fn() -> Result<Outcome, String>) -> Result<Outcome, String> 
         )));
     }
     step()
+}
+
+/// Flights on a microcontroller, which need QEMU.
+fn emulated_flights() -> Result<Outcome, String> {
+    match firmware::found() {
+        Ok(()) => firmware::run(BARE_METAL, false).map(|()| Outcome::Passed),
+        Err(reason) => Ok(Outcome::Skipped(reason)),
+    }
 }

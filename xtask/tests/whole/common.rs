@@ -102,11 +102,14 @@ pub(crate) fn generation_python() -> PathBuf {
     ahv_generate::environment("generation", &requirements, &surroundings).expect("set up")
 }
 
-/// Copies a file or a folder, and what links lead to.
+/// Copies a file or a folder, and what links lead to, with the times that cargo goes by.
 pub(crate) fn copy(from: &Path, to: &Path) {
     if from.is_file() {
         fs::create_dir_all(to.parent().expect("a parent")).expect("a folder");
         fs::copy(from, to).expect("copied");
+        let changed = fs::metadata(from).and_then(|metadata| metadata.modified());
+        let copy = fs::File::options().write(true).open(to).expect("opened");
+        copy.set_modified(changed.expect("a time")).expect("set");
         return;
     }
     fs::create_dir_all(to).expect("a folder");

@@ -1,0 +1,357 @@
+//! From a figure to SVG.
+
+use std::error::Error;
+
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::Ranged;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use crate::clip::inside;
+use crate::extent::Extent;
+use crate::legend::{Legend, text_width};
+use crate::{Axis, Cells, Colour, Figure, Layer, Mark, Panel, PlotError, Scale, Shape};
+
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(crate) type Failed = Box<dyn Error>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Extent, Extent>>;
+
+/// The drawing library places on whole pixels; the figure is drawn this much larger and shown smaller.
+pub(crate) const SUBPIXELS: u32 = 8;
+/// Size of small text, in pixels.
+pub(crate) const FONT: u32 = 14;
+/// Width of lines, in pixels.
+pub(crate) const LINE: u32 = 2;
+/// Heights of the titles of figure and panel, in pixels.
+const TITLES: (u32, u32) = (34, 17);
+/// Half a marker, in pixels.
+const MARKER: u32 = 5;
+/// Width of a colour bar with its labels, in pixels.
+const COLOUR_BAR: u32 = 96;
+/// Shades of a colour bar.
+const SHADES: u32 = 64;
+
+/// Pixels as the drawing library counts them.
+pub(crate) fn px(pixels: u32) -> i32 {
+    (pixels * SUBPIXELS).cast_signed()
+}
+
+/// Length of a dash and of the gap after it.
+pub(crate) fn dashes() -> (i32, i32) {
+    (px(7), px(4))
+}
+
+/// The text of the SVG file.
+pub(crate) fn figure(figure: &Figure) -> Result<String, PlotError> {
+    if figure.panels.is_empty() || figure.columns == 0 {
+        return Err(PlotError::NoPanels {
+            figure: figure.title.clone(),
+        });
+    }
+    let columns = figure.columns.min(figure.panels.len());
+    let rows = figure.panels.len().div_ceil(columns);
+    let mut extents = Vec::new();
+    for panel in &figure.panels {
+        for layer in &panel.layers {
+            layer.check(panel)?;
+        }
+        extents.push((Extent::x(panel)?, Extent::y(panel)?));
+    }
+    let width = figure.panel_size.0 * columns as u32;
+    let legend = Legend::new(figure, width);
+    let title = if figure.title.is_empty() { 0 } else { TITLES.0 };
+    let height = title + legend.height + figure.panel_size.1 * rows as u32;
+    let mut svg = String::new();
+    draw(
+        figure,
+        &extents,
+        &legend,
+        (width, height),
+        (rows, columns),
+        &mut svg,
+    )
+    .map_err(|error| PlotError::Backend(error.to_string()))?;
+    let size = |scale: u32| format!("width=\"{}\" height=\"{}\"", width * scale, height * scale);
+    Ok(svg.replacen(&size(SUBPIXELS), &size(1), 1))
+}
+
+fn draw(
+    figure: &Figure,
+    extents: &[(Extent, Extent)],
+    legend: &Legend<'_>,
+    (width, height): (u32, u32),
+    grid: (usize, usize),
+    svg: &mut String,
+) -> Result<(), Failed> {
+    let size = (width * SUBPIXELS, height * SUBPIXELS);
+    let area = SVGBackend::with_string(svg, size).into_drawing_area();
+    area.fill(&WHITE)?;
+    let mut below = area.clone();
+    if !figure.title.is_empty() {
+        let (title, rest) = below.split_vertically(px(TITLES.0));
+        let style = TextStyle::from(("sans-serif", 19 * SUBPIXELS).into_font())
+            .pos(Pos::new(HPos::Center, VPos::Center));
+        title.draw(&Text::new(
+            figure.title.clone(),
+            (px(width) / 2, px(TITLES.0) / 2),
+            style,
+        ))?;
+        below = rest;
+    }
+    let (head, panels) = below.split_vertically(px(legend.height));
+    legend.draw(&head)?;
+    for ((panel, (x, y)), panel_area) in figure
+        .panels
+        .iter()
+        .zip(extents)
+        .zip(panels.split_evenly(grid))
+    {
+        draw_panel(panel, (*x, *y), &panel_area, &area)?;
+    }
+    area.present()?;
+    Ok(())
+}
+
+/// Draws a panel in `area`; `page` is the whole figure.
+fn draw_panel(
+    panel: &Panel,
+    (x, y): (Extent, Extent),
+    area: &Area<'_>,
+    page: &Area<'_>,
+) -> Result<(), Failed> {
+    let cells = panel.layers.iter().find_map(|layer| match &layer.mark {
+        Mark::Cells(cells) => Some(cells),
+        _ => None,
+    });
+    let (width, _) = area.dim_in_pixel();
+    let bar = if cells.is_some() { px(COLOUR_BAR) } else { 0 };
+    let (area, bar_area) = area.split_horizontally(width.cast_signed() - bar);
+    let mut builder = ChartBuilder::on(&area);
+    builder
+        .margin(px(10))
+        .margin_right(px(16))
+        .x_label_area_size(px(44))
+        .y_label_area_size(px(label_width(&panel.y)));
+    if !panel.title.is_empty() {
+        builder.caption(&panel.title, ("sans-serif", TITLES.1 * SUBPIXELS));
+    }
+    let mut chart = builder.build_cartesian_2d(x, y)?;
+    let font = ("sans-serif", FONT * SUBPIXELS);
+    chart
+        .configure_mesh()
+        .x_desc(&panel.x.label)
+        .y_desc(&panel.y.label)
+        .x_label_formatter(&|tick| x.label(*tick))
+        .y_label_formatter(&|tick| match panel.y.names.get((-tick).round() as usize) {
+            Some(name) => name.clone(),
+            None => y.label(*tick),
+        })
+        .label_style(font)
+        .axis_desc_style(font)
+        .axis_style(BLACK.stroke_width(SUBPIXELS))
+        .bold_line_style(RGBColor(225, 225, 225).stroke_width(SUBPIXELS))
+        .light_line_style(TRANSPARENT)
+        .set_all_tick_mark_size(px(4))
+        .draw()?;
+    for layer in &panel.layers {
+        draw_layer(layer, (x, y), &mut chart, page)?;
+    }
+    match cells {
+        Some(cells) => draw_colour_bar(cells, &bar_area),
+        None => Ok(()),
+    }
+}
+
+/// Width of what stands beside an axis upwards, in pixels.
+fn label_width(axis: &Axis) -> u32 {
+    let letters = axis.names.iter().map(|name| name.chars().count()).max();
+    letters.map_or(72, |letters| text_width(letters) + 12)
+}
+
+fn draw_layer(
+    layer: &Layer,
+    (x, y): (Extent, Extent),
+    chart: &mut Chart<'_, '_>,
+    page: &Area<'_>,
+) -> Result<(), Failed> {
+    let colour = layer.colour.rgb();
+    let scaled = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
+        let scaled = points.iter().map(|&(a, b)| (x.scale.of(a), y.scale.of(b)));
+        scaled.collect()
+    };
+    match &layer.mark {
+        Mark::Line(points) => draw_line(&scaled(points), layer, x, y, chart)?,
+        Mark::HorizontalRule(at) => {
+            let at = y.scale.of(*at);
+            draw_line(&[(x.min, at), (x.max, at)], layer, x, y, chart)?;
+        }
+        Mark::VerticalRule(at) => {
+            let at = x.scale.of(*at);
+            draw_line(&[(at, y.min), (at, y.max)], layer, x, y, chart)?;
+        }
+        Mark::Band(points) => {
+            let upper = points.iter().map(|&(at, _, high)| (at, high));
+            let lower = points.iter().rev().map(|&(at, low, _)| (at, low));
+            let outline: Vec<_> = upper
+                .chain(lower)
+                .map(|(a, b)| (x.clamp(a), y.clamp(b)))
+                .collect();
+            chart.draw_series([Polygon::new(outline, colour.mix(0.25).filled())])?;
+        }
+        Mark::Markers(shape, points) => {
+            let within =
+                |&(a, b): &(f64, f64)| (x.min..=x.max).contains(&a) && (y.min..=y.max).contains(&b);
+            for place in scaled(points).iter().filter(|place| within(place)) {
+                draw_marker(page, *shape, chart.backend_coord(place), layer.colour)?;
+            }
+        }
+        Mark::Bars { edges, heights } => {
+            let base = if y.scale == Scale::Linear {
+                y.clamp(0.0)
+            } else {
+                y.min
+            };
+            let bars = edges
+                .windows(2)
+                .zip(heights)
+                .filter_map(|(edges, &height)| {
+                    let &[left, right] = edges else { return None };
+                    let tall = y.scale == Scale::Linear || height > 0.0;
+                    let top = if tall { y.clamp(height) } else { base };
+                    Some([(x.clamp(left), base), (x.clamp(right), top)])
+                });
+            let bars: Vec<_> = bars.collect();
+            let fill = colour.mix(0.35).filled();
+            chart.draw_series(bars.iter().map(|&corners| Rectangle::new(corners, fill)))?;
+        }
+        Mark::Cells(cells) => draw_cells(cells, x, y, chart)?,
+    }
+    Ok(())
+}
+
+fn draw_line(
+    points: &[(f64, f64)],
+    layer: &Layer,
+    x: Extent,
+    y: Extent,
+    chart: &mut Chart<'_, '_>,
+) -> Result<(), Failed> {
+    let stroke = layer.colour.rgb().stroke_width(LINE * SUBPIXELS);
+    for part in inside(points, &x, &y) {
+        if layer.dashed {
+            let (dash, gap) = dashes();
+            chart.draw_series(DashedLineSeries::new(part, dash, gap, stroke))?;
+        } else {
+            chart.draw_series(LineSeries::new(part, stroke))?;
+        }
+    }
+    Ok(())
+}
+
+/// Draws a marker at a place of `area`.
+pub(crate) fn draw_marker(
+    area: &Area<'_>,
+    shape: Shape,
+    (x, y): (i32, i32),
+    colour: Colour,
+) -> Result<(), Failed> {
+    let (r, style) = (px(MARKER), colour.rgb().stroke_width(LINE * SUBPIXELS));
+    let path = |places: &[(i32, i32)]| {
+        let places: Vec<_> = places
+            .iter()
+            .map(|&(a, b)| (x + a * r, y + b * r))
+            .collect();
+        area.draw(&PathElement::new(places, style))
+    };
+    match shape {
+        Shape::Circle => area.draw(&Circle::new((x, y), r, style))?,
+        Shape::Dot => area.draw(&Circle::new((x, y), r, style.filled()))?,
+        Shape::Point => area.draw(&Circle::new((x, y), r / 3, style.filled()))?,
+        Shape::Cross => area.draw(&Cross::new((x, y), r, style))?,
+        Shape::Plus => {
+            path(&[(-1, 0), (1, 0)])?;
+            path(&[(0, -1), (0, 1)])?;
+        }
+        Shape::Square => path(&[(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])?,
+        Shape::Diamond => path(&[(-1, 0), (0, -1), (1, 0), (0, 1), (-1, 0)])?,
+    }
+    Ok(())
+}
+
+/// Least and greatest value of the cells; a little apart if they are equal.
+fn shading(cells: &Cells) -> (f64, f64) {
+    let values = cells.values.iter().flatten().copied();
+    let min = values.clone().fold(f64::INFINITY, f64::min);
+    let max = values.fold(f64::NEG_INFINITY, f64::max);
+    if min > max {
+        return (0.0, 1.0);
+    }
+    let room = (1e-6 * min.abs()).max(1e-9);
+    if max - min < room {
+        (min - room, max + room)
+    } else {
+        (min, max)
+    }
+}
+
+fn draw_cells(
+    cells: &Cells,
+    x: Extent,
+    y: Extent,
+    chart: &mut Chart<'_, '_>,
+) -> Result<(), Failed> {
+    let (min, max) = shading(cells);
+    let columns = cells
+        .x
+        .windows(2)
+        .map(|edges| (x.clamp(edges[0]), x.clamp(edges[1])));
+    let rows = cells
+        .y
+        .windows(2)
+        .map(|edges| (y.clamp(edges[0]), y.clamp(edges[1])));
+    let corners = rows.flat_map(|(low, high)| {
+        columns
+            .clone()
+            .map(move |(left, right)| [(left, low), (right, high)])
+    });
+    let shaded = corners.zip(&cells.values).filter_map(|(corners, value)| {
+        let colour = ViridisRGB::get_color_normalized((*value)?, min, max);
+        Some(Rectangle::new(corners, colour.filled()))
+    });
+    let shaded: Vec<_> = shaded.collect();
+    chart.draw_series(shaded)?;
+    Ok(())
+}
+
+fn draw_colour_bar(cells: &Cells, area: &Area<'_>) -> Result<(), Failed> {
+    let (min, max) = shading(cells);
+    let values = Extent {
+        scale: Scale::Linear,
+        min,
+        max,
+        named: false,
+    };
+    let (_, height) = area.dim_in_pixel();
+    let (top, bottom) = (px(36), height.cast_signed() - px(54));
+    let place = |value: f64| values.map(&value, (bottom, top));
+    let shade = (max - min) / f64::from(SHADES);
+    for index in 0..SHADES {
+        let low = min + shade * f64::from(index);
+        let colour = ViridisRGB::get_color_normalized(low + 0.5 * shade, min, max);
+        // Shades overlap by a little, so that no gap shows between them.
+        let corners = [(0, place(low + 1.2 * shade).max(top)), (px(14), place(low))];
+        area.draw(&Rectangle::new(corners, colour.filled()))?;
+    }
+    let font = ("sans-serif", FONT * SUBPIXELS).into_font();
+    let style = TextStyle::from(font).pos(Pos::new(HPos::Left, VPos::Center));
+    for tick in values.ticks() {
+        area.draw(&Text::new(
+            values.label(tick),
+            (px(19), place(tick)),
+            style.clone(),
+        ))?;
+    }
+    let above = style.pos(Pos::new(HPos::Left, VPos::Bottom));
+    area.draw(&Text::new(cells.label.clone(), (0, top - px(7)), above))?;
+    Ok(())
+}
