@@ -1,6 +1,6 @@
-"""Writes CasADi's C for the timed functions, and CasADi's operation counts of every function.
+"""Writes CasADi's C for the timed functions and steps, and CasADi's operation counts of every function.
 
-`python casadi_peer.py --out DIR TABLE...` writes `peer.c` and `peer.json`.
+`python casadi_peer.py --out DIR --end SECONDS TABLE...` writes `peer.c`, `steps.c` and `peer.json`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from ahv_generator.models import BUILDERS
 from ahv_generator.table import load
 from counts import count
 from expansion import Expansion
+from steps import steps
 
 OPTIONS = {"cse": True}
 
@@ -45,15 +46,22 @@ def positions(matrices: list[ca.SX]) -> list[list[int]]:
     ]
 
 
+def work(peer: ca.Function) -> list[int]:
+    """Numbers of arguments, results, integers and reals that the C function wants room for."""
+    return [peer.sz_arg(), peer.sz_res(), peer.sz_iw(), peer.sz_w()]
+
+
 def main() -> None:
     """Run the command line."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--end", type=float, required=True)
     parser.add_argument("tables", type=Path, nargs="+")
     arguments = parser.parse_args()
 
-    generator = ca.CodeGenerator("peer.c")
+    generator, step_generator = ca.CodeGenerator("peer.c"), ca.CodeGenerator("steps.c")
     kernels: dict[str, object] = {}
+    stepping: dict[str, list[int]] = {}
     counts: dict[str, dict[str, object]] = {}
     for path in arguments.tables:
         table = load(path)
@@ -66,14 +74,19 @@ def main() -> None:
                     "parameters": [parameter.name for parameter in table.parameters],
                     "outputs": positions(matrices),
                     "operations": count(peer),
-                    "work": [peer.sz_arg(), peer.sz_res(), peer.sz_iw(), peer.sz_w()],
+                    "work": work(peer),
                 }
+            for step in steps(expansion, arguments.end):
+                step_generator.add(step)
+                stepping[step.name()] = work(step)
             extra = [expansion.leaves("noise"), expansion.leaves("argument")]
             counts[model.name] = {
                 f.name: count(function(f.name, expansion, expansion.matrices(f), extra)) for f in model.functions
             }
     generator.generate(f"{arguments.out}/")
-    answer = {"version": version("casadi"), "kernels": kernels, "counts": counts}
+    step_generator.generate(f"{arguments.out}/")
+    versions = {"version": version("casadi"), "scipy": version("scipy")}
+    answer = {**versions, "kernels": kernels, "steps": stepping, "counts": counts}
     (arguments.out / "peer.json").write_text(json.dumps(answer, indent=1), encoding="utf-8")
 
 

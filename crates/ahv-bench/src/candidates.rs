@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::commands;
 use crate::kernel::{self, Kernel, Layout, Work};
+use crate::steppers::END;
 use crate::subject::{SUBJECTS, Subject};
 
 /// The one that the others are compared with.
@@ -31,7 +32,8 @@ pub(crate) struct Peers {
 }
 
 const NATIVE: &str = "-C target-cpu=native";
-const GCC: [&str; 5] = ["-O3", "-march=native", "-shared", "-fPIC", "-std=c99"];
+/// How all C is compiled.
+pub(crate) const GCC: [&str; 5] = ["-O3", "-march=native", "-shared", "-fPIC", "-std=c99"];
 
 /// Builds and loads all candidates.
 pub(crate) fn build(
@@ -40,8 +42,14 @@ pub(crate) fn build(
     out: &Path,
 ) -> Result<(Peers, Vec<Candidate>), String> {
     let peers = Peers {
-        casadi: derive(root, python, "casadi_peer", &out.join("casadi"))?,
-        wrenfold: derive(root, python, "wrenfold_peer", &out.join("wrenfold"))?,
+        casadi: derive(
+            root,
+            python,
+            "casadi_peer",
+            &out.join("casadi"),
+            &["--end".to_owned(), END.to_string()],
+        )?,
+        wrenfold: derive(root, python, "wrenfold_peer", &out.join("wrenfold"), &[])?,
     };
     for peer in [&peers.casadi, &peers.wrenfold] {
         check_parameters(peer)?;
@@ -58,19 +66,30 @@ pub(crate) fn build(
 }
 
 /// Runs a peer's script, and reads what it says.
-fn derive(root: &Path, python: &Path, script: &str, out: &Path) -> Result<Value, String> {
+fn derive(
+    root: &Path,
+    python: &Path,
+    script: &str,
+    out: &Path,
+    options: &[String],
+) -> Result<Value, String> {
     commands::make_folder(out)?;
+    let mut command = peer(root, python, script);
+    command.arg("--out").arg(out).args(options);
+    command.args(commands::tables(root)?);
+    commands::output(&mut command)?;
+    commands::read_json(&out.join("peer.json"))
+}
+
+/// A peer's script, to be given its arguments.
+pub(crate) fn peer(root: &Path, python: &Path, script: &str) -> Command {
     let mut command = Command::new(python);
     command
         .env("PYTHONPATH", root.join("generator"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .args(["-X", "utf8"])
-        .arg(root.join(format!("crates/ahv-bench/peers/{script}.py")))
-        .arg("--out")
-        .arg(out)
-        .args(commands::tables(root)?);
-    commands::output(&mut command)?;
-    commands::read_json(&out.join("peer.json"))
+        .arg(root.join(format!("crates/ahv-bench/peers/{script}.py")));
+    command
 }
 
 /// The parameters go to the peers as an array, so all must have the same order.
@@ -89,37 +108,12 @@ fn check_parameters(peer: &Value) -> Result<(), String> {
 }
 
 fn casadi(peer: &Value, out: &Path) -> Result<Candidate, String> {
-    let library = out.join("libpeer.so");
-    let mut gcc = Command::new("gcc");
-    gcc.args(GCC)
-        .arg("-o")
-        .arg(&library)
-        .arg(out.join("peer.c"))
-        .arg("-lm");
-    commands::output(&mut gcc)?;
+    let library = compiled(out, "peer")?;
     let kernels = |subject: &Subject| {
         let said = &peer["kernels"][subject.symbol];
-        let numbers = |value: &Value| -> Vec<usize> {
-            let numbers = value.as_array().into_iter().flatten();
-            numbers
-                .filter_map(Value::as_u64)
-                .map(|it| it as usize)
-                .collect()
-        };
         let outputs = said["outputs"].as_array().into_iter().flatten();
         let layout = shifted(outputs.map(numbers).collect(), subject);
-        let &[arguments, results, integers, reals] = &numbers(&said["work"])[..] else {
-            return Err(format!(
-                "error: CasADi's peer.json lacks {}",
-                subject.symbol
-            ));
-        };
-        let work = Work {
-            arguments,
-            results,
-            integers,
-            reals,
-        };
+        let work = work(&said["work"])?;
         Kernel::new(kernel::load(&library)?, subject, None, layout, work)
     };
     Ok(Candidate {
@@ -127,6 +121,37 @@ fn casadi(peer: &Value, out: &Path) -> Result<Candidate, String> {
         built: format!("gcc {}", GCC[..2].join(" ")),
         kernels: SUBJECTS.iter().map(kernels).collect::<Result<_, _>>()?,
     })
+}
+
+fn numbers(value: &Value) -> Vec<usize> {
+    let numbers = value.as_array().into_iter().flatten();
+    numbers
+        .filter_map(Value::as_u64)
+        .map(|it| it as usize)
+        .collect()
+}
+
+/// The working memory that CasADi says a function of its C needs.
+pub(crate) fn work(said: &Value) -> Result<Work, String> {
+    let &[arguments, results, integers, reals] = &numbers(said)[..] else {
+        return Err("error: CasADi's peer.json lacks a function".to_owned());
+    };
+    Ok(Work {
+        arguments,
+        results,
+        integers,
+        reals,
+    })
+}
+
+/// Compiles `name`.c in `folder` to a library.
+pub(crate) fn compiled(folder: &Path, name: &str) -> Result<PathBuf, String> {
+    let library = folder.join(format!("lib{name}.so"));
+    let mut gcc = Command::new("gcc");
+    gcc.args(GCC).arg("-o").arg(&library);
+    gcc.arg(folder.join(format!("{name}.c"))).arg("-lm");
+    commands::output(&mut gcc)?;
+    Ok(library)
 }
 
 fn own(name: &'static str, flags: &str, root: &Path, out: &Path) -> Result<Candidate, String> {
@@ -190,7 +215,7 @@ fn shifted(layout: Layout, subject: &Subject) -> Layout {
 }
 
 /// cargo with exactly these flags of rustc.
-fn cargo(folder: &Path, flags: &str, target: &Path) -> Command {
+pub(crate) fn cargo(folder: &Path, flags: &str, target: &Path) -> Command {
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo
         .current_dir(folder)

@@ -12,7 +12,8 @@ use libloading::Library;
 use crate::points::Points;
 use crate::subject::Subject;
 
-type Function =
+/// A function of CasADi's C.
+pub(crate) type Function =
     unsafe extern "C" fn(*const *const f64, *mut *mut f64, *mut i64, *mut f64, c_int) -> c_int;
 type Prepare = unsafe extern "C" fn(*const f64) -> *const f64;
 

@@ -2,6 +2,7 @@
 
 use std::env;
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 use serde::Serialize;
@@ -20,11 +21,14 @@ pub(crate) struct Machine {
     pub(crate) libc: String,
     pub(crate) casadi: String,
     pub(crate) wrenfold: String,
+    pub(crate) scipy: String,
+    pub(crate) ode_solvers: String,
+    pub(crate) diffsol: String,
 }
 
 impl Machine {
     /// Names and values, in order.
-    pub(crate) fn lines(&self) -> [(&'static str, &str); 7] {
+    pub(crate) fn lines(&self) -> [(&'static str, &str); 10] {
         [
             ("CPU", &self.cpu),
             ("system", &self.system),
@@ -33,13 +37,18 @@ impl Machine {
             ("libc", &self.libc),
             ("CasADi", &self.casadi),
             ("wrenfold", &self.wrenfold),
+            ("SciPy", &self.scipy),
+            ("ode_solvers", &self.ode_solvers),
+            ("diffsol", &self.diffsol),
         ]
     }
 }
 
 /// Asks the system and the tools.
-pub(crate) fn describe(peers: &Peers) -> Result<Machine, String> {
-    let version = |value: &serde_json::Value| value["version"].as_str().unwrap_or("?").to_owned();
+pub(crate) fn describe(root: &Path, peers: &Peers) -> Result<Machine, String> {
+    let said = |peer: &serde_json::Value, key: &str| peer[key].as_str().unwrap_or("?").to_owned();
+    let lock = root.join("crates/ahv-bench/peers/solver-crates/Cargo.lock");
+    let lock = commands::read(&lock)?;
     Ok(Machine {
         cpu: cpu(),
         system: format!("{} {}", env::consts::OS, env::consts::ARCH),
@@ -47,8 +56,11 @@ pub(crate) fn describe(peers: &Peers) -> Result<Machine, String> {
         gcc: first_line("gcc")?,
         // Not there with another libc than glibc.
         libc: first_line("ldd").unwrap_or_else(|_| "unknown".to_owned()),
-        casadi: version(&peers.casadi),
-        wrenfold: version(&peers.wrenfold),
+        casadi: said(&peers.casadi, "version"),
+        wrenfold: said(&peers.wrenfold, "version"),
+        scipy: said(&peers.casadi, "scipy"),
+        ode_solvers: locked(&lock, "ode_solvers"),
+        diffsol: locked(&lock, "diffsol"),
     })
 }
 
@@ -68,6 +80,13 @@ fn cpu() -> String {
         }
         _ => "unknown".to_owned(),
     }
+}
+
+/// The version of a package in the text of a Cargo.lock.
+fn locked(lock: &str, package: &str) -> String {
+    let after = lock.split_once(&format!("name = \"{package}\"\nversion = \""));
+    let version = after.and_then(|(_, rest)| rest.split_once('"'));
+    version.map_or("?", |it| it.0).to_owned()
 }
 
 fn first_line(program: &str) -> Result<String, String> {

@@ -1,5 +1,5 @@
-//! `cargo xtask bench`: what generation takes, how many operations the generated functions have, and how
-//! long they take beside CasADi's C and wrenfold's Rust.
+//! `cargo xtask bench`: what generation takes, how many operations the generated functions have, how long
+//! they take beside CasADi's C and wrenfold's Rust, and how long the steppers take beside other solvers.
 
 mod agreement;
 mod candidates;
@@ -10,7 +10,9 @@ mod machine;
 mod operations;
 mod points;
 mod report;
+mod steppers;
 mod subject;
+mod table;
 mod timing;
 
 use std::path::{Path, PathBuf};
@@ -22,7 +24,7 @@ use points::Points;
 use report::Report;
 use subject::SUBJECTS;
 
-/// Measure generation and the generated functions, beside CasADi and wrenfold.
+/// Measure generation, the generated functions and the steppers, beside their peers.
 #[derive(Parser)]
 #[command(name = "ahv-bench")]
 struct Args {
@@ -41,6 +43,10 @@ struct Args {
     /// Rounds in which each candidate has a turn
     #[arg(long, default_value_t = 1000)]
     rounds: u32,
+
+    /// Rounds in which each stepper and solver has a turn
+    #[arg(long, default_value_t = 15)]
+    solver_rounds: u32,
 
     /// Number of random points
     #[arg(long, default_value_t = 1000)]
@@ -68,15 +74,17 @@ fn run(args: &Args) -> Result<(), String> {
     let agreement = agreement::check(&mut candidates, &points)?;
     eprintln!("timing the candidates");
     let timings = timing::measure(&mut candidates, &points, args.rounds);
+    let steppers = steppers::measure(root(), &args.python, &args.out, &peers, args.solver_rounds)?;
     eprintln!("timing generation");
     let report = Report {
-        machine: machine::describe(&peers)?,
+        machine: machine::describe(root(), &peers)?,
         generation: generation::measure(&args.generate, &args.out)?,
         operations: operations::compare(root(), &peers)?,
         agreement,
         points: args.points,
         rounds: args.rounds,
         timings,
+        steppers,
     };
     print!("{}", report.text());
     let json = args.out.join("bench.json");

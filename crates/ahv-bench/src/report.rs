@@ -9,7 +9,9 @@ use crate::candidates::PRODUCT;
 use crate::generation::Generation;
 use crate::machine::Machine;
 use crate::operations::Operations;
+use crate::steppers::Steppers;
 use crate::subject::SUBJECTS;
+use crate::table::Table;
 use crate::timing::{Spread, Timing};
 
 /// Seconds that `generate` may take, and those of them that emission may.
@@ -25,13 +27,7 @@ pub(crate) struct Report {
     pub(crate) points: usize,
     pub(crate) rounds: u32,
     pub(crate) timings: Vec<Timing>,
-}
-
-/// A heading, the names of the columns, and the rows.
-struct Table {
-    title: &'static str,
-    columns: Vec<&'static str>,
-    rows: Vec<Vec<String>>,
+    pub(crate) steppers: Steppers,
 }
 
 impl Report {
@@ -46,7 +42,7 @@ impl Report {
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
         for (name, value) in self.machine.lines() {
-            let _ = writeln!(text, "{name:8}  {value}");
+            let _ = writeln!(text, "{name:11}  {value}");
         }
         for table in self.tables() {
             let _ = writeln!(text, "\n== {}", table.title);
@@ -66,43 +62,22 @@ impl Report {
         for (name, value) in self.machine.lines() {
             let _ = writeln!(text, "* {name}: {value}");
         }
-        for (table, note) in self.tables().iter().zip(self.notes()) {
-            let _ = writeln!(
-                text,
-                "\n## {}\n\n{note}\n\n{}",
-                table.title,
-                table.markdown().trim_end()
-            );
+        for table in self.tables() {
+            let _ = writeln!(text, "\n## {}\n", table.title);
+            if !table.note.is_empty() {
+                let _ = writeln!(text, "{}\n", table.note);
+            }
+            text.push_str(&table.markdown());
         }
         let _ = writeln!(text, "\n{}", self.agreed());
         text
     }
 
-    fn tables(&self) -> [Table; 3] {
-        [self.times(), self.counts(), self.generation()]
-    }
-
-    fn notes(&self) -> [String; 3] {
-        [
-            format!(
-                "Scalar f64 at {} random points of the box of validity, one call a point; state and input are \
-                 arguments of every call, coefficients are run-time parameters for everyone. `ahv` is the \
-                 default mode: baseline target, no FMA, elementary functions of `ahv-core`; gcc contracts to FMA \
-                 where the machine has it, and CasADi and wrenfold use the elementary functions of libc. \
-                 Every candidate lies in a shared library behind CasADi's C interface; {} rounds in which \
-                 each has its turn, ratios to CasADi within each round. CasADi's C (SX, `cse`) stores the \
-                 non-zeros of Jacobians; ahv and wrenfold store dense ones.",
-                self.points, self.rounds
-            ),
-            "As the headers of the generated functions say; CasADi's are the instructions of its SX function \
-             with `cse`, without inputs, outputs and constants. Counted alike: a negation is free, and sine \
-             and cosine of one angle are one. ahv does what depends on parameters alone once, in `prepare`."
-                .to_owned(),
-            format!(
-                "`ahv generate` (release) on all tables into an empty folder, after set-up; {} runs.",
-                self.generation.runs
-            ),
-        ]
+    fn tables(&self) -> Vec<Table> {
+        let mut tables = vec![self.times()];
+        tables.extend(self.steppers.tables());
+        tables.extend([self.counts(), self.generation()]);
+        tables
     }
 
     fn agreed(&self) -> String {
@@ -145,7 +120,17 @@ impl Report {
             }
         }
         Table {
-            title: "Time of an evaluation",
+            title: "Time of an evaluation".to_owned(),
+            note: format!(
+                "Scalar f64 at {} random points of the box of validity, one call a point; state and input are \
+                 arguments of every call, coefficients are run-time parameters for everyone. `ahv` is the \
+                 default mode: baseline target, no FMA, elementary functions of `ahv-core`; gcc contracts to FMA \
+                 where the machine has it, and CasADi and wrenfold use the elementary functions of libc. \
+                 Every candidate lies in a shared library behind CasADi's C interface; {} rounds in which \
+                 each has its turn, ratios to CasADi within each round. CasADi's C (SX, `cse`) stores the \
+                 non-zeros of Jacobians; ahv and wrenfold store dense ones.",
+                self.points, self.rounds
+            ),
             columns: vec![
                 "call",
                 "candidate",
@@ -175,7 +160,11 @@ impl Report {
             ]
         };
         Table {
-            title: "Operations",
+            title: "Operations".to_owned(),
+note: "As the headers of the generated functions say; CasADi's are the instructions of its SX function \
+             with `cse`, without inputs, outputs and constants. Counted alike: a negation is free, and sine \
+             and cosine of one angle are one. ahv does what depends on parameters alone once, in `prepare`."
+                .to_owned(),
             columns: vec![
                 "function",
                 "ahv",
@@ -206,7 +195,11 @@ impl Report {
             ]
         };
         Table {
-            title: "Generation",
+            title: "Generation".to_owned(),
+            note: format!(
+                "`ahv generate` (release) on all tables into an empty folder, after set-up; {} runs.",
+                self.generation.runs
+            ),
             columns: vec!["part", "s", "min", "quartiles", "goal"],
             rows: vec![
                 row("in all", total, Some(GENERATION_GOALS.0)),
@@ -220,45 +213,4 @@ impl Report {
 fn against(value: f64, goal: f64, unit: &str) -> String {
     let verdict = if value <= goal { "met" } else { "MISSED" };
     format!("at most {goal}{unit}: {verdict}")
-}
-
-impl Table {
-    fn text(&self) -> String {
-        let mut text = String::new();
-        let head: Vec<String> = self.columns.iter().map(|&it| it.to_owned()).collect();
-        let lines = || std::iter::once(&head).chain(&self.rows);
-        let width = |column: usize| {
-            let widths = lines().map(|row| row[column].chars().count());
-            widths.max().unwrap_or_default()
-        };
-        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
-        for row in lines() {
-            let cells = row.iter().zip(&widths).map(|(cell, &width)| {
-                if is_figure(cell) {
-                    format!("{cell:>width$}")
-                } else {
-                    format!("{cell:<width$}")
-                }
-            });
-            let cells: Vec<String> = cells.collect();
-            let _ = writeln!(text, "{}", cells.join("  ").trim_end());
-        }
-        text
-    }
-
-    fn markdown(&self) -> String {
-        let mut text = format!(
-            "| {} |\n|{}\n",
-            self.columns.join(" | "),
-            "---|".repeat(self.columns.len())
-        );
-        for row in &self.rows {
-            let _ = writeln!(text, "| {} |", row.join(" | "));
-        }
-        text
-    }
-}
-
-fn is_figure(cell: &str) -> bool {
-    cell.starts_with(|first: char| first.is_ascii_digit())
 }
