@@ -1,44 +1,41 @@
-//! Steady level flight: the state and input at which nothing but the altitude's arc changes.
+//! Steady flight on a straight path: the state and input at which velocity, flight path and pitch rate stay.
 //!
-//! Given are velocity, altitude and the inputs other than `phi` and `delta_e`. Flight path and pitch
-//! rate are 0. Unknown are `alpha`, `phi`, `delta_e` and every flexible state. The equations are
-//! all rows of the drift but two: `altitude`, which vanishes with the flight path, and `alpha`, which
-//! is −γ̇ at zero pitch rate and repeats the row `gamma`. That leaves as many equations as unknowns.
+//! Given are velocity, altitude, flight-path angle and the inputs other than `phi` and `delta_e`. The pitch rate is 0.
+//! Unknown are `alpha`, `phi`, `delta_e` and every flexible state. The equations are all rows of the drift but two:
+//! `altitude`, which is V sin γ whatever the unknowns, and `alpha`, which is −γ̇ at zero pitch rate and repeats the row
+//! `gamma`. That leaves as many equations as unknowns. A climb is steady at its instant only, for the air thins.
 
-use ahv_core::{DifferentiableModel, Real, Vector};
-use nalgebra::{DMatrix, DVector};
+mod nearest;
+mod newton;
+mod response;
+mod system;
 
-/// Newton steps before the search gives up; from a cold start the models of this project need about six.
-const MAX_ITERATIONS: usize = 50;
+use ahv_core::{Bounds, DifferentiableModel, Vector};
 
-/// Halvings of a Newton step before the search gives up.
-const MAX_HALVINGS: i32 = 30;
-
-/// Largest admissible scaled residual: a trim is then known to about this fraction of [`scale`].
-const TOLERANCE: f64 = 1e-12;
-
-/// States that are given, not sought.
-const GIVEN_STATES: [&str; 4] = ["velocity", "altitude", "gamma", "pitch_rate"];
+pub use response::{Shift, response};
+use system::{Point, System};
 
 /// Inputs that are sought; all others are held.
 pub const SOUGHT_INPUTS: [&str; 2] = ["phi", "delta_e"];
 
-/// Rows of the drift that hold by construction.
-const REDUNDANT_ROWS: [&str; 2] = ["altitude", "alpha"];
-
 /// Where to trim.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LevelFlight<U> {
+pub struct SteadyFlight<U> {
     /// Velocity, in the model's unit.
     pub velocity: f64,
     /// Altitude, in the model's unit.
     pub altitude: f64,
+    /// Flight-path angle, rad.
+    pub gamma: f64,
     /// Inputs: `phi` and `delta_e` are where the search starts, all others are held.
     pub input: U,
+    /// Where `phi` and `delta_e` may lie, in the order of [`SOUGHT_INPUTS`].
+    pub bounds: [Bounds; 2],
 }
 
-impl<U: Vector<f64>> LevelFlight<U> {
-    /// Level flight at `velocity` and `altitude`, in the model's units, all other inputs 0, with the customary cold start.
+impl<U: Vector<f64>> SteadyFlight<U> {
+    /// Level flight at `velocity` and `altitude`, in the model's units, all other inputs 0, with the customary cold
+    /// start and without bounds.
     pub fn new(velocity: f64, altitude: f64) -> Self {
         let start = |name| match name {
             "phi" => 0.25,
@@ -49,7 +46,28 @@ impl<U: Vector<f64>> LevelFlight<U> {
         Self {
             velocity,
             altitude,
+            gamma: 0.0,
             input,
+            bounds: [Bounds::new(f64::NEG_INFINITY, f64::INFINITY); 2],
+        }
+    }
+
+    /// The same on a path that climbs by `gamma`, in rad.
+    pub fn climbing(self, gamma: f64) -> Self {
+        Self { gamma, ..self }
+    }
+
+    /// The same with `phi` and `delta_e` inside their `bounds`, a vector over the inputs.
+    pub fn within<B: Vector<Bounds>>(self, bounds: &B) -> Self {
+        let of = |(name, unbounded)| {
+            let found = B::index_of(name).and_then(|index| bounds.get(index));
+            found.unwrap_or(unbounded)
+        };
+        let [phi, delta_e] = self.bounds;
+        let [first, second] = SOUGHT_INPUTS;
+        Self {
+            bounds: [of((first, phi)), of((second, delta_e))],
+            ..self
         }
     }
 }
@@ -61,256 +79,162 @@ pub struct Trim<X, U> {
     pub state: X,
     /// Trimmed input.
     pub input: U,
-    /// Largest component of the drift, all rows included, each in its own unit per second.
+    /// What is left of each row of the drift, of `altitude` less V sin γ; each in its own unit per second.
+    pub residuals: X,
+    /// The largest of their absolute values.
     pub residual_max: f64,
-    /// Newton steps taken.
+    /// Steps taken.
     pub iterations: usize,
+}
+
+/// The point inside the bounds that comes nearest to a trim.
+///
+/// The sum of squares of the scaled residuals has a minimum there. A row's scale is its largest derivative by an
+/// unknown where the search starts, with 0.1 for a unit of `alpha`, `phi` and `delta_e`; the row `velocity` weighs as V γ̇.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nearest {
+    /// The state by name.
+    pub state: Vec<(&'static str, f64)>,
+    /// The input by name.
+    pub input: Vec<(&'static str, f64)>,
+    /// As [`Trim::residuals`], by name.
+    pub residuals: Vec<(&'static str, f64)>,
+    /// The largest of their absolute values.
+    pub residual_max: f64,
+    /// The row that is worst after scaling.
+    pub worst: &'static str,
+    /// Steps taken.
+    pub iterations: usize,
+}
+
+impl Nearest {
+    /// What is left of the worst row, in its own unit per second.
+    pub fn worst_residual(&self) -> f64 {
+        let mut rows = self.residuals.iter();
+        rows.find(|(name, _)| *name == self.worst)
+            .map_or(f64::NAN, |&(_, value)| value)
+    }
+}
+
+/// A bound that keeps the search from a trim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocking {
+    /// The input.
+    pub input: &'static str,
+    /// Its bound, in its own unit.
+    pub bound: f64,
+    /// Whether it is the upper one.
+    pub upper: bool,
+}
+
+impl std::fmt::Display for Blocking {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let relation = if self.upper { "<=" } else { ">=" };
+        write!(formatter, "{} {relation} {}", self.input, self.bound)
+    }
 }
 
 /// Why there is no trim.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrimError {
-    /// The model lacks a state or input that level flight is defined by.
+    /// The model lacks a state or input that steady flight is defined by.
     #[error("the model has no state or input called {name}")]
     MissingName {
         /// The name that was looked for.
         name: &'static str,
     },
-    /// The equations and unknowns do not depend on each other.
-    #[error("the trim equations are singular after {iterations} iterations")]
-    Singular {
-        /// Newton steps taken before.
-        iterations: usize,
-    },
-    /// A derivative is infinite or NaN.
-    #[error("the derivative of {name} became {value} after {iterations} iterations of the trim")]
+    /// A derivative is infinite or NaN where the search starts.
+    #[error("the derivative of {name} is {value} where the trim starts")]
     NonFinite {
         /// Row of the drift.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// Newton steps taken before.
-        iterations: usize,
     },
-    /// No trim was found.
+    /// No trim inside the bounds.
     #[error(
-        "no trim after {iterations} iterations: the derivative of {name} is still {value} per second"
+        "no trim inside {}: at the nearest point the derivative of {} is {} per second",
+        list(blocking),
+        nearest.worst,
+        nearest.worst_residual()
+    )]
+    Blocked {
+        /// The bounds that the search ran into; at least one.
+        blocking: Vec<Blocking>,
+        /// `phi` and `delta_e` of a trim outside the bounds, if there is one.
+        beyond: Option<[f64; 2]>,
+        /// The nearest point.
+        nearest: Box<Nearest>,
+    },
+    /// No trim was found, and it is not for the bounds.
+    #[error(
+        "no trim after {} iterations: the derivative of {} is still {} per second",
+        nearest.iterations,
+        nearest.worst,
+        nearest.worst_residual()
     )]
     NoConvergence {
-        /// Newton steps taken.
-        iterations: usize,
-        /// The row of the drift that is worst after scaling.
-        name: &'static str,
-        /// Its value, in its own unit per second.
-        value: f64,
+        /// The nearest point.
+        nearest: Box<Nearest>,
     },
 }
 
-/// Finds steady level flight by a damped Newton method on the model's own Jacobians.
+impl TrimError {
+    /// The point that comes nearest to a trim, where one is known.
+    pub fn nearest(&self) -> Option<&Nearest> {
+        match self {
+            Self::Blocked { nearest, .. } | Self::NoConvergence { nearest } => Some(nearest),
+            Self::MissingName { .. } | Self::NonFinite { .. } => None,
+        }
+    }
+}
+
+fn list(blocking: &[Blocking]) -> String {
+    let texts: Vec<String> = blocking.iter().map(Blocking::to_string).collect();
+    texts.join(" and ")
+}
+
+/// Finds steady flight by a damped Newton method on the model's own Jacobians.
 ///
-/// Rows and columns are scaled, and a step is halved until the scaled residual shrinks.
+/// Rows and columns are scaled, and a step is halved until the scaled residual shrinks. Where that fails, or ends
+/// outside the bounds, a Levenberg-Marquardt method inside the bounds looks for the nearest point, from which Newton's
+/// method is tried again.
 ///
 /// # Errors
 ///
-/// [`TrimError`]; a trim is only returned with a scaled residual below 1e-12.
+/// [`TrimError`], with the nearest point and the bounds that block; a trim is only returned with a scaled residual
+/// below 1e-12.
 pub fn trim<M>(
     model: &M,
-    flight: &LevelFlight<M::Input>,
+    flight: &SteadyFlight<M::Input>,
 ) -> Result<Trim<M::State, M::Input>, TrimError>
 where
     M: DifferentiableModel<Scalar = f64>,
 {
-    let system = System::new(model)?;
-    let mut point = system.start(flight)?;
-    let (mut residual, mut jacobian) = (system.residual(&point, 0)?, system.jacobian(&point));
-    // Fixed by the start, so that residuals of different iterations compare.
-    let row_scale = row_scale(&jacobian);
-    let mut iterations = 0;
-    loop {
-        let scaled = residual.component_mul(&row_scale);
-        if scaled.amax() <= TOLERANCE {
-            return Ok(system.finish(&point, iterations));
-        }
-        if iterations == MAX_ITERATIONS {
-            return Err(system.no_convergence(&residual, &scaled, iterations));
-        }
-        for (mut row, scale) in jacobian.row_iter_mut().zip(row_scale.iter()) {
-            row *= *scale;
-        }
-        let step = jacobian
-            .lu()
-            .solve(&scaled)
-            .filter(|step| step.iter().all(|component| component.is_finite()))
-            .ok_or(TrimError::Singular { iterations })?;
-        iterations += 1;
-        (point, residual) = (0..=MAX_HALVINGS)
-            .find_map(|halvings| {
-                let next = system.moved(&point, &step, -libm::ldexp(1.0, -halvings))?;
-                let next_residual = system.residual(&next, iterations).ok()?;
-                let shrinks = next_residual.component_mul(&row_scale).norm() < scaled.norm();
-                shrinks.then_some((next, next_residual))
-            })
-            .ok_or_else(|| system.no_convergence(&residual, &scaled, iterations))?;
-        jacobian = system.jacobian(&point);
+    let system = System::new(model, flight)?;
+    let start = system.start(flight)?;
+    let first = system.solve(start);
+    if first.converged && system.inside(&first.point) {
+        return Ok(system.finish(&first.point, first.iterations));
     }
-}
-
-/// Natural size of an unknown: a step of 1 in scaled terms.
-fn scale(name: &str) -> f64 {
-    match name {
-        "alpha" | "delta_e" | "phi" => 0.1,
-        _ => 1.0,
+    let (nearest, steps) = system.nearest(start);
+    let last = system.solve(nearest);
+    let iterations = first.iterations + steps + last.iterations;
+    if last.converged && system.inside(&last.point) {
+        return Ok(system.finish(&last.point, iterations));
     }
-}
-
-/// Reciprocals of the rows' largest entries.
-fn row_scale(jacobian: &DMatrix<f64>) -> DVector<f64> {
-    DVector::from_iterator(
-        jacobian.nrows(),
-        jacobian.row_iter().map(|row| {
-            let largest = row.amax();
-            // A row without entries is singular; LU says so.
-            if largest > 0.0 { 1.0 / largest } else { 1.0 }
-        }),
-    )
-}
-
-/// A state with its input.
-struct Point<M: DifferentiableModel<Scalar = f64>> {
-    x: M::State,
-    u: M::Input,
-}
-
-/// Which components are unknowns, which rows are equations.
-struct System<'a, M> {
-    model: &'a M,
-    states: Vec<usize>,
-    inputs: Vec<usize>,
-    rows: Vec<usize>,
-    column_scale: DVector<f64>,
-}
-
-impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
-    fn new(model: &'a M) -> Result<Self, TrimError> {
-        let names = M::State::NAMES;
-        let without = |excluded: &[&str]| -> Vec<usize> {
-            (0..names.len())
-                .filter(|&i| !excluded.contains(&names[i]))
-                .collect()
-        };
-        for name in GIVEN_STATES.into_iter().chain(REDUNDANT_ROWS) {
-            M::State::index_of(name).ok_or(TrimError::MissingName { name })?;
-        }
-        let inputs = SOUGHT_INPUTS
-            .into_iter()
-            .map(|name| M::Input::index_of(name).ok_or(TrimError::MissingName { name }))
-            .collect::<Result<Vec<_>, _>>()?;
-        let states = without(&GIVEN_STATES);
-        let sought = states.iter().map(|&i| names[i]).chain(SOUGHT_INPUTS);
-        let column_scale = DVector::from_iterator(states.len() + inputs.len(), sought.map(scale));
-        Ok(Self {
-            model,
-            states,
-            inputs,
-            rows: without(&REDUNDANT_ROWS),
-            column_scale,
-        })
+    let blocking = system.blocking(&nearest);
+    let nearest = Box::new(system.describe(&nearest, iterations));
+    if blocking.is_empty() {
+        return Err(TrimError::NoConvergence { nearest });
     }
-
-    fn start(&self, flight: &LevelFlight<M::Input>) -> Result<Point<M>, TrimError> {
-        let mut x = M::State::splat(0.0);
-        for (name, value) in [("velocity", flight.velocity), ("altitude", flight.altitude)] {
-            M::State::index_of(name)
-                .and_then(|index| x.set(index, value))
-                .ok_or(TrimError::MissingName { name })?;
-        }
-        Ok(Point { x, u: flight.input })
-    }
-
-    fn residual(&self, point: &Point<M>, iterations: usize) -> Result<DVector<f64>, TrimError> {
-        let drift = self.model.drift(&point.x, &point.u);
-        match drift.find(|component| !Real::is_finite(component)) {
-            Some((name, value)) => Err(TrimError::NonFinite {
-                name,
-                value,
-                iterations,
-            }),
-            None => Ok(self.equations(&drift)),
-        }
-    }
-
-    fn equations(&self, drift: &M::State) -> DVector<f64> {
-        let row = |&index: &usize| drift.get(index).unwrap_or(0.0);
-        DVector::from_iterator(self.rows.len(), self.rows.iter().map(row))
-    }
-
-    /// Columns are scaled, rows are not.
-    fn jacobian(&self, point: &Point<M>) -> DMatrix<f64> {
-        let (by_state, by_input) = self.model.jacobians(&point.x, &point.u);
-        let mut jacobian = DMatrix::zeros(self.rows.len(), self.column_scale.len());
-        for (&index, mut row) in self.rows.iter().zip(jacobian.row_iter_mut()) {
-            let states = by_state.get(index);
-            let inputs = by_input.get(index);
-            let by_state = self
-                .states
-                .iter()
-                .map(|&i| states.and_then(|row| row.get(i)));
-            let by_input = self
-                .inputs
-                .iter()
-                .map(|&i| inputs.and_then(|row| row.get(i)));
-            for ((entry, scale), value) in row
-                .iter_mut()
-                .zip(&self.column_scale)
-                .zip(by_state.chain(by_input))
-            {
-                *entry = value.unwrap_or(0.0) * scale;
-            }
-        }
-        jacobian
-    }
-
-    /// `point` moved by `length` along the scaled direction `step`.
-    fn moved(&self, point: &Point<M>, step: &DVector<f64>, length: f64) -> Option<Point<M>> {
-        let (mut x, mut u) = (point.x, point.u);
-        let step = step.component_mul(&self.column_scale) * length;
-        let (by_state, by_input) = step.as_slice().split_at_checked(self.states.len())?;
-        for (&index, change) in self.states.iter().zip(by_state) {
-            x.set(index, x.get(index)? + change)?;
-        }
-        for (&index, change) in self.inputs.iter().zip(by_input) {
-            u.set(index, u.get(index)? + change)?;
-        }
-        Some(Point { x, u })
-    }
-
-    fn finish(&self, point: &Point<M>, iterations: usize) -> Trim<M::State, M::Input> {
-        let drift = self.model.drift(&point.x, &point.u);
-        let residuals = (0..M::State::LEN).filter_map(|index| drift.get(index));
-        let residual_max = residuals.fold(0.0, |worst: f64, residual| worst.max(residual.abs()));
-        Trim {
-            state: point.x,
-            input: point.u,
-            residual_max,
-            iterations,
-        }
-    }
-
-    fn no_convergence(
-        &self,
-        residual: &DVector<f64>,
-        scaled: &DVector<f64>,
-        iterations: usize,
-    ) -> TrimError {
-        let worst = scaled.iamax();
-        let row = self
-            .rows
-            .get(worst)
-            .and_then(|&row| M::State::NAMES.get(row));
-        TrimError::NoConvergence {
-            iterations,
-            name: row.copied().unwrap_or_default(),
-            value: residual.get(worst).copied().unwrap_or_default(),
-        }
-    }
+    let mut trims = [first, last].into_iter();
+    let beyond = trims
+        .find(|it| it.converged)
+        .map(|it| system.sought_inputs(&it.point));
+    Err(TrimError::Blocked {
+        blocking,
+        beyond,
+        nearest,
+    })
 }

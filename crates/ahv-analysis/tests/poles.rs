@@ -1,53 +1,269 @@
-//! Poles at the trims against values that were computed independently of this project.
+//! Linear systems, poles and zeros against SciPy's on an independent derivation, and against numbers of the paper.
 #![forbid(unsafe_code)]
 
-use ahv_analysis::trim::{LevelFlight, trim};
+use std::fs;
+
+use ahv_analysis::linearize::{LinearSystem, LinearizeError, PATH_INPUTS, PATH_OUTPUTS, linearize};
+use ahv_analysis::poles::{Decoupling, Mode, Pole, PolesError, damping, frequency, poles, zeros};
+use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::{DifferentiableModel, Vector};
-use ahv_models::{com_rigid, dcom};
-use approx::assert_abs_diff_eq;
+use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust};
+use approx::{assert_abs_diff_eq, assert_relative_eq};
 use nalgebra::{Complex, DMatrix};
 
-/// Eigenvalues of ∂f/∂x at level flight, by real part, then imaginary part.
-fn poles<M: DifferentiableModel<Scalar = f64>>(model: &M) -> Vec<Complex<f64>> {
-    let trim = trim(model, &LevelFlight::new(7702.0808, 85_000.0)).expect("the model trims");
-    let (jacobian, _) = model.jacobians(&trim.state, &trim.input);
-    let entry = |row, column| jacobian.get(row).and_then(|it: M::State| it.get(column));
-    let matrix = DMatrix::from_fn(M::State::LEN, M::State::LEN, |row, column| {
-        entry(row, column).expect("a square matrix")
-    });
-    let mut poles: Vec<_> = matrix.complex_eigenvalues().iter().copied().collect();
-    poles.sort_by(|a, b| a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im)));
-    poles
+/// What SciPy found for a model and a set.
+struct Reference {
+    model: String,
+    set: String,
+    state: Vec<f64>,
+    input: Vec<f64>,
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    poles: Vec<Complex<f64>>,
+    zeros: Vec<Complex<f64>>,
 }
 
-/// The fastest real poles, stable and unstable.
-fn short_period(poles: &[Complex<f64>]) -> (f64, f64) {
-    let real = poles.iter().filter(|pole| pole.im == 0.0).map(|p| p.re);
-    real.fold((0.0, 0.0), |(low, high), pole| {
-        (low.min(pole), high.max(pole))
-    })
+fn references() -> Vec<Reference> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/vectors/roots.txt");
+    let text = fs::read_to_string(path).expect("the vectors are there");
+    let lines: Vec<Vec<&str>> = text
+        .lines()
+        .skip(1)
+        .map(|it| it.split(',').collect())
+        .collect();
+    lines.chunks_exact(7).map(reference).collect()
+}
+
+fn reference(rows: &[Vec<&str>]) -> Reference {
+    let numbers = |name: &str| -> Vec<f64> {
+        let row = rows.iter().find(|row| row[0] == name).expect("a row");
+        row[1..]
+            .iter()
+            .map(|it| it.parse().expect("a number"))
+            .collect()
+    };
+    let matrix = |name: &str| {
+        let numbers = numbers(name);
+        DMatrix::from_row_slice(numbers[0] as usize, numbers[1] as usize, &numbers[2..])
+    };
+    let roots = |name: &str| -> Vec<Complex<f64>> {
+        let parts = numbers(name);
+        parts
+            .chunks_exact(2)
+            .map(|it| Complex::new(it[0], it[1]))
+            .collect()
+    };
+    Reference {
+        model: rows[0][1].to_owned(),
+        set: rows[0][2].to_owned(),
+        state: numbers("state"),
+        input: numbers("input"),
+        a: matrix("A"),
+        b: matrix("B"),
+        poles: roots("poles"),
+        zeros: roots("zeros"),
+    }
+}
+
+impl Reference {
+    /// The system of the vectors, its states and outputs by name.
+    fn system(&self, states: &[&'static str]) -> LinearSystem {
+        let output =
+            |row: usize, column: usize| f64::from(u8::from(states[column] == PATH_OUTPUTS[row]));
+        LinearSystem {
+            states: states.to_vec(),
+            inputs: PATH_INPUTS.to_vec(),
+            outputs: PATH_OUTPUTS.to_vec(),
+            a: self.a.clone(),
+            b: self.b.clone(),
+            c: DMatrix::from_fn(2, states.len(), output),
+            d: DMatrix::zeros(2, 2),
+        }
+    }
+}
+
+/// Every root has a partner of its own among `expected`, to 1e-12 of the largest.
+fn assert_same(found: &[Complex<f64>], expected: &[Complex<f64>], what: &str) {
+    assert_eq!(
+        found.len(),
+        expected.len(),
+        "{what}: {found:?}, not {expected:?}"
+    );
+    let tolerance = 1e-12 * expected.iter().map(|&it| frequency(it)).fold(1.0, f64::max);
+    let mut left = expected.to_vec();
+    for &root in found {
+        let nearest = (0..left.len())
+            .min_by(|&i, &j| frequency(left[i] - root).total_cmp(&frequency(left[j] - root)));
+        let partner = left.swap_remove(nearest.expect("as many"));
+        // A root near 0 that is nearly double moves by the root of the rounding.
+        assert!(
+            frequency(partner - root) < tolerance,
+            "{what}: {root}, not {partner}"
+        );
+    }
+}
+
+fn values(poles: &[Pole]) -> Vec<Complex<f64>> {
+    poles.iter().map(|pole| pole.value).collect()
+}
+
+#[test]
+fn poles_and_zeros_are_scipys_on_the_same_matrices() {
+    for reference in references() {
+        let states: &[&'static str] = match reference.model.as_str() {
+            "com" => &com::State::<f64>::NAMES,
+            "com_rigid" => &com_rigid::State::<f64>::NAMES,
+            "dcom" => &dcom::State::<f64>::NAMES,
+            _ => &sdcom::State::<f64>::NAMES,
+        };
+        let what = format!("{} {}", reference.model, reference.set);
+        let system = reference.system(states);
+        let found = values(&poles(&system).expect("poles"));
+        assert_same(&found, &reference.poles, &what);
+        let found = zeros(&system).expect("zeros");
+        let finite: Vec<_> = found.finite.iter().map(|it| it.value).collect();
+        assert_same(&finite, &reference.zeros, &what);
+        assert!(found.regular, "{what}");
+        assert_eq!(
+            (finite.len(), found.infinite),
+            (states.len() - 2, 4),
+            "{what}"
+        );
+    }
+}
+
+fn level<M: DifferentiableModel<Scalar = f64>>(model: &M) -> (M::State, M::Input) {
+    let trim = trim(model, &SteadyFlight::new(7702.0808, 85_000.0)).expect("the model trims");
+    (trim.state, trim.input)
+}
+
+fn system<M: DifferentiableModel<Scalar = f64>>(model: &M) -> LinearSystem {
+    let (x, u) = level(model);
+    linearize(model, &x, &u, &PATH_INPUTS, &PATH_OUTPUTS).expect("the model is smooth")
+}
+
+/// Trim, A and B are those that SciPy finds with an independent derivation.
+fn agrees<M: DifferentiableModel<Scalar = f64>>(model: &M, name: &str, set: &str) {
+    let references = references();
+    let mut references = references.iter();
+    let reference = references.find(|it| it.model == name && it.set == set);
+    let reference = reference.expect("the case is in the vectors");
+    let (x, u) = level(model);
+    for (index, expected) in reference.state.iter().enumerate() {
+        let found = x.get(index).expect("a component");
+        assert_abs_diff_eq!(found, *expected, epsilon = 1e-9);
+    }
+    for (index, expected) in reference.input.iter().enumerate() {
+        assert_abs_diff_eq!(
+            u.get(index).expect("a component"),
+            *expected,
+            epsilon = 1e-9
+        );
+    }
+    let system = system(model);
+    for (found, expected) in [(&system.a, &reference.a), (&system.b, &reference.b)] {
+        for (found, expected) in found.iter().zip(expected) {
+            assert_relative_eq!(*found, *expected, max_relative = 1e-8, epsilon = 1e-9);
+        }
+    }
+}
+
+#[test]
+fn trims_and_linear_systems_are_those_of_the_independent_derivation() {
+    agrees(&com::Model::new(&com::NOMINAL), "com", "section5.1");
+    agrees(
+        &com_rigid::Model::new(&com::NOMINAL),
+        "com_rigid",
+        "section5.1",
+    );
+    agrees(&dcom::Model::new(&dcom::NOMINAL), "dcom", "section5.1");
+    agrees(&dcom::Model::new(&dcom::SECTION5_3), "dcom", "section5.3");
+    agrees(&sdcom::Model::new(&dcom::NOMINAL), "sdcom", "section5.1");
+    agrees(&sdcom::Model::new(&dcom::SECTION5_3), "sdcom", "section5.3");
+}
+
+/// The poles of `mode`.
+fn of(mode: Mode, poles: &[Pole]) -> Vec<Complex<f64>> {
+    let those = poles.iter().filter(|pole| pole.mode == Some(mode));
+    those.map(|pole| pole.value).collect()
+}
+
+/// The real short-period poles, stable and unstable.
+fn short_period(poles: &[Pole]) -> (f64, f64) {
+    let mut real: Vec<f64> = of(Mode::ShortPeriod, poles)
+        .iter()
+        .map(|it| it.re)
+        .collect();
+    real.sort_by(f64::total_cmp);
+    assert_eq!(real.len(), 2, "{poles:?}");
+    (real[0], real[1])
+}
+
+#[test]
+fn modes_are_told_by_participation() {
+    let found = poles(&system(&dcom::Model::new(&dcom::SECTION5_3))).expect("poles");
+    // Table 3 prints -3.97 and +3.86.
+    let (stable, unstable) = short_period(&found);
+    assert_abs_diff_eq!(stable, -3.9694, epsilon = 6e-5);
+    assert_abs_diff_eq!(unstable, 3.8612, epsilon = 6e-5);
+    for (number, real, imaginary) in [(1, -0.41, 20.5), (2, -1.05, 52.5), (3, -2.10, 105.0)] {
+        let pair = of(Mode::Flexible(number), &found);
+        assert_eq!(pair.len(), 2, "{found:?}");
+        for pole in pair {
+            assert_abs_diff_eq!(pole.re, real, epsilon = 0.01);
+            assert_abs_diff_eq!(pole.im.abs(), imaginary, epsilon = 0.1);
+            assert_abs_diff_eq!(damping(pole), 0.02, epsilon = 1e-4);
+        }
+    }
+    assert_eq!(of(Mode::Phugoid, &found).len(), 2);
+    assert_eq!(of(Mode::Height, &found).len(), 1);
+    assert!(
+        found.iter().all(|pole| pole.participation > 0.5),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn coloured_noise_and_gust_have_their_own_decay_rates() {
+    let p = dcom::NOMINAL;
+    let found = poles(&system(&sdcom_gust::Model::new(&p))).expect("poles");
+    let modes = [
+        (1, p.omega_1 * p.zeta_1),
+        (2, p.omega_2 * p.zeta_2),
+        (3, p.omega_3 * p.zeta_3),
+    ];
+    for (number, decay) in modes {
+        let pole = of(Mode::ColouredNoise(number), &found);
+        assert_relative_eq!(pole[0].re, -decay, max_relative = 1e-12);
+    }
+    let gust = of(Mode::Gust, &found);
+    assert_relative_eq!(gust[0].re, -1.0 / p.gust_time, max_relative = 1e-12);
+}
+
+#[test]
+fn no_input_reaches_the_coloured_noise() {
+    let found = zeros(&system(&sdcom::Model::new(&sdcom::NOMINAL))).expect("zeros");
+    let missed = found
+        .finite
+        .iter()
+        .filter(|zero| zero.decoupling == Some(Decoupling::Input));
+    assert_eq!(missed.count(), 3, "{found:?}");
+    let found = zeros(&system(&dcom::Model::new(&dcom::SECTION5_3))).expect("zeros");
+    assert!(
+        found.finite.iter().all(|zero| zero.decoupling.is_none()),
+        "{found:?}"
+    );
+    let real = found.finite.iter().filter(|zero| zero.value.im == 0.0);
+    let largest = real.map(|zero| zero.value.re).fold(0.0, f64::max);
+    assert_abs_diff_eq!(largest, 7.64, epsilon = 0.01);
 }
 
 #[test]
 fn the_rigid_com_has_the_recomputed_short_period() {
-    let poles = poles(&com_rigid::Model::new(&com_rigid::NOMINAL));
-    let (stable, unstable) = short_period(&poles);
+    let found = poles(&system(&com_rigid::Model::new(&com_rigid::NOMINAL))).expect("poles");
+    let (stable, unstable) = short_period(&found);
     assert_abs_diff_eq!(stable, -1.764, epsilon = 6e-4);
     assert_abs_diff_eq!(unstable, 1.694, epsilon = 6e-4);
-}
-
-#[test]
-fn section_5_3_has_the_recomputed_poles() {
-    let poles = poles(&dcom::Model::new(&dcom::SECTION5_3));
-    let (stable, unstable) = short_period(&poles);
-    // Table 3 prints -3.97 and +3.86.
-    assert_abs_diff_eq!(stable, -3.9694, epsilon = 6e-5);
-    assert_abs_diff_eq!(unstable, 3.8612, epsilon = 6e-5);
-    for (real, imaginary) in [(-0.41, 20.5), (-1.05, 52.5), (-2.10, 105.0)] {
-        let near = |pole: &&Complex<f64>| (pole.im - imaginary).abs() < 0.1;
-        let pole = poles.iter().find(near).expect("a flexible pair");
-        assert_abs_diff_eq!(pole.re, real, epsilon = 0.01);
-    }
 }
 
 #[test]
@@ -58,8 +274,62 @@ fn inertia_does_most_of_the_short_period_of_section_5_3() {
         (heavy.m, heavy.i_yy, -1.742, 1.673),
     ] {
         let parameters = dcom::Parameters { m, i_yy, ..light };
-        let found = short_period(&poles(&dcom::Model::new(&parameters)));
+        let found = poles(&system(&dcom::Model::new(&parameters))).expect("poles");
+        let found = short_period(&found);
         assert_abs_diff_eq!(found.0, stable, epsilon = 6e-4);
         assert_abs_diff_eq!(found.1, unstable, epsilon = 6e-4);
     }
+}
+
+/// A double integrator with two outputs in turn: the zero of 1/s², (s + 2)/s², and none at all.
+#[test]
+fn small_systems_have_the_zeros_of_their_transfer_functions() {
+    let of = |c: [f64; 2], d: f64| LinearSystem {
+        states: vec!["velocity", "altitude"],
+        inputs: vec!["phi"],
+        outputs: vec!["altitude"],
+        a: DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, 0.0]),
+        b: DMatrix::from_row_slice(2, 1, &[0.0, 1.0]),
+        c: DMatrix::from_row_slice(1, 2, &c),
+        d: DMatrix::from_element(1, 1, d),
+    };
+    let none = zeros(&of([1.0, 0.0], 0.0)).expect("zeros");
+    assert_eq!((none.finite.len(), none.regular), (0, false));
+    let one = zeros(&of([2.0, 1.0], 0.0)).expect("zeros");
+    assert_eq!((one.finite.len(), one.regular), (1, true));
+    assert_abs_diff_eq!(one.finite[0].value.re, -2.0, epsilon = 1e-14);
+    // 1 + 4/s²: zeros at ±2i.
+    let pair = zeros(&of([4.0, 0.0], 1.0)).expect("zeros");
+    assert_eq!(pair.finite.len(), 2);
+    assert_abs_diff_eq!(pair.finite[0].value.im, 2.0, epsilon = 1e-14);
+}
+
+#[test]
+fn what_cannot_be_is_a_typed_error() {
+    let model = dcom::Model::new(&dcom::NOMINAL);
+    let (x, u) = level(&model);
+    let unknown = linearize(&model, &x, &u, &["delta_f"], &PATH_OUTPUTS);
+    assert_eq!(
+        unknown,
+        Err(LinearizeError::UnknownInput("delta_f".to_owned()))
+    );
+    let unknown = linearize(&model, &x, &u, &PATH_INPUTS, &["theta"]);
+    assert_eq!(
+        unknown,
+        Err(LinearizeError::UnknownOutput("theta".to_owned()))
+    );
+    let still = dcom::State { velocity: 0.0, ..x };
+    let still = linearize(&model, &still, &u, &PATH_INPUTS, &PATH_OUTPUTS);
+    assert!(
+        matches!(still, Err(LinearizeError::NonFinite { .. })),
+        "{still:?}"
+    );
+    let wide = linearize(&model, &x, &u, &PATH_INPUTS, &["velocity"]).expect("smooth");
+    assert_eq!(
+        zeros(&wide),
+        Err(PolesError::NotSquare {
+            inputs: 2,
+            outputs: 1
+        })
+    );
 }

@@ -1,8 +1,8 @@
 //! Trims of the models against values that were computed independently of this project.
 #![forbid(unsafe_code)]
 
-use ahv_analysis::trim::{LevelFlight, TrimError, trim};
-use ahv_core::{DifferentiableModel, Vector};
+use ahv_analysis::trim::{SteadyFlight, TrimError, trim};
+use ahv_core::{Bounds, DifferentiableModel, Vector};
 use ahv_models::dcom::{Canard, Earth};
 use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust, sdcom_printed};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
@@ -16,7 +16,7 @@ fn dcom_model(canard: Canard) -> dcom::Model<f64> {
 
 #[test]
 fn without_canard_the_trim_is_the_recomputed_one() {
-    let flight = LevelFlight::new(VELOCITY, ALTITUDE);
+    let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
     let trim = trim(&dcom_model(Canard::None), &flight).expect("the DCOM trims");
     assert_abs_diff_eq!(trim.state.alpha.to_degrees(), 1.5018, epsilon = 6e-5);
     assert_abs_diff_eq!(trim.input.phi, 0.2821, epsilon = 6e-5);
@@ -35,7 +35,7 @@ fn without_canard_the_trim_is_the_recomputed_one() {
 
 #[test]
 fn with_a_slaved_canard_the_trim_is_the_recomputed_one() {
-    let flight = LevelFlight::new(VELOCITY, ALTITUDE);
+    let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
     let trim = trim(&dcom_model(Canard::Slaved), &flight).expect("the DCOM trims");
     assert_abs_diff_eq!(trim.state.alpha.to_degrees(), 3.6558, epsilon = 6e-5);
     assert_abs_diff_eq!(trim.input.phi, 0.2957, epsilon = 6e-5);
@@ -50,7 +50,7 @@ fn the_coms_trim_where_they_were_recomputed_on_both_earths() {
         (com::Earth::Spherical, 1.4056, 0.2505, 11.984),
     ] {
         let parameters = com::NOMINAL.with_earth(earth);
-        let flight = LevelFlight::new(VELOCITY, ALTITUDE);
+        let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
         let rigid = trim(&com_rigid::Model::new(&parameters), &flight).expect("trims");
         // To the digits given.
         assert_abs_diff_eq!(rigid.state.alpha.to_degrees(), alpha, epsilon = 6e-5);
@@ -58,7 +58,7 @@ fn the_coms_trim_where_they_were_recomputed_on_both_earths() {
         assert_abs_diff_eq!(rigid.input.delta_e.to_degrees(), delta_e, epsilon = 6e-4);
         assert!(rigid.residual_max < 1e-9, "{rigid:?}");
 
-        let flight = LevelFlight::new(VELOCITY, ALTITUDE);
+        let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
         let flexible = trim(&com::Model::new(&parameters), &flight).expect("trims");
         assert_abs_diff_eq!(flexible.state.alpha, rigid.state.alpha, epsilon = 1e-12);
         assert_abs_diff_eq!(flexible.input.phi, rigid.input.phi, epsilon = 1e-12);
@@ -81,7 +81,7 @@ fn the_set_of_section_5_3_trims_where_it_was_recomputed() {
         (dcom::SECTION5_3, 0.606, 0.2216, 10.996),
         (heavy_section_5_3(), 1.5115, 0.2811, 13.063),
     ] {
-        let flight = LevelFlight::new(VELOCITY, ALTITUDE);
+        let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
         let trim = trim(&dcom::Model::new(&parameters), &flight).expect("the DCOM trims");
         assert_abs_diff_eq!(trim.state.alpha.to_degrees(), alpha, epsilon = 6e-4);
         assert_abs_diff_eq!(trim.input.phi, phi, epsilon = 6e-5);
@@ -100,8 +100,8 @@ fn heavy_section_5_3() -> dcom::Parameters<f64> {
 
 /// The trims of a model in foot and slug, and of the same model in SI, agree to rounding.
 fn agree_in_si<M: DifferentiableModel<Scalar = f64>>(model: &M, in_si: &M) {
-    let feet = LevelFlight::new(VELOCITY, ALTITUDE);
-    let metres = LevelFlight::new(VELOCITY * 0.3048, ALTITUDE * 0.3048);
+    let feet = SteadyFlight::new(VELOCITY, ALTITUDE);
+    let metres = SteadyFlight::new(VELOCITY * 0.3048, ALTITUDE * 0.3048);
     let (feet, metres) = (trim(model, &feet), trim(in_si, &metres));
     let (feet, metres) = (feet.expect("trims"), metres.expect("trims in SI"));
     for (index, (name, factor)) in M::State::NAMES.iter().zip(M::State::SI_FACTORS).enumerate() {
@@ -152,11 +152,11 @@ fn every_model_trims_alike_in_si() {
 fn the_stochastic_model_trims_where_the_deterministic_one_does() {
     let full = trim(
         &dcom_model(Canard::None),
-        &LevelFlight::new(VELOCITY, ALTITUDE),
+        &SteadyFlight::new(VELOCITY, ALTITUDE),
     )
     .expect("trims");
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let reduced = trim(&model, &LevelFlight::new(VELOCITY, ALTITUDE)).expect("the SDCOM trims");
+    let reduced = trim(&model, &SteadyFlight::new(VELOCITY, ALTITUDE)).expect("the SDCOM trims");
     assert_abs_diff_eq!(reduced.state.alpha, full.state.alpha, epsilon = 1e-12);
     assert_abs_diff_eq!(reduced.input.phi, full.input.phi, epsilon = 1e-12);
     assert_abs_diff_eq!(reduced.input.delta_e, full.input.delta_e, epsilon = 1e-12);
@@ -170,7 +170,7 @@ fn the_stochastic_model_trims_where_the_deterministic_one_does() {
     );
 
     let model = sdcom_gust::Model::new(&sdcom::NOMINAL);
-    let gust = trim(&model, &LevelFlight::new(VELOCITY, ALTITUDE)).expect("trims");
+    let gust = trim(&model, &SteadyFlight::new(VELOCITY, ALTITUDE)).expect("trims");
     assert_abs_diff_eq!(gust.state.alpha, full.state.alpha, epsilon = 1e-12);
     assert_eq!(gust.state.alpha_gust, 0.0);
 }
@@ -179,60 +179,280 @@ fn the_stochastic_model_trims_where_the_deterministic_one_does() {
 #[test]
 fn the_printed_form_trims_elsewhere() {
     let model = sdcom_printed::Model::new(&sdcom_printed::NOMINAL);
-    let trim = trim(&model, &LevelFlight::new(VELOCITY, ALTITUDE)).expect("trims");
+    let trim = trim(&model, &SteadyFlight::new(VELOCITY, ALTITUDE)).expect("trims");
     assert!(trim.residual_max < 1e-9, "{trim:?}");
     assert!(trim.input.phi < 0.5 * 0.2821, "{trim:?}");
 }
 
 #[test]
 fn held_inputs_are_held() {
-    let mut flight = LevelFlight::<dcom::Input<f64>>::new(VELOCITY, ALTITUDE);
+    let mut flight = SteadyFlight::<dcom::Input<f64>>::new(VELOCITY, ALTITUDE);
     flight.input.delta_c = 0.05;
     let trim = trim(&dcom_model(Canard::Free), &flight).expect("the DCOM trims");
     assert_eq!(trim.input.delta_c, 0.05);
     assert!(trim.residual_max < 1e-9, "{trim:?}");
 }
 
-#[test]
-fn trims_are_found_over_the_box() {
-    for velocity in [7000.0, 9000.0, 11_000.0] {
-        for altitude in [80_000.0, 95_000.0, 110_000.0] {
-            let trim = trim(
-                &dcom_model(Canard::None),
-                &LevelFlight::new(velocity, altitude),
-            );
-            assert!(trim.is_ok(), "{velocity} ft/s, {altitude} ft: {trim:?}");
+/// Points along each side of the grid over the validity box of velocity and altitude.
+const GRID: u32 = 20;
+
+/// Whether there is a level trim inside the bounds, by scanning.
+///
+/// At each angle of attack the elevator is found from the pitching moment, which is all but linear in it, and phi from the
+/// row of velocity, which is affine in it; both with the modes at rest. A trim is where the flight path stops turning.
+fn exists<M: DifferentiableModel<Scalar = f64>>(
+    model: &M,
+    velocity: f64,
+    altitude: f64,
+    [phi, delta_e]: [Bounds; 2],
+) -> bool {
+    let at = |alpha: f64, input: [f64; 2]| {
+        let (mut x, mut u) = (M::State::splat(0.0), M::Input::splat(0.0));
+        for (name, value) in [
+            ("velocity", velocity),
+            ("altitude", altitude),
+            ("alpha", alpha),
+        ] {
+            x.set(M::State::index_of(name).expect("a state"), value);
         }
+        for (name, value) in ["phi", "delta_e"].into_iter().zip(input) {
+            u.set(M::Input::index_of(name).expect("an input"), value);
+        }
+        // What the modes rest at: their equations are affine in eta, with -omega^2.
+        for mode in 1..=3 {
+            let indices = ["eta", "eta_dot"].map(|it| M::State::index_of(&format!("{it}_{mode}")));
+            if let [Some(eta), Some(rate)] = indices {
+                let force = model.drift(&x, &u).get(rate).expect("a row");
+                let mut unit = x;
+                unit.set(eta, 1.0);
+                let stiffness = force - model.drift(&unit, &u).get(rate).expect("a row");
+                x.set(eta, force / stiffness);
+            }
+        }
+        let drift = model.drift(&x, &u);
+        ["velocity", "gamma", "pitch_rate"].map(|row| {
+            M::State::index_of(row)
+                .and_then(|it| drift.get(it))
+                .expect("a row")
+        })
+    };
+    // At an elevator: phi, and the turn and pitch that are left.
+    let balanced = |alpha: f64, elevator: f64| {
+        let (zero, one) = (at(alpha, [0.0, elevator])[0], at(alpha, [1.0, elevator])[0]);
+        let fuel = zero / (zero - one);
+        let [_, turn, pitch] = at(alpha, [fuel, elevator]);
+        (fuel, turn, pitch)
+    };
+    let settled = |alpha: f64| {
+        let elevator = secant([0.0, 0.3], |elevator| balanced(alpha, elevator).2);
+        let (fuel, turn, pitch) = balanced(alpha, elevator);
+        // No elevator balances the largest angles; nothing falls through NaN.
+        let turn = if pitch.abs() < 1e-9 { turn } else { f64::NAN };
+        (turn, [fuel, elevator])
+    };
+    let scan: Vec<f64> = (-8..=16).map(|step| f64::from(step) * 2e-2).collect();
+    scan.windows(2).any(|pair| {
+        let [low, high] = [pair[0], pair[1]];
+        let turns = settled(low).0 * settled(high).0 <= 0.0;
+        turns && {
+            let alpha = bisect([low, high], |alpha| -settled(alpha).0);
+            let [fuel, elevator] = settled(alpha).1;
+            phi.contains(fuel) && delta_e.contains(elevator)
+        }
+    })
+}
+
+/// Where a function that is all but linear is 0.
+fn secant([mut old, mut new]: [f64; 2], of: impl Fn(f64) -> f64) -> f64 {
+    let mut before = of(old);
+    for _ in 0..10 {
+        let now = of(new);
+        if now == before {
+            break;
+        }
+        (old, new, before) = (new, new - now * (new - old) / (now - before), now);
+    }
+    new
+}
+
+/// Where a function that falls through 0 does so.
+fn bisect([mut low, mut high]: [f64; 2], falling: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if falling(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// A trim is found from the cold start exactly where there is one, and else the bound that blocks is told.
+///
+/// `scanned` is a model with the same trims whose modes do not act on each other.
+fn trims_wherever_it_can<M, N, X, U>(name: &str, model: &M, scanned: &N, states: &X, inputs: &U)
+where
+    M: DifferentiableModel<Scalar = f64>,
+    N: DifferentiableModel<Scalar = f64>,
+    X: Vector<Bounds>,
+    U: Vector<Bounds>,
+{
+    let of = |name| {
+        X::index_of(name)
+            .and_then(|index| states.get(index))
+            .expect("a state")
+    };
+    let place = |bounds: Bounds, step| {
+        let share = f64::from(step) / f64::from(GRID - 1);
+        bounds.min + (bounds.max - bounds.min) * share
+    };
+    let mut found = 0;
+    for (i, j) in (0..GRID).flat_map(|i| (0..GRID).map(move |j| (i, j))) {
+        let (velocity, altitude) = (place(of("velocity"), i), place(of("altitude"), j));
+        let flight = SteadyFlight::new(velocity, altitude).within(inputs);
+        let there = exists(scanned, velocity, altitude, flight.bounds);
+        let what = format!("{name} at {velocity} ft/s, {altitude} ft");
+        match trim(model, &flight) {
+            Ok(trim) => {
+                assert!(there, "{what}: a trim that the scan does not see");
+                assert!(trim.residual_max < 1e-9, "{what}: {}", trim.residual_max);
+                found += 1;
+            }
+            Err(TrimError::Blocked {
+                blocking,
+                beyond,
+                nearest,
+            }) => {
+                assert!(!there, "{what}: a trim that was not found");
+                let at = |name| {
+                    nearest
+                        .input
+                        .iter()
+                        .find(|it| it.0 == name)
+                        .expect("an input")
+                        .1
+                };
+                assert_eq!(at(blocking[0].input), blocking[0].bound, "{what}");
+                let [phi, delta_e] = beyond.expect("far from the bounds there is one");
+                let [fuel, elevator] = flight.bounds;
+                assert!(!fuel.contains(phi) || !elevator.contains(delta_e), "{what}");
+            }
+            Err(error) => panic!("{what}: {error}"),
+        }
+    }
+    assert!((100..=400).contains(&found), "{name}: {found}");
+}
+
+#[test]
+fn the_com_trims_over_the_box_wherever_it_can() {
+    let (model, rigid) = (
+        com::Model::new(&com::NOMINAL),
+        com_rigid::Model::new(&com::NOMINAL),
+    );
+    trims_wherever_it_can(
+        "com",
+        &model,
+        &rigid,
+        &com::STATE_BOUNDS,
+        &com::INPUT_BOUNDS,
+    );
+}
+
+#[test]
+fn the_dcom_trims_over_the_box_wherever_it_can() {
+    let (states, inputs) = (&dcom::STATE_BOUNDS, &dcom::INPUT_BOUNDS);
+    for canard in [Canard::None, Canard::Slaved] {
+        let model = dcom_model(canard);
+        trims_wherever_it_can("dcom", &model, &model, states, inputs);
     }
 }
 
 #[test]
-fn impossible_flight_is_a_typed_error() {
-    let still = trim(&dcom_model(Canard::None), &LevelFlight::new(0.0, ALTITUDE));
-    assert!(
-        matches!(
-            still,
-            Err(TrimError::NonFinite {
-                name: "gamma" | "alpha",
-                ..
-            })
-        ),
-        "{still:?}"
+fn the_sdcom_trims_over_the_box_wherever_it_can() {
+    let model = sdcom::Model::new(&sdcom::NOMINAL);
+    trims_wherever_it_can(
+        "sdcom",
+        &model,
+        &model,
+        &sdcom::STATE_BOUNDS,
+        &sdcom::INPUT_BOUNDS,
     );
-    let space = trim(&dcom_model(Canard::None), &LevelFlight::new(VELOCITY, 1e6));
+}
+
+/// The forces along and across the path of a point mass, recomputed from the table.
+#[test]
+fn a_climb_is_steady_with_the_weight_along_the_path() {
+    let p = com::NOMINAL;
+    for gamma in [-0.06_f64, 0.05] {
+        let flight = SteadyFlight::new(VELOCITY, ALTITUDE).climbing(gamma);
+        let trim = trim(&com_rigid::Model::new(&p), &flight).expect("trims");
+        assert_eq!(trim.state.gamma, gamma);
+        assert!(trim.residual_max < 1e-9, "{trim:?}");
+        let (alpha, phi, delta_e) = (trim.state.alpha, trim.input.phi, trim.input.delta_e);
+        let pressure = 0.5 * p.rho_0 * VELOCITY * VELOCITY * p.s;
+        let lift = pressure * (p.c_l_alpha * alpha + p.c_l_delta_e * delta_e + p.c_l_0);
+        let drag = pressure
+            * (p.c_d_alpha_2 * alpha * alpha
+                + p.c_d_alpha * alpha
+                + p.c_d_delta_e_2 * delta_e * delta_e
+                + p.c_d_delta_e * delta_e
+                + p.c_d_0);
+        let powers = [alpha.powi(3), alpha.powi(2), alpha, 1.0];
+        let sum = |of: [f64; 4]| of.iter().zip(powers).map(|(a, b)| a * b).sum::<f64>();
+        let thrust = phi * sum([p.t_phi_alpha_3, p.t_phi_alpha_2, p.t_phi_alpha, p.t_phi])
+            + sum([p.t_alpha_3, p.t_alpha_2, p.t_alpha, p.t_0]);
+        let weight = p.m * p.g;
+        let along = thrust * alpha.cos() - drag;
+        let across = lift + thrust * alpha.sin();
+        assert_relative_eq!(along, weight * gamma.sin(), max_relative = 1e-9);
+        assert_relative_eq!(across, weight * gamma.cos(), max_relative = 1e-9);
+    }
+}
+
+/// Too little fuel is told, with the point that keeps lift and moment in balance as well as it can.
+#[test]
+fn the_bound_that_blocks_is_told() {
+    let bounds = com::Input {
+        phi: Bounds::new(0.05, 0.2),
+        ..com::INPUT_BOUNDS
+    };
+    let flight = SteadyFlight::new(VELOCITY, ALTITUDE).within(&bounds);
+    let error = trim(&com_rigid::Model::new(&com::NOMINAL), &flight).expect_err("too little fuel");
+    let nearest = error.nearest().expect("a nearest point");
+    assert_eq!(nearest.input[0], ("phi", 0.2));
+    assert_eq!(nearest.worst, "velocity");
+    assert!(nearest.worst_residual() < 0.0, "{nearest:?}");
+    let TrimError::Blocked {
+        blocking, beyond, ..
+    } = &error
+    else {
+        panic!("{error:?}");
+    };
+    assert_eq!(blocking[0].to_string(), "phi <= 0.2");
+    assert_abs_diff_eq!(beyond.expect("a trim")[0], 0.26809, epsilon = 6e-6);
     assert!(
-        matches!(
-            space,
-            Err(TrimError::NoConvergence { .. } | TrimError::Singular { .. })
-        ),
+        error.to_string().contains("no trim inside phi <= 0.2"),
+        "{error}"
+    );
+}
+
+#[test]
+fn impossible_flight_is_a_typed_error() {
+    let model = dcom_model(Canard::None);
+    for (velocity, altitude) in [(0.0, ALTITUDE), (f64::NAN, ALTITUDE)] {
+        let still = trim(&model, &SteadyFlight::new(velocity, altitude));
+        assert!(
+            matches!(still, Err(TrimError::NonFinite { .. })),
+            "{still:?}"
+        );
+    }
+    let space = trim(&model, &SteadyFlight::new(VELOCITY, 1e6));
+    assert!(
+        matches!(space, Err(TrimError::NoConvergence { .. })),
         "{space:?}"
     );
-    let nowhere = trim(
-        &dcom_model(Canard::None),
-        &LevelFlight::new(f64::NAN, ALTITUDE),
-    );
-    assert!(
-        matches!(nowhere, Err(TrimError::NonFinite { .. })),
-        "{nowhere:?}"
-    );
+    let bounded = SteadyFlight::new(VELOCITY, 1e6).within(&dcom::INPUT_BOUNDS);
+    let space = trim(&model, &bounded).expect_err("there is no air");
+    assert!(space.nearest().is_some(), "{space:?}");
 }

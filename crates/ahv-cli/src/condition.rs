@@ -1,6 +1,10 @@
 //! Which vehicle, in which condition: what every command that flies or studies a model lets choose.
 
-use ahv_analysis::trim::{LevelFlight, SOUGHT_INPUTS, Trim, trim};
+use std::borrow::Cow;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use ahv_analysis::trim::{SOUGHT_INPUTS, SteadyFlight};
 use ahv_models::dcom::{Canard, Earth, ModalNoise, Reduction};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
@@ -8,14 +12,10 @@ use clap::{Args, ValueEnum};
 use crate::assignment::Assignments;
 use crate::failure::{Failure, complain};
 use crate::names;
+use crate::place;
+use crate::table::Table;
 use crate::units::Units;
 use crate::vehicle::{FlightModel, ModelName, for_model};
-
-/// Velocity in ft/s of the trim.
-const TRIM_VELOCITY: f64 = 7702.0808;
-
-/// Altitude in ft of the trim.
-const TRIM_ALTITUDE: f64 = 85_000.0;
 
 /// Model, parameters, choices and units. What is not given is as the table has it.
 #[derive(Args)]
@@ -23,6 +23,10 @@ pub(crate) struct Condition {
     /// Model
     #[arg(long)]
     pub(crate) model: ModelName,
+
+    /// Table whose values, choices, sets and validity box take the place of those that the models were generated with
+    #[arg(long, value_name = "FILE")]
+    table: Option<PathBuf>,
 
     /// Set of parameters, e.g. section5.1 or section5.3 [default: the table's own]
     #[arg(long, value_name = "NAME")]
@@ -58,10 +62,27 @@ fn options<const N: usize>(names: [&'static str; N]) -> PossibleValuesParser {
 pub(crate) struct Vehicle<M: FlightModel> {
     pub(crate) model: M,
     pub(crate) units: Units,
+    /// Table that the values come from, if they are not those that the model was generated with.
+    pub(crate) table: Option<PathBuf>,
     /// Set of parameters.
-    pub(crate) set: &'static str,
+    pub(crate) set: Cow<'static, str>,
     /// Choices that the model has, each with what is chosen; a table may hold a mixture that has no name.
     pub(crate) choices: Vec<(&'static str, Option<&'static str>)>,
+    /// The parameters of the model.
+    pub(crate) parameters: M::Parameters,
+    /// Their relative uncertainties.
+    pub(crate) uncertainty: M::Parameters,
+    pub(crate) state_bounds: M::StateBounds,
+    pub(crate) input_bounds: M::InputBounds,
+}
+
+/// What a table says of a model, in the units that the model was generated with.
+pub(crate) struct Values<M: FlightModel> {
+    /// Set of parameters.
+    pub(crate) set: Cow<'static, str>,
+    pub(crate) parameters: M::Parameters,
+    /// Relative uncertainties of the parameters.
+    pub(crate) uncertainty: M::Parameters,
     pub(crate) state_bounds: M::StateBounds,
     pub(crate) input_bounds: M::InputBounds,
 }
@@ -74,7 +95,13 @@ impl Condition {
     /// [`Failure::Request`] for a set, choice or system of units that the model does not have.
     pub(crate) fn vehicle<M: FlightModel>(&self) -> Result<Vehicle<M>, Failure> {
         let units = self.units::<M>()?;
-        let (set, mut parameters) = self.set::<M>()?;
+        let Values {
+            set,
+            mut parameters,
+            uncertainty,
+            state_bounds,
+            input_bounds,
+        } = self.values::<M>()?;
         for (name, option) in self.chosen() {
             let Some(option) = option else { continue };
             let choice = M::choice(name).ok_or_else(|| lacks::<M>(name))?;
@@ -96,13 +123,18 @@ impl Condition {
                  itself, see generated/docs/sdcom_printed.md. The exact form is --model sdcom",
             );
         }
+        let choices = choices.collect();
+        let parameters = units.convert(parameters);
         Ok(Vehicle {
-            model: M::with_parameters(&units.convert(parameters)),
+            model: M::with_parameters(&parameters),
             units,
+            table: self.table.clone(),
             set,
-            choices: choices.collect(),
-            state_bounds: units.convert_bounds(M::STATE_BOUNDS),
-            input_bounds: units.convert_bounds(M::INPUT_BOUNDS),
+            choices,
+            parameters,
+            uncertainty,
+            state_bounds: units.convert_bounds(state_bounds),
+            input_bounds: units.convert_bounds(input_bounds),
         })
     }
 
@@ -119,14 +151,25 @@ impl Condition {
         }
     }
 
-    fn set<M: FlightModel>(&self) -> Result<(&'static str, M::Parameters), Failure> {
+    /// The values of the table, or those that the model was generated with.
+    fn values<M: FlightModel>(&self) -> Result<Values<M>, Failure> {
+        if let Some(path) = &self.table {
+            return Table::read(path)?.values(self.set.as_deref());
+        }
         let name = self.set.as_deref();
-        let mut sets = M::SETS.iter();
-        let found = sets.find(|(own, _)| name.is_none_or(|name| name == *own));
-        found.copied().ok_or_else(|| {
+        let mut sets = M::SETS.iter().zip(M::UNCERTAINTIES);
+        let found = sets.find(|((own, _), _)| name.is_none_or(|name| name == *own));
+        let (&(set, parameters), uncertainty) = found.ok_or_else(|| {
             let known: Vec<_> = M::SETS.iter().map(|&(known, _)| known).collect();
             let problem = names::unknown("set of parameters", name.unwrap_or_default(), &known);
             Failure::Request(format!("--set: {problem}"))
+        })?;
+        Ok(Values {
+            set: set.into(),
+            parameters,
+            uncertainty: uncertainty(),
+            state_bounds: M::STATE_BOUNDS,
+            input_bounds: M::INPUT_BOUNDS,
         })
     }
 
@@ -157,25 +200,31 @@ impl<M: FlightModel> Vehicle<M> {
     ///
     /// # Errors
     ///
-    /// [`Failure::Request`] if `inputs` move a canard that does not move, [`Failure::Numeric`] if there is no trim.
-    pub(crate) fn trim(&self, inputs: &Assignments) -> Result<Trim<M::State, M::Input>, Failure> {
+    /// [`Failure::Request`] if `inputs` move a canard that does not move.
+    pub(crate) fn standard(&self, inputs: &Assignments) -> Result<SteadyFlight<M::Input>, Failure> {
         self.check_canard(inputs)?;
         let [velocity, altitude] =
-            [TRIM_VELOCITY, TRIM_ALTITUDE].map(|value| self.units.feet(value));
-        let mut level = LevelFlight::new(velocity, altitude);
+            [place::VELOCITY, place::ALTITUDE].map(|value| self.units.feet(value));
+        let mut level = SteadyFlight::new(velocity, altitude);
         inputs.apply(&mut level.input, &SOUGHT_INPUTS);
-        trim(&self.model, &level).map_err(|error| {
-            Failure::Numeric(format!(
-                "{}: {error} (level flight at {velocity} {} and {altitude} {})",
-                M::NAME,
-                self.units.label::<M::State>("velocity"),
-                self.units.label::<M::State>("altitude")
-            ))
-        })
+        Ok(level)
+    }
+
+    /// Parameters and choices, for a person.
+    pub(crate) fn described(&self) -> String {
+        let mut text = match &self.table {
+            Some(path) => format!("table {}, set {}", path.display(), self.set),
+            None => format!("set {}", self.set),
+        };
+        for (name, chosen) in &self.choices {
+            // Writing into a String cannot fail.
+            let _ = write!(text, ", {name} {}", chosen.unwrap_or("of the table"));
+        }
+        text
     }
 
     /// A deflection without effect is a misunderstanding. None at all may be said, as reports do.
-    fn check_canard(&self, inputs: &Assignments) -> Result<(), Failure> {
+    pub(crate) fn check_canard(&self, inputs: &Assignments) -> Result<(), Failure> {
         let canard = self.choices.iter().find(|(name, _)| *name == "canard");
         let Some((_, Some(canard))) = canard else {
             return Ok(());

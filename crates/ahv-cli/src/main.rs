@@ -3,11 +3,25 @@
 
 mod assignment;
 mod condition;
+mod covariance;
+mod csv_file;
+mod disperse;
 mod failure;
 #[cfg(feature = "generate")]
 mod generate;
+mod linearize;
+mod lqr;
 mod names;
+mod output;
+mod place;
+mod poles;
+mod progress;
+mod reduce;
+mod reproduce;
 mod simulate;
+mod table;
+mod track;
+mod trim;
 mod units;
 mod vehicle;
 
@@ -27,16 +41,35 @@ struct Cli {
 enum Command {
     #[cfg(feature = "generate")]
     Generate(generate::Arguments),
+    Covariance(covariance::Arguments),
+    Disperse(disperse::Arguments),
+    Linearize(linearize::Arguments),
+    Lqr(lqr::Arguments),
+    Poles(poles::Arguments),
+    Reduce(reduce::Arguments),
+    Reproduce(reproduce::Arguments),
     Simulate(simulate::Arguments),
+    Track(track::Arguments),
+    Trim(trim::Arguments),
 }
 
 fn main() -> ExitCode {
-    match Cli::parse().command {
+    let done = match Cli::parse().command {
         #[cfg(feature = "generate")]
-        Command::Generate(arguments) => generate::run(&arguments),
-        Command::Simulate(arguments) => match simulate::run(&arguments) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(failure) => failure.report(),
-        },
+        Command::Generate(arguments) => return generate::run(&arguments),
+        Command::Covariance(arguments) => covariance::run(&arguments),
+        Command::Disperse(arguments) => disperse::run(&arguments),
+        Command::Linearize(arguments) => linearize::run(&arguments),
+        Command::Lqr(arguments) => lqr::run(&arguments),
+        Command::Poles(arguments) => poles::run(&arguments),
+        Command::Reduce(arguments) => reduce::run(&arguments),
+        Command::Reproduce(arguments) => reproduce::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Track(arguments) => track::run(&arguments),
+        Command::Trim(arguments) => trim::run(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
     }
 }

@@ -1,16 +1,13 @@
 //! `ahv simulate`: from a trim, with held inputs, into a CSV file.
 
 mod flight;
-mod grid;
-mod progress;
+pub(crate) mod grid;
 mod report;
-mod table;
 
 use std::path::PathBuf;
 
-use ahv_analysis::noise::WienerSource;
-use ahv_core::{StochasticModel, Vector};
-use ahv_integrate::{EulerMaruyama, Rk4};
+use ahv_core::StochasticModel;
+use ahv_integrate::{ItoEulerMaruyama, Rk4, WienerSource};
 use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust, sdcom_printed};
 use clap::Args;
 
@@ -18,7 +15,7 @@ use crate::condition::{Condition, Vehicle};
 use crate::failure::Failure;
 use crate::vehicle::{FlightModel, ModelName};
 use flight::Flight;
-use grid::Grid;
+use grid::grid;
 
 /// Run of the noise: a single simulation is the first member of its ensemble.
 const MEMBER: u64 = 0;
@@ -79,11 +76,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.condition.model {
         ModelName::Com => calm::<com::Model<f64>>(arguments),
         ModelName::ComRigid => calm::<com_rigid::Model<f64>>(arguments),
-        ModelName::Dcom if arguments.stochastic => noisy::<dcom::Model<f64>>(arguments),
+        ModelName::Dcom if arguments.stochastic => {
+            noisy::<dcom::Model<f64>, { dcom::Noise::<()>::LEN }>(arguments)
+        }
         ModelName::Dcom => calm::<dcom::Model<f64>>(arguments),
-        ModelName::Sdcom => noisy::<sdcom::Model<f64>>(arguments),
-        ModelName::SdcomPrinted => noisy::<sdcom_printed::Model<f64>>(arguments),
-        ModelName::SdcomGust => noisy::<sdcom_gust::Model<f64>>(arguments),
+        ModelName::Sdcom => noisy::<sdcom::Model<f64>, { sdcom::Noise::<()>::LEN }>(arguments),
+        ModelName::SdcomPrinted => {
+            noisy::<sdcom_printed::Model<f64>, { sdcom_printed::Noise::<()>::LEN }>(arguments)
+        }
+        ModelName::SdcomGust => {
+            noisy::<sdcom_gust::Model<f64>, { sdcom_gust::Noise::<()>::LEN }>(arguments)
+        }
     }
 }
 
@@ -95,28 +98,30 @@ fn calm<M: FlightModel>(arguments: &Arguments) -> Result<(), Failure> {
             M::NAME
         )));
     }
-    let grid = Grid::new(arguments.t_end, arguments.dt)?;
+    let grid = grid(arguments.t_end, arguments.dt)?;
     let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
     let flight = Flight {
         vehicle: &vehicle,
         seed: None,
     };
-    flight.simulate(arguments, &grid, |x, u, step| {
-        Rk4::new(grid.step_length(step)).step(&vehicle.model, x, u)
+    flight.simulate(arguments, &grid, |x, u, _, dt| {
+        Rk4::new(dt).step(&vehicle.model, x, u)
     })
 }
 
-/// With noise, by Euler-Maruyama.
-fn noisy<M: FlightModel + StochasticModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let grid = Grid::new(arguments.t_end, arguments.dt)?;
+/// With noise of `N` channels, by Euler-Maruyama.
+fn noisy<M: FlightModel + StochasticModel, const N: usize>(
+    arguments: &Arguments,
+) -> Result<(), Failure> {
+    let grid = grid(arguments.t_end, arguments.dt)?;
     let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
-    let mut wiener = WienerSource::new(arguments.seed, MEMBER, M::Noise::LEN);
+    let mut wiener = WienerSource::<N>::new(arguments.seed, MEMBER);
     let flight = Flight {
         vehicle: &vehicle,
         seed: Some(arguments.seed),
     };
-    flight.simulate(arguments, &grid, |x, u, step| {
-        let dt = grid.step_length(step);
-        EulerMaruyama::new(dt).step(&vehicle.model, x, u, &wiener.increments(step, dt))
+    flight.simulate(arguments, &grid, |x, u, step, dt| {
+        let dw = wiener.increments(step.into(), dt);
+        ItoEulerMaruyama::new(dt).step(&vehicle.model, x, u, &dw)
     })
 }

@@ -1,6 +1,7 @@
 //! The generated models behind one trait, so that a command is written once for all of them.
 
-use ahv_core::{Bounds, DifferentiableModel, Vector};
+use ahv_analysis::parametric::Parametric;
+use ahv_core::{Bounds, Vector};
 use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust, sdcom_printed};
 use clap::ValueEnum;
 
@@ -53,9 +54,9 @@ pub(crate) struct Choice<P> {
 }
 
 /// A generated model that can fly, with what its table says of it.
-pub(crate) trait FlightModel: DifferentiableModel<Scalar = f64> + PartialEq + Sized {
-    /// Parameters of its table.
-    type Parameters: Vector<f64> + PartialEq + 'static;
+pub(crate) trait FlightModel:
+    Parametric<Parameters: PartialEq + 'static> + PartialEq
+{
     /// Intervals of the states.
     type StateBounds: Vector<Bounds>;
     /// Intervals of the inputs.
@@ -67,15 +68,14 @@ pub(crate) trait FlightModel: DifferentiableModel<Scalar = f64> + PartialEq + Si
     const UNIT_SYSTEM: &'static str;
     /// Sets of parameters by name, the table's own first.
     const SETS: &'static [(&'static str, Self::Parameters)];
+    /// Relative uncertainties of the parameters, in the order of [`Self::SETS`].
+    const UNCERTAINTIES: &'static [fn() -> Self::Parameters];
     /// What its table lets choose. A model may ignore some of it.
     const CHOICES: &'static [Choice<Self::Parameters>];
     /// Where its curve fits are meant to be used.
     const STATE_BOUNDS: Self::StateBounds;
     /// Where its curve fits are meant to be used.
     const INPUT_BOUNDS: Self::InputBounds;
-
-    /// The model for these parameters.
-    fn with_parameters(parameters: &Self::Parameters) -> Self;
 
     /// Whether `choice` changes anything in this model: DCOM has no coloured noise to reduce a mode to.
     fn heeds(choice: &Choice<Self::Parameters>) -> bool {
@@ -103,13 +103,16 @@ macro_rules! flight_models {
     };
     (@one $module:ident { $($name:literal: $with:ident($choice:ident)),+ $(,)? }) => {
         impl FlightModel for $module::Model<f64> {
-            type Parameters = $module::Parameters<f64>;
             type StateBounds = $module::State<Bounds>;
             type InputBounds = $module::Input<Bounds>;
 
             const NAME: &'static str = stringify!($module);
             const UNIT_SYSTEM: &'static str = $module::UNIT_SYSTEM;
             const SETS: &'static [(&'static str, Self::Parameters)] = &$module::SETS;
+            const UNCERTAINTIES: &'static [fn() -> Self::Parameters] = &[
+                || $module::PROVENANCE.map_into(|it| it.uncertainty),
+                || $module::SECTION5_3_PROVENANCE.map_into(|it| it.uncertainty),
+            ];
             const CHOICES: &'static [Choice<Self::Parameters>] = &[$(Choice {
                 name: $name,
                 options: || $module::$choice::ALL.map($module::$choice::name).to_vec(),
@@ -117,10 +120,6 @@ macro_rules! flight_models {
             }),+];
             const STATE_BOUNDS: Self::StateBounds = $module::STATE_BOUNDS;
             const INPUT_BOUNDS: Self::InputBounds = $module::INPUT_BOUNDS;
-
-            fn with_parameters(parameters: &Self::Parameters) -> Self {
-                Self::new(parameters)
-            }
         }
     };
 }

@@ -1,16 +1,17 @@
 //! One simulation, for any model.
 
 use ahv_core::{Vector, first_outside};
-use ahv_integrate::StepError;
+use ahv_integrate::{self as integrate, StepError, TimeGrid};
 
 use super::Arguments;
-use super::grid::Grid;
-use super::progress::Progress;
-use super::report::{Departure, Report, describe};
-use super::table::Table;
+use super::report::{Departure, Report};
+
 use crate::assignment::Assignments;
 use crate::condition::Vehicle;
+use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::output::describe;
+use crate::progress::Progress;
 use crate::units::Units;
 use crate::vehicle::FlightModel;
 
@@ -22,7 +23,7 @@ pub(super) struct Flight<'a, M: FlightModel> {
 }
 
 impl<M: FlightModel> Flight<'_, M> {
-    /// Simulates over `grid`; `advance` takes the step whose number it is given.
+    /// Simulates over `grid`; `advance` takes the step of the number and the length in s that it is given.
     ///
     /// # Errors
     ///
@@ -30,19 +31,19 @@ impl<M: FlightModel> Flight<'_, M> {
     pub(super) fn simulate(
         &self,
         arguments: &Arguments,
-        grid: &Grid,
-        mut advance: impl FnMut(&mut M::State, &M::Input, u64) -> Result<(), StepError<f64>>,
+        grid: &TimeGrid,
+        mut advance: impl FnMut(&mut M::State, &M::Input, u32, f64) -> Result<(), StepError<f64>>,
     ) -> Result<(), Failure> {
         let vehicle = self.vehicle;
         let (start, u) = self.start(arguments)?;
-        let mut x = start;
-        let mut table = Table::create(&arguments.out)?;
-        table.header(&columns::<M::State>(vehicle.units))?;
-        let mut progress = Progress::new(grid.steps);
+        let mut run = integrate::Progress::new(0.0, start);
+        let mut table = CsvFile::create(&arguments.out)?;
+        table.row(&columns::<M::State>(vehicle.units))?;
+        let mut progress = Progress::new(grid.steps().into());
         let mut departure = None;
         let mut row = Vec::with_capacity(M::State::LEN + 1);
-        for step in 0..=grid.steps {
-            let time = grid.time(step);
+        loop {
+            let (time, x) = (run.time, run.state);
             row.clear();
             row.push(time);
             row.extend((0..M::State::LEN).filter_map(|index| x.get(index)));
@@ -51,23 +52,24 @@ impl<M: FlightModel> Flight<'_, M> {
                 departure = first_outside(&x, &vehicle.state_bounds)
                     .map(|outside| Departure { time, outside });
             }
-            if step < grid.steps {
-                advance(&mut x, &u, step)
-                    .map_err(|error| self.broken(&error, grid, step, &x, &arguments.out))?;
+            progress.tell(run.accepted.into());
+            let stepped = grid.step(&mut run, |x, step, dt| advance(x, &u, step, dt));
+            if !stepped.map_err(|failure| self.broken(&failure, &run, &arguments.out))? {
+                break;
             }
-            progress.tell(step);
         }
         drop(progress);
         table.finish()?;
         let report = Report {
             model: M::NAME,
-            set: vehicle.set,
+            set: &vehicle.set,
             choices: &vehicle.choices,
+            condition: vehicle.described(),
             units: vehicle.units,
             grid,
             seed: self.seed,
             initial_state: start,
-            final_state: x,
+            final_state: run.state,
             input: u,
             out: &arguments.out,
             departure,
@@ -81,7 +83,7 @@ impl<M: FlightModel> Flight<'_, M> {
         let units = self.vehicle.units;
         let inputs = Assignments::parse::<M::Input>("--input", &arguments.input, units)?;
         let initial = Assignments::parse::<M::State>("--initial", &arguments.initial, units)?;
-        let trim = self.vehicle.trim(&inputs)?;
+        let trim = self.vehicle.trim(&self.vehicle.standard(&inputs)?)?;
         let (mut x, mut u) = (trim.state, trim.input);
         inputs.apply(&mut u, &[]);
         initial.apply(&mut x, &[]);
@@ -90,19 +92,16 @@ impl<M: FlightModel> Flight<'_, M> {
 
     fn broken(
         &self,
-        error: &StepError<f64>,
-        grid: &Grid,
-        step: u64,
-        last_good: &M::State,
+        failure: &integrate::Failure,
+        last_good: &integrate::Progress<M::State>,
         out: &std::path::Path,
     ) -> Failure {
         Failure::Numeric(format!(
-            "{}: {error} at {} s; {} was not written\nthe last good state, at {} s:\n{}",
+            "{}: {failure}; {} was not written\nthe last good state, at {} s:\n{}",
             M::NAME,
-            grid.time(step + 1),
             out.display(),
-            grid.time(step),
-            describe(last_good, self.vehicle.units)
+            last_good.time,
+            describe(&last_good.state, self.vehicle.units)
         ))
     }
 }

@@ -12,28 +12,32 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const STRIDE: u64 = 4096;
 
 /// A bar on stderr, if that is a terminal and the work is long.
-pub(super) struct Progress {
+pub(crate) struct Progress {
     started: Instant,
     total: u64,
     enabled: bool,
+    /// Steps at which the clock is looked at next.
+    next: u64,
     bar: Option<ProgressBar>,
 }
 
 impl Progress {
-    pub(super) fn new(total: u64) -> Self {
+    pub(crate) fn new(total: u64) -> Self {
         Self {
             started: Instant::now(),
             total,
             enabled: io::stderr().is_terminal(),
+            next: STRIDE,
             bar: None,
         }
     }
 
     /// Tells of `done` steps.
-    pub(super) fn tell(&mut self, done: u64) {
-        if !self.enabled || !done.is_multiple_of(STRIDE) {
+    pub(crate) fn tell(&mut self, done: u64) {
+        if !self.enabled || done < self.next {
             return;
         }
+        self.next = done + STRIDE;
         if self.bar.is_none() && self.started.elapsed() > PATIENCE {
             self.bar = Some(bar(self.total));
         }

@@ -1,0 +1,124 @@
+//! Trims and roots of vehicles whose parameters are drawn within their uncertainty.
+//!
+//! [`Draws`] says how; [`disperse`] draws, trims and linearises each member and pairs its poles and zeros with the nominal
+//! ones; [`slopes`] tells the same spread to first order, and which parameters it comes from.
+
+mod draws;
+mod matching;
+mod quantity;
+mod slopes;
+mod solution;
+mod spread;
+
+use ahv_core::Vector;
+use rayon::prelude::*;
+
+use crate::parametric::Parametric;
+use crate::trim::SteadyFlight;
+
+pub use draws::{Distribution, DrawError, Draws, Group};
+pub use quantity::{Kind, Part, Quantity};
+pub use slopes::{Contribution, Slopes, slopes};
+pub use solution::{Solution, SolutionError, solve};
+pub use spread::{Spread, share};
+
+use quantity::Ordered;
+
+/// The vehicle about which is drawn, with the numbers that are followed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nominal<X, U> {
+    /// Where it flies.
+    pub flight: SteadyFlight<U>,
+    /// The vehicle in trim.
+    pub solution: Solution<X, U>,
+    /// What is followed.
+    pub quantities: Vec<Quantity>,
+}
+
+impl<X: Vector<f64>, U: Vector<f64>> Nominal<X, U> {
+    /// The vehicle with these `parameters` in `flight`.
+    ///
+    /// # Errors
+    ///
+    /// [`SolutionError`].
+    pub fn new<M>(
+        parameters: &M::Parameters,
+        flight: SteadyFlight<U>,
+    ) -> Result<Self, SolutionError>
+    where
+        M: Parametric<State = X, Input = U>,
+    {
+        let solution = solve::<M>(parameters, &flight)?;
+        let quantities = quantity::quantities(&solution);
+        Ok(Self {
+            flight,
+            solution,
+            quantities,
+        })
+    }
+
+    /// The quantities of the nominal vehicle.
+    pub fn values(&self) -> Vec<f64> {
+        let values = self.values_of(&self.solution).into_iter();
+        values.map(Option::unwrap_or_default).collect()
+    }
+
+    /// The quantities of another vehicle. Poles correspond by mode, zeros such that the sum of the distances to the
+    /// nominal ones is least; `None` where it has more or fewer of them.
+    pub fn values_of(&self, solution: &Solution<X, U>) -> Vec<Option<f64>> {
+        let ordered = Ordered::new(&self.solution, solution);
+        let value = |quantity: &Quantity| quantity.value(&ordered);
+        self.quantities.iter().map(value).collect()
+    }
+}
+
+/// A vehicle that was drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Member<X, U> {
+    /// Its number, by which its parameters can be drawn again.
+    pub number: u64,
+    /// The vehicle in trim, or why there is none.
+    pub solution: Result<Solution<X, U>, SolutionError>,
+    /// The values of the quantities; `None` where it has no such root, or no trim.
+    pub values: Vec<Option<f64>>,
+}
+
+/// Vehicles 0 to `members` − 1 of `draws`, each in the flight of `nominal`.
+///
+/// A member does not depend on the others, nor on the number of threads.
+pub fn disperse<M>(
+    draws: &Draws<M::Parameters>,
+    nominal: &Nominal<M::State, M::Input>,
+    members: u64,
+) -> Vec<Member<M::State, M::Input>>
+where
+    M: Parametric,
+    M::Parameters: Send + Sync,
+    M::State: Send + Sync,
+    M::Input: Send + Sync,
+{
+    let member = |number| {
+        let solution = solve::<M>(&draws.member(number), &nominal.flight);
+        let values = match &solution {
+            Ok(solution) => nominal.values_of(solution),
+            Err(_) => vec![None; nominal.quantities.len()],
+        };
+        Member {
+            number,
+            solution,
+            values,
+        }
+    };
+    (0..members).into_par_iter().map(member).collect()
+}
+
+/// The spread of each quantity over `members`; `None` where fewer than two have it.
+pub fn spreads<X, U>(members: &[Member<X, U>], quantities: usize) -> Vec<Option<Spread>> {
+    let of = |index: usize| {
+        let values = members
+            .iter()
+            .filter_map(|member| *member.values.get(index)?);
+        Spread::of(&values.collect::<Vec<_>>())
+    };
+    (0..quantities).map(of).collect()
+}

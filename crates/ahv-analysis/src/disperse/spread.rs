@@ -1,0 +1,76 @@
+//! How a number spreads over members.
+
+use crate::statistics::{Estimate, Z_95, excess_kurtosis, mean_and_std, quantile};
+
+/// The distribution of a number over members.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Spread {
+    /// Members that have the number.
+    pub count: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation (n − 1).
+    pub std: f64,
+    /// Standard error of the standard deviation, by the fourth moment of the sample: for any distribution.
+    pub std_error: f64,
+    /// Least value.
+    pub min: f64,
+    /// 5 % point.
+    pub p05: f64,
+    /// Median.
+    pub p50: f64,
+    /// 95 % point.
+    pub p95: f64,
+    /// Greatest value.
+    pub max: f64,
+}
+
+impl Spread {
+    /// The distribution of `sample`; `None` for fewer than two numbers.
+    pub fn of(sample: &[f64]) -> Option<Self> {
+        if sample.len() < 2 {
+            return None;
+        }
+        let mut sorted = sample.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let (mean, std) = mean_and_std(sample);
+        let count = sample.len();
+        // Equal numbers have no kurtosis.
+        let kurtosis = if std > 0.0 {
+            excess_kurtosis(sample)
+        } else {
+            0.0
+        };
+        Some(Self {
+            count,
+            mean,
+            std,
+            std_error: 0.5 * std * ((kurtosis + 2.0).max(0.0) / count as f64).sqrt(),
+            min: *sorted.first()?,
+            p05: quantile(&sorted, 0.05)?,
+            p50: quantile(&sorted, 0.5)?,
+            p95: quantile(&sorted, 0.95)?,
+            max: *sorted.last()?,
+        })
+    }
+}
+
+/// The share `hits` of `count` trials with its interval of 95 % (Wilson 1927); all of nothing is unknown: 0 to 1.
+pub fn share(hits: usize, count: usize) -> Estimate {
+    if count == 0 {
+        return Estimate {
+            value: 0.0,
+            low: 0.0,
+            high: 1.0,
+        };
+    }
+    let (n, value) = (count as f64, hits as f64 / count as f64);
+    let square = Z_95 * Z_95 / n;
+    let centre = (value + 0.5 * square) / (1.0 + square);
+    let half = Z_95 * (value * (1.0 - value) / n + 0.25 * square / n).sqrt() / (1.0 + square);
+    Estimate {
+        value,
+        low: (centre - half).max(0.0),
+        high: (centre + half).min(1.0),
+    }
+}

@@ -1,0 +1,108 @@
+//! Poles, their modes, and zeros of linear systems.
+
+mod balance;
+mod modes;
+mod zeros;
+
+use faer::Mat;
+use nalgebra::{Complex, DMatrix};
+
+use crate::linearize::LinearSystem;
+use balance::{balance, similar};
+pub use modes::Mode;
+pub use zeros::{Decoupling, Zero, Zeros, zeros};
+
+/// A pole with the mode that it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pole {
+    /// The eigenvalue of A, 1/s.
+    pub value: Complex<f64>,
+    /// The mode; `None` where the states of the system tell none.
+    pub mode: Option<Mode>,
+    /// Share of the mode's states in the participation factors of this pole, from 0 to 1.
+    pub participation: f64,
+}
+
+/// Why there are no poles or zeros.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PolesError {
+    /// The QR or QZ iteration did not converge, as with entries that are not finite.
+    #[error("the eigenvalues did not converge")]
+    NoConvergence,
+    /// Zeros as they are computed here need as many outputs as inputs.
+    #[error("zeros need as many outputs as inputs, not {outputs} and {inputs}")]
+    NotSquare {
+        /// Number of inputs.
+        inputs: usize,
+        /// Number of outputs.
+        outputs: usize,
+    },
+}
+
+/// Damping ratio −Re λ/|λ| of a pole or zero λ: 1 for a real stable one; 0 for λ = 0.
+pub fn damping(root: Complex<f64>) -> f64 {
+    let frequency = frequency(root);
+    if frequency > 0.0 {
+        -root.re / frequency
+    } else {
+        0.0
+    }
+}
+
+/// Natural frequency |λ| of a pole or zero λ, rad/s.
+pub fn frequency(root: Complex<f64>) -> f64 {
+    root.re.hypot(root.im)
+}
+
+/// Poles of `system` by rising frequency, each with its mode. A pole that rounding cannot tell from 0 is 0.
+///
+/// Modes are told by participation factors |uᵢ vᵢ| with right and left eigenvectors u, v (Perez-Arriaga, Verghese and
+/// Schweppe 1982), which do not depend on units.
+///
+/// # Errors
+///
+/// [`PolesError::NoConvergence`]
+pub fn poles(system: &LinearSystem) -> Result<Vec<Pole>, PolesError> {
+    let balanced = similar(&system.a, &balance(&system.a));
+    let n = balanced.nrows();
+    let eigen = Mat::from_fn(n, n, |row, column| balanced[(row, column)])
+        .eigen()
+        .map_err(|_| PolesError::NoConvergence)?;
+    let (values, vectors) = (eigen.S().column_vector(), eigen.U());
+    let mut order: Vec<usize> = (0..n).collect();
+    // The roots of a pair are equally large to the bit, the upper one stands first.
+    order.sort_by(|&i, &j| {
+        let frequencies = frequency(values[i]).total_cmp(&frequency(values[j]));
+        frequencies.then(values[j].im.total_cmp(&values[i].im))
+    });
+    let right = DMatrix::from_fn(n, n, |row, column| vectors[(row, order[column])]);
+    let values = order.iter().map(|&i| told_from_zero(values[i], &balanced));
+    let values: Vec<Complex<f64>> = values.collect();
+    let participation = participation(&right);
+    Ok(modes::named(
+        &system.states,
+        &values,
+        participation.as_ref(),
+    ))
+}
+
+/// `root` of a balanced matrix or pencil; 0 where rounding cannot tell it from 0.
+fn told_from_zero(root: Complex<f64>, balanced: &DMatrix<f64>) -> Complex<f64> {
+    let rounding = f64::EPSILON * balanced.norm() * balanced.nrows() as f64;
+    if frequency(root) > rounding {
+        root
+    } else {
+        Complex::new(0.0, 0.0)
+    }
+}
+
+/// Participation of states (rows) in poles (columns); columns sum to 1. `None` without a full set of eigenvectors.
+fn participation(right: &DMatrix<Complex<f64>>) -> Option<DMatrix<f64>> {
+    let left = right.clone().try_inverse()?;
+    let mut factors = right.zip_map(&left.transpose(), |u, v| frequency(u * v));
+    for mut column in factors.column_iter_mut() {
+        let sum = column.sum();
+        column /= sum;
+    }
+    factors.iter().all(|it| it.is_finite()).then_some(factors)
+}

@@ -1,0 +1,399 @@
+//! A flexible mode and its reduction to coloured noise, in closed form.
+//!
+//! The mode η̈ + 2ζω η̇ + ω² η = σ ξ (17) and the Ornstein–Uhlenbeck process dχ = −a χ dt + b dw (18), both from rest, ξ
+//! being white noise of intensity 1. The generated package `flexible_mode` gives the moments; here are their extremes.
+
+use ahv_core::Vector;
+use ahv_integrate::{LinearTransition, StepError};
+use ahv_models::flexible_mode::{self, Input, NOMINAL, Parameters, Prepared, SETS, State, prepare};
+
+pub use ahv_models::flexible_mode::Reduction;
+
+/// Distance of ζ from 1 below which the mode is critically damped: an error of this order in place of cancellation.
+const CRITICAL: f64 = 1e-12;
+/// Samples among which the extreme of the error is sought: as many at steps short against every period and decay, and
+/// as many in geometric progression after them.
+const SAMPLES: u32 = 4096;
+/// The short steps, in units of the shortest time of mode and coloured noise.
+const SHORT: f64 = 0.02;
+/// End of the search, in units of the longest time of mode and coloured noise.
+const LONG: f64 = 40.0;
+/// Halvings of the interval that holds the extreme (by golden section).
+const SECTIONS: usize = 60;
+/// Parts of a sampling period that are looked at between samples.
+const BETWEEN: u32 = 16;
+/// Samples after which held noise is no longer followed.
+const MOST_SAMPLES: f64 = 1e5;
+
+/// A flexible mode with the intensity of its noise.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Mode {
+    /// Natural frequency ω, in rad/s.
+    pub omega: f64,
+    /// Damping ratio ζ.
+    pub zeta: f64,
+    /// Intensity σ of the white noise, in the unit of η per s^³⁄².
+    pub sigma: f64,
+}
+
+/// Why a mode has no reduction.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ReduceError {
+    /// A parameter that must be positive and finite is not.
+    #[error("{name} must be positive and finite, not {value}")]
+    NotPositive {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The parameters are so large or small that a moment is not representable.
+    #[error("the {name} of the mode with these parameters is {value}")]
+    OutOfRange {
+        /// Name of the moment.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A step of noise or of a search that makes no sense.
+    #[error(transparent)]
+    Step(#[from] StepError<f64>),
+}
+
+/// How the mode comes to rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Damping {
+    /// ζ < 1.
+    Underdamped,
+    /// ζ = 1.
+    Critical,
+    /// ζ > 1.
+    Overdamped,
+}
+
+/// The greatest distance between the standard deviations of η and χ.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Peak {
+    /// max |D_η(t) − D_χ(t)|, in the unit of η.
+    pub value: f64,
+    /// When, in s; `None` if it is approached as time goes on.
+    pub time: Option<f64>,
+}
+
+/// The same where white noise is sampled and held, as computers often have it.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct HeldPeak {
+    /// Over the times of the samples, in the unit of η.
+    pub at_samples: f64,
+    /// Over all times.
+    pub between_samples: f64,
+}
+
+/// A mode with its reduction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReducedMode {
+    /// The mode.
+    pub mode: Mode,
+    /// How a and b are chosen.
+    pub method: Reduction,
+    /// Whether the mode oscillates.
+    pub damping: Damping,
+    prepared: Prepared<f64>,
+}
+
+/// The modes of (36) with σ = 100, as section 5.1 has them.
+pub fn section_5_1() -> [Mode; 3] {
+    SETS.map(|(_, set)| Mode {
+        omega: set.omega,
+        zeta: set.zeta,
+        sigma: set.sigma,
+    })
+}
+
+/// The arguments that every function of the package takes and those used here ignore.
+fn at_rest() -> (State<f64>, Input<f64>) {
+    (State::splat(0.0), Input::splat(0.0))
+}
+
+/// Calls functions of the package with a time, by damping.
+macro_rules! by_damping {
+    ($self:ident, $time:ident: $under:ident, $critical:ident, $over:ident) => {{
+        let ((x, u), p) = (at_rest(), &$self.prepared);
+        match $self.damping {
+            Damping::Underdamped => flexible_mode::$under(&x, &u, p, $time),
+            Damping::Critical => flexible_mode::$critical(&x, &u, p, $time),
+            Damping::Overdamped => flexible_mode::$over(&x, &u, p, $time),
+        }
+    }};
+}
+
+/// Calls a function of the package.
+macro_rules! closed_form {
+    ($self:ident, $function:ident $(, $argument:expr)?) => {{
+        let (x, u) = at_rest();
+        flexible_mode::$function(&x, &u, &$self.prepared $(, $argument)?)
+    }};
+}
+
+impl ReducedMode {
+    /// The reduction of `mode` by `method`.
+    ///
+    /// # Errors
+    ///
+    /// [`ReduceError`] unless ω, ζ and σ are positive and their moments finite and positive.
+    pub fn new(mode: Mode, method: Reduction) -> Result<Self, ReduceError> {
+        for (name, value) in [
+            ("omega", mode.omega),
+            ("zeta", mode.zeta),
+            ("sigma", mode.sigma),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ReduceError::NotPositive { name, value });
+            }
+        }
+        let parameters = Parameters {
+            omega: mode.omega,
+            zeta: mode.zeta,
+            sigma: mode.sigma,
+            ..NOMINAL
+        };
+        let damping = match mode.zeta - 1.0 {
+            excess if excess.abs() <= CRITICAL => Damping::Critical,
+            excess if excess < 0.0 => Damping::Underdamped,
+            _ => Damping::Overdamped,
+        };
+        let reduced = Self {
+            mode,
+            method,
+            damping,
+            prepared: prepare(&parameters.with_reduction(method)),
+        };
+        for (name, value) in [
+            ("stationary variance", reduced.eta_variance()),
+            ("variance of the coloured noise", reduced.chi_variance()),
+            ("decay rate", reduced.decay()),
+            ("spectrum at zero frequency", reduced.eta_spectrum(0.0)),
+            ("slowest decay rate", reduced.rates().0),
+        ] {
+            if !(value.is_normal() && value > 0.0) {
+                return Err(ReduceError::OutOfRange { name, value });
+            }
+        }
+        Ok(reduced)
+    }
+
+    /// Decay rate a of the coloured noise, in 1/s.
+    pub fn decay(&self) -> f64 {
+        self.prepared.chi_decay
+    }
+
+    /// Intensity b of its noise, in the unit of η per s^½.
+    pub fn intensity(&self) -> f64 {
+        self.prepared.chi_diffusion
+    }
+
+    /// Stationary variance of η, σ²/(4ζω³).
+    pub fn eta_variance(&self) -> f64 {
+        closed_form!(self, eta_variance)
+    }
+
+    /// Stationary variance of χ, b²/(2a).
+    pub fn chi_variance(&self) -> f64 {
+        closed_form!(self, chi_variance)
+    }
+
+    /// Variance of η at `time`, in s, from rest: σ² ∫ h(s)² ds.
+    pub fn eta_variance_at(&self, time: f64) -> f64 {
+        // Rounding may leave less than nothing soon after the start.
+        by_damping!(self, time: eta_variance_at_underdamped, eta_variance_at_critical, eta_variance_at_overdamped)
+            .max(0.0)
+    }
+
+    /// Variance of χ at `time`, in s, from rest.
+    pub fn chi_variance_at(&self, time: f64) -> f64 {
+        closed_form!(self, chi_variance_at, time)
+    }
+
+    /// D_η(t) − D_χ(t), standard deviations from rest, at `time`, in s.
+    pub fn std_error_at(&self, time: f64) -> f64 {
+        self.eta_variance_at(time).sqrt() - self.chi_variance_at(time).sqrt()
+    }
+
+    /// Stationary autocorrelation of η at `lag`, in s.
+    pub fn eta_autocorrelation(&self, lag: f64) -> f64 {
+        by_damping!(self, lag: eta_autocorrelation_underdamped, eta_autocorrelation_critical, eta_autocorrelation_overdamped)
+    }
+
+    /// Stationary autocorrelation of χ at `lag`, in s.
+    pub fn chi_autocorrelation(&self, lag: f64) -> f64 {
+        closed_form!(self, chi_autocorrelation, lag)
+    }
+
+    /// Two-sided spectral density of η at `frequency`, in rad/s.
+    pub fn eta_spectrum(&self, frequency: f64) -> f64 {
+        closed_form!(self, eta_spectrum, frequency)
+    }
+
+    /// Two-sided spectral density of χ at `frequency`, in rad/s.
+    pub fn chi_spectrum(&self, frequency: f64) -> f64 {
+        closed_form!(self, chi_spectrum, frequency)
+    }
+
+    /// What χ has of the stationary variance of η.
+    pub fn variance_ratio(&self) -> f64 {
+        self.chi_variance() / self.eta_variance()
+    }
+
+    /// What χ has of the spectrum of η at zero frequency.
+    pub fn spectrum_ratio(&self) -> f64 {
+        self.chi_spectrum(0.0) / self.eta_spectrum(0.0)
+    }
+
+    /// Slowest and fastest rate of mode and coloured noise, in 1/s.
+    fn rates(&self) -> (f64, f64) {
+        let Mode { omega, zeta, .. } = self.mode;
+        let (slow, fast) = match self.damping {
+            Damping::Overdamped => (self.prepared.slow_pole, self.prepared.fast_pole),
+            _ => (zeta * omega, omega),
+        };
+        (slow.min(self.decay()), fast.max(self.decay()))
+    }
+
+    /// Time after which both processes are stationary to double precision, in s.
+    pub fn settling_time(&self) -> f64 {
+        LONG / self.rates().0
+    }
+
+    /// max |D_η(t) − D_χ(t)| over all times, for white noise.
+    pub fn largest_std_error(&self) -> Peak {
+        let (slow, fast) = self.rates();
+        let (end, step) = (LONG / slow, SHORT / fast);
+        let error = |time: f64| self.std_error_at(time).abs();
+        let short = f64::from(SAMPLES) * step;
+        let ratio = (end / short).max(1.0).powf(1.0 / f64::from(SAMPLES));
+        let late = (1..=SAMPLES).map(|index| short * ratio.powf(f64::from(index)));
+        let early = (0..=SAMPLES).map(|index| step * f64::from(index));
+        let times: Vec<f64> = early.chain(late).collect();
+        let best = (0..times.len())
+            .max_by(|&a, &b| error(times[a]).total_cmp(&error(times[b])))
+            .unwrap_or(0);
+        let around = |index: usize| times.get(index).copied().unwrap_or(times[best]);
+        let time = summit(error, around(best.saturating_sub(1)), around(best + 1));
+        let (value, limit) = (
+            error(time),
+            (self.eta_variance().sqrt() - self.chi_variance().sqrt()).abs(),
+        );
+        if value > limit * (1.0 + 1e-9) {
+            Peak {
+                value,
+                time: Some(time),
+            }
+        } else {
+            Peak {
+                value: limit,
+                time: None,
+            }
+        }
+    }
+
+    /// max |D_η(t) − D_χ(t)| where a number of N(0, σ²) is drawn every `period`, in s, and held.
+    ///
+    /// The variances follow exactly from the transition matrices; χ is driven by such numbers too, times b/σ.
+    ///
+    /// # Errors
+    ///
+    /// [`ReduceError::Step`] unless `period` is positive and finite.
+    pub fn largest_std_error_held(&self, period: f64) -> Result<HeldPeak, ReduceError> {
+        let samples = (self.settling_time() / period).ceil().min(MOST_SAMPLES) as u64;
+        let mut peak = HeldPeak {
+            at_samples: 0.0,
+            between_samples: 0.0,
+        };
+        self.held(period, samples, BETWEEN, |part, error| {
+            peak.between_samples = peak.between_samples.max(error.abs());
+            if part == BETWEEN {
+                peak.at_samples = peak.at_samples.max(error.abs());
+            }
+        })?;
+        Ok(peak)
+    }
+
+    /// D_η − D_χ at the samples of such noise: at 0 and after each of `samples` periods.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::largest_std_error_held`].
+    pub fn std_errors_held(&self, period: f64, samples: u64) -> Result<Vec<f64>, ReduceError> {
+        let mut errors = vec![0.0];
+        self.held(period, samples, 1, |_, error| errors.push(error))?;
+        Ok(errors)
+    }
+
+    /// Tells the error at each of `parts` parts of each period, counted from 1.
+    fn held(
+        &self,
+        period: f64,
+        samples: u64,
+        parts: u32,
+        mut tell: impl FnMut(u32, f64),
+    ) -> Result<(), ReduceError> {
+        let Mode { omega, zeta, sigma } = self.mode;
+        let steps = (1..=parts).map(|part| {
+            let time = period * f64::from(part) / f64::from(parts);
+            let mode = LinearTransition::mode(omega, zeta, 0.0, time)?;
+            let noise = LinearTransition::ornstein_uhlenbeck(self.decay(), 0.0, time)?;
+            Ok((mode, noise))
+        });
+        let steps: Vec<_> = steps.collect::<Result<_, StepError<f64>>>()?;
+        let (mut eta, mut chi) = ([[0.0; 2]; 2], [[0.0]]);
+        for _ in 0..samples {
+            let mut next = (eta, chi);
+            for (part, (mode, noise)) in (1..).zip(&steps) {
+                next = (
+                    carried(mode, &eta, &[0.0, sigma]),
+                    carried(noise, &chi, &[self.intensity()]),
+                );
+                tell(part, next.0[0][0].sqrt() - next.1[0][0].sqrt());
+            }
+            (eta, chi) = next;
+        }
+        Ok(())
+    }
+}
+
+/// Φ Σ Φᵀ + (Ψ c)(Ψ c)ᵀ: the covariance after a step with a held random force along `force`.
+fn carried<const N: usize>(
+    step: &LinearTransition<f64, N>,
+    covariance: &[[f64; N]; N],
+    force: &[f64; N],
+) -> [[f64; N]; N] {
+    let along = |row: &[f64; N], vector: &[f64; N]| -> f64 {
+        row.iter().zip(vector).map(|(a, b)| a * b).sum()
+    };
+    let gain = step.forced().map(|row| along(&row, force));
+    let transition = step.transition();
+    // Σ is symmetric: its rows are its columns.
+    let half = transition.map(|row| covariance.map(|column| along(&row, &column)));
+    let mut next = [[0.0; N]; N];
+    for ((next, half), a) in next.iter_mut().zip(&half).zip(&gain) {
+        for ((next, row), b) in next.iter_mut().zip(transition).zip(&gain) {
+            *next = along(row, half) + a * b;
+        }
+    }
+    next
+}
+
+/// Where `f` is greatest between `low` and `high`, if it has one maximum there (golden section).
+fn summit(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    for _ in 0..SECTIONS {
+        let (left, right) = (high - golden * (high - low), low + golden * (high - low));
+        if f(left) < f(right) {
+            low = left;
+        } else {
+            high = right;
+        }
+    }
+    low.midpoint(high)
+}

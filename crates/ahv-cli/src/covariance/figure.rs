@@ -1,0 +1,62 @@
+//! The picture of `ahv covariance`: a panel a state.
+
+use ahv_core::Vector;
+use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
+
+use super::Outcome;
+use crate::vehicle::FlightModel;
+
+/// Panels in a row.
+const COLUMNS: usize = 3;
+
+/// Standard deviations over time.
+pub(super) fn draw<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
+    let panels = (0..M::State::LEN).filter_map(|index| panel(outcome, index));
+    Figure::new("", COLUMNS, panels.collect()).svg()
+}
+
+fn panel<M: FlightModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel> {
+    let name = M::State::NAMES.get(index)?;
+    let unit = outcome.vehicle.units.labels::<M::State>().get(index)?;
+    let (unit, factor) = readable(unit);
+    let linear = outcome
+        .linear
+        .iter()
+        .filter_map(|it| Some((it.time, factor * *it.std().get(index)?)));
+    let flown = outcome.sampled.iter().filter_map(|it| {
+        let std = it.std.get(index)?;
+        Some((it.time, factor * std.low, factor * std.high))
+    });
+    let from_rest = std::iter::once((0.0, 0.0)).chain(linear);
+    Some(Panel {
+        title: (*name).to_owned(),
+        x: Axis::linear("time [s]"),
+        y: Axis::linear(format!("standard deviation [{unit}]")),
+        layers: vec![
+            Layer::new(
+                format!("{} flights, 95 %", outcome.arguments.members),
+                Colour::SkyBlue,
+                Mark::Band(flown.collect()),
+            ),
+            Layer::new(
+                "first order",
+                Colour::Vermillion,
+                Mark::Line(from_rest.collect()),
+            ),
+        ],
+    })
+}
+
+/// Degrees in the place of radians.
+fn readable(unit: &str) -> (String, f64) {
+    let factor = if unit.starts_with("rad") {
+        1_f64.to_degrees()
+    } else {
+        1.0
+    };
+    let pretty = unit
+        .replace("rad", "deg")
+        .replace("(ft*slug)^0.5", "(ft·slug)^½")
+        .replace("(m*kg)^0.5", "(m·kg)^½");
+    (pretty, factor)
+}

@@ -1,0 +1,58 @@
+//! CSV files: all of one or none.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::failure::Failure;
+use crate::output::{Output, cannot_write, plain};
+
+/// A CSV file that takes its place only when complete.
+pub(crate) struct CsvFile {
+    writer: csv::Writer<Output>,
+}
+
+impl CsvFile {
+    /// Starts the file that will be `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] if no file can be made there.
+    pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        let writer = csv::WriterBuilder::new()
+            .buffer_capacity(1 << 16)
+            .from_writer(Output::create(path)?);
+        Ok(Self { writer })
+    }
+
+    /// Writes a row of texts or numbers; each number reads back as the same bits.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] if the file cannot be written.
+    pub(crate) fn row<T: Serialize>(&mut self, values: &[T]) -> Result<(), Failure> {
+        self.writer.serialize(values).map_err(|error| {
+            let why = match error.into_kind() {
+                csv::ErrorKind::Io(error) => plain(&error),
+                other => format!("{other:?}"),
+            };
+            cannot_write(self.writer.get_ref().path(), &why)
+        })
+    }
+
+    /// Puts the complete file in its place.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] if that fails; what was there stays.
+    pub(crate) fn finish(mut self) -> Result<(), Failure> {
+        if let Err(error) = self.writer.flush() {
+            return Err(cannot_write(self.writer.get_ref().path(), &plain(&error)));
+        }
+        // Nothing is left to be written here.
+        let output = self.writer.into_inner();
+        output
+            .map_err(|error| Failure::Request(error.to_string()))?
+            .finish()
+    }
+}

@@ -1,0 +1,179 @@
+//! `ahv disperse`: how uncertain parameters spread trim, poles and zeros.
+
+mod figure;
+mod group;
+mod report;
+
+use std::path::{Path, PathBuf};
+
+use ahv_analysis::disperse::{
+    Distribution, Draws, Member, Nominal, Slopes, SolutionError, Spread, disperse, slopes, spreads,
+};
+use ahv_core::Vector;
+use clap::{Args, ValueEnum};
+
+use crate::condition::{Condition, Vehicle};
+use crate::failure::{Failure, print};
+use crate::output;
+use crate::place::Place;
+use crate::vehicle::{FlightModel, for_model};
+
+/// Draws parameters within their uncertainty and tells how trim, poles and zeros spread.
+///
+/// Uncertainties are those of the table, relative to the value. Each member is trimmed inside the bounds of phi and delta_e;
+/// one that does not trim is counted, with the reason. Beside the spread of the members stands that to first order, and
+/// the parameters it comes from.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    condition: Condition,
+
+    #[command(flatten)]
+    place: Place,
+
+    /// Vehicles to draw
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(30..=1_000_000))]
+    members: u64,
+
+    /// Seed of the draws: the same seed gives the same numbers on every machine
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+
+    /// How a parameter lies within its uncertainty
+    #[arg(long, value_enum, default_value = "uniform")]
+    distribution: Shape,
+
+    /// Parameters to draw: names, or what names begin with, e.g. c_l,c_m_alpha [default: all that are uncertain]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    vary: Vec<String>,
+
+    /// Parameters that move together, with their correlation (1 if not given), e.g. lift=c_l_alpha,c_l_delta_e:0.8
+    /// or moment=c_m:0.5
+    #[arg(long, value_name = "NAME=NAMES:CORRELATION")]
+    group: Vec<String>,
+
+    /// Parameters to print for each quantity, those that matter most
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    top: usize,
+
+    /// Folder for members.csv, trim.svg, roots.svg and sensitivities.svg
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Print the outcome as JSON, in the units of the model
+    #[arg(long)]
+    json: bool,
+}
+
+/// A distribution, on the command line.
+#[derive(Clone, Copy, ValueEnum)]
+enum Shape {
+    /// Uniform between value (1 - uncertainty) and value (1 + uncertainty)
+    Uniform,
+    /// Normal; the uncertainty is three standard deviations
+    Normal,
+}
+
+/// What came of the draws.
+struct Outcome<'a, M: FlightModel> {
+    vehicle: &'a Vehicle<M>,
+    arguments: &'a Arguments,
+    draws: Draws<M::Parameters>,
+    nominal: Nominal<M::State, M::Input>,
+    members: Vec<Member<M::State, M::Input>>,
+    spreads: Vec<Option<Spread>>,
+    slopes: Slopes,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Failure::Request`] for bad input or files that cannot be written, [`Failure::Numeric`] if the vehicle of the table
+/// does not trim.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    for_model!(arguments.condition.model, M => study::<M>(arguments))
+}
+
+fn study<M>(arguments: &Arguments) -> Result<(), Failure>
+where
+    M: FlightModel,
+    M::Parameters: Send + Sync,
+    M::State: Send + Sync,
+    M::Input: Send + Sync,
+{
+    let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
+    let draws = draws(&vehicle, arguments)?;
+    let flight = arguments.place.flight(&vehicle)?;
+    let failed = |error: SolutionError| {
+        let why = match &error {
+            SolutionError::Trim(error) => vehicle.no_trim(error),
+            other => other.to_string(),
+        };
+        Failure::Numeric(format!("{}: {why} ({})", M::NAME, vehicle.at(&flight)))
+    };
+    let nominal = Nominal::new::<M>(&vehicle.parameters, flight).map_err(failed)?;
+    let slopes = slopes::<M>(&draws, &nominal).map_err(failed)?;
+    let members = disperse::<M>(&draws, &nominal, arguments.members);
+    let outcome = Outcome {
+        spreads: spreads(&members, nominal.quantities.len()),
+        vehicle: &vehicle,
+        arguments,
+        draws,
+        nominal,
+        members,
+        slopes,
+    };
+    if let Some(folder) = &arguments.out {
+        outcome.write(folder)?;
+    }
+    if arguments.json {
+        output::print_json(&outcome.json())
+    } else {
+        print(&outcome.text())
+    }
+}
+
+/// What is drawn, as the arguments have it.
+fn draws<M: FlightModel>(
+    vehicle: &Vehicle<M>,
+    arguments: &Arguments,
+) -> Result<Draws<M::Parameters>, Failure> {
+    let mut uncertainty = vehicle.uncertainty;
+    if !arguments.vary.is_empty() {
+        let chosen = group::parameters::<M::Parameters>("--vary", &arguments.vary)?;
+        for index in (0..M::Parameters::LEN).filter(|index| !chosen.contains(index)) {
+            uncertainty.set(index, 0.0);
+        }
+    }
+    let groups = group::parse::<M::Parameters>(&arguments.group)?;
+    let distribution = match arguments.distribution {
+        Shape::Uniform => Distribution::Uniform,
+        Shape::Normal => Distribution::Normal,
+    };
+    Draws::new(
+        vehicle.parameters,
+        uncertainty,
+        distribution,
+        groups,
+        arguments.seed,
+    )
+    .map_err(|error| Failure::Request(error.to_string()))
+}
+
+impl<M: FlightModel> Outcome<'_, M> {
+    /// Writes pictures and table.
+    fn write(&self, folder: &Path) -> Result<(), Failure> {
+        output::folder(folder)?;
+        let pictures = [
+            ("trim.svg", figure::trim(self)),
+            ("roots.svg", figure::roots(self)),
+            ("sensitivities.svg", figure::sensitivities(self)),
+        ];
+        for (name, svg) in pictures {
+            let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
+            output::write(&folder.join(name), svg)?;
+        }
+        self.csv(&folder.join("members.csv"))
+    }
+}

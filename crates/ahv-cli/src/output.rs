@@ -1,0 +1,212 @@
+//! What commands leave behind: files that are whole or as they were, and JSON.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use ahv_core::{Outside, Vector};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use tempfile::{Builder, NamedTempFile};
+
+use crate::assignment::show;
+use crate::failure::{Failure, print};
+use crate::units::Units;
+
+/// A file that takes its place only when complete.
+///
+/// Bytes go to a temporary file in the same folder; a run that fails or is killed leaves what was there.
+pub(crate) struct Output {
+    path: PathBuf,
+    file: NamedTempFile,
+}
+
+impl Output {
+    /// Starts the file that will be `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] if no file can be made there.
+    pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        let existing = fs::metadata(path).ok();
+        if let Some(metadata) = &existing {
+            // Renaming would replace a device such as /dev/null, or get past a write protection.
+            if !metadata.is_file() {
+                return Err(cannot_write(path, "it exists and is not a regular file"));
+            }
+            if metadata.permissions().readonly() {
+                return Err(cannot_write(path, "it is write-protected"));
+            }
+        }
+        // A link stays a link: its target is replaced.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if target.file_name().is_none() {
+            return Err(cannot_write(path, "it names no file"));
+        }
+        let folder = match target.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+        let mut builder = Builder::new();
+        builder.prefix(".ahv-").suffix(".tmp");
+        if let Some(permissions) = existing
+            .map(|m| m.permissions())
+            .or_else(default_permissions)
+        {
+            builder.permissions(permissions);
+        }
+        let file = builder
+            .tempfile_in(folder)
+            .map_err(|error| cannot_write(path, &plain(&error)))?;
+        Ok(Self { path: target, file })
+    }
+
+    /// Puts the complete file in its place.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] if that fails; what was there stays.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        let Self { path, file } = self;
+        file.as_file()
+            .sync_all()
+            .map_err(|error| cannot_write(&path, &plain(&error)))?;
+        file.persist(&path)
+            .map_err(|error| cannot_write(&path, &plain(&error.error)))?;
+        Ok(())
+    }
+
+    /// Where the file will be.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Writes a whole file, or leaves what was there.
+///
+/// # Errors
+///
+/// [`Failure::Request`] if it cannot be written.
+pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), Failure> {
+    let mut output = Output::create(path)?;
+    output
+        .write_all(contents.as_ref())
+        .map_err(|error| cannot_write(path, &plain(&error)))?;
+    output.finish()
+}
+
+/// Makes the folder `path`, and those that it lies in, unless it is there.
+///
+/// # Errors
+///
+/// [`Failure::Request`] if it cannot be made.
+pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|error| {
+        let why = plain(&error);
+        Failure::Request(format!("cannot make the folder {}: {why}", path.display()))
+    })
+}
+
+/// `value` as JSON text. Numbers that are not finite become `null`.
+///
+/// # Errors
+///
+/// [`Failure::Numeric`] if `value` does not serialize.
+pub(crate) fn json(value: &impl Serialize) -> Result<String, Failure> {
+    serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::Numeric(format!("cannot write the outcome as JSON: {error}")))
+}
+
+/// Prints `value` as JSON.
+///
+/// # Errors
+///
+/// As [`json`] and [`print`].
+pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    print(&json(value)?)
+}
+
+/// Pairs in their own order, as a JSON object.
+pub(crate) struct Pairs<V>(pub(crate) Vec<(&'static str, V)>);
+
+impl<V: Serialize> Serialize for Pairs<V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}
+
+impl Pairs<f64> {
+    /// The components of a vector by name.
+    pub(crate) fn of<V: Vector<f64>>(vector: &V) -> Self {
+        let component = |(index, &name)| Some((name, vector.get(index)?));
+        Self(V::NAMES.iter().enumerate().filter_map(component).collect())
+    }
+}
+
+impl Pairs<&'static str> {
+    /// The units of a vector's components by name.
+    pub(crate) fn units<V: Vector<f64>>(units: Units) -> Self {
+        let labels = units.labels::<V>().iter().copied();
+        Self(V::NAMES.iter().copied().zip(labels).collect())
+    }
+}
+
+/// One line for each component, in units for a person.
+pub(crate) fn describe<V: Vector<f64>>(vector: &V, units: Units) -> String {
+    let components = Pairs::of(vector).0.into_iter().zip(units.labels::<V>());
+    let lines: Vec<String> = components
+        .map(|((name, value), unit)| format!("  {name:<12} {}", show(value, unit)))
+        .collect();
+    lines.join("\n")
+}
+
+/// A component outside its validity box, for a person.
+pub(crate) fn describe_outside(outside: &Outside, unit: &str) -> String {
+    let Outside {
+        name,
+        value,
+        bounds,
+    } = *outside;
+    let [value, min, max] = [value, bounds.min, bounds.max].map(|number| show(number, unit));
+    format!("{name} is {value}, outside its validity box of {min} to {max}")
+}
+
+/// Temporary files are private by default; a result is as open as any new file.
+#[cfg(unix)]
+fn default_permissions() -> Option<fs::Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(fs::Permissions::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn default_permissions() -> Option<fs::Permissions> {
+    None
+}
+
+/// The system's words, without the name of the temporary file that `tempfile` adds to them.
+pub(crate) fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    match text.split_once(" at path \"") {
+        Some((words, _)) => words.to_owned(),
+        None => text,
+    }
+}
+
+/// A file that cannot be written, and why.
+pub(crate) fn cannot_write(path: &Path, why: &str) -> Failure {
+    Failure::Request(format!("cannot write {}: {why}", path.display()))
+}

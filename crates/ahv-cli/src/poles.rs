@@ -1,0 +1,270 @@
+//! `ahv poles`: poles with their modes, and zeros, of a model about its trim.
+
+mod figure;
+
+use std::path::{Path, PathBuf};
+
+use ahv_analysis::linearize::{PATH_INPUTS, PATH_OUTPUTS};
+use ahv_analysis::poles::{
+    Decoupling, Pole, PolesError, Zero, Zeros, damping, frequency, poles, zeros,
+};
+use ahv_core::Vector;
+use clap::Args;
+use nalgebra::Complex;
+use serde::Serialize;
+
+use crate::condition::{Condition, Vehicle};
+use crate::csv_file::CsvFile;
+use crate::failure::{Failure, print};
+use crate::output::{self, Pairs};
+use crate::place::Place;
+use crate::vehicle::{FlightModel, for_model};
+
+/// Poles of a model about its trim, with their modes, and zeros from u = (delta_e, phi) to y = (velocity, gamma).
+///
+/// Zeros are those of the system pencil, by a generalised eigenvalue problem. Modes are told by participation factors.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    condition: Condition,
+
+    #[command(flatten)]
+    place: Place,
+
+    /// Inputs of the zeros
+    #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_INPUTS)]
+    inputs: Vec<String>,
+
+    /// Outputs of the zeros, as many states as inputs
+    #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_OUTPUTS)]
+    outputs: Vec<String>,
+
+    /// Folder for poles.csv and poles.svg
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Print poles and zeros as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim or the
+/// eigenvalues do not converge.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    for_model!(arguments.condition.model, Model => {
+        let vehicle: Vehicle<Model> = arguments.condition.vehicle()?;
+        about_trim(arguments, &vehicle)
+    })
+}
+
+/// Poles and zeros with where they belong to.
+struct Roots<'a, M: FlightModel> {
+    vehicle: &'a Vehicle<M>,
+    place: String,
+    inputs: Vec<&'static str>,
+    outputs: Vec<&'static str>,
+    poles: Vec<Pole>,
+    zeros: Zeros,
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    model: &'static str,
+    table: Option<&'a Path>,
+    set: &'a str,
+    choices: Pairs<Option<&'static str>>,
+    unit_system: &'static str,
+    place: &'a str,
+    poles: Vec<[f64; 2]>,
+    zeros: Vec<[f64; 2]>,
+    modes: Vec<JsonMode>,
+    zero_details: Vec<JsonZero>,
+    zeros_at_infinity: usize,
+    zero_count: String,
+    inputs: &'a [&'static str],
+    outputs: &'a [&'static str],
+}
+
+#[derive(Serialize)]
+struct JsonMode {
+    pole: [f64; 2],
+    name: Option<String>,
+    damping: f64,
+    frequency: f64,
+    participation: f64,
+}
+
+#[derive(Serialize)]
+struct JsonZero {
+    zero: [f64; 2],
+    damping: f64,
+    frequency: f64,
+    decoupling: Option<&'static str>,
+}
+
+fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Result<(), Failure> {
+    let flight = arguments.place.flight(vehicle)?;
+    let trim = vehicle.trim(&flight)?;
+    let system = vehicle.linear(&trim, &arguments.inputs, &arguments.outputs)?;
+    let failed = |error: PolesError| match error {
+        PolesError::NotSquare { .. } => Failure::Request(format!("--inputs, --outputs: {error}")),
+        PolesError::NoConvergence => Failure::Numeric(format!("{}: {error}", M::NAME)),
+    };
+    let roots = Roots {
+        vehicle,
+        place: vehicle.at(&flight),
+        poles: poles(&system).map_err(failed)?,
+        zeros: zeros(&system).map_err(failed)?,
+        inputs: system.inputs,
+        outputs: system.outputs,
+    };
+    if let Some(folder) = &arguments.out {
+        let svg = figure::figure(&roots).svg();
+        let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
+        output::folder(folder)?;
+        roots.csv(&folder.join("poles.csv"))?;
+        output::write(&folder.join("poles.svg"), svg)?;
+    }
+    match arguments.json {
+        true => output::print_json(&roots.json()),
+        false => print(&roots.text()),
+    }
+}
+
+fn pair(root: Complex<f64>) -> [f64; 2] {
+    [root.re, root.im]
+}
+
+fn name(pole: &Pole) -> Option<String> {
+    pole.mode.map(|mode| mode.to_string())
+}
+
+fn decoupling(zero: &Zero) -> Option<&'static str> {
+    zero.decoupling.map(|it| match it {
+        Decoupling::Input => "input",
+        Decoupling::Output => "output",
+    })
+}
+
+impl<M: FlightModel> Roots<'_, M> {
+    /// How many finite zeros there are, and why.
+    fn count(&self) -> String {
+        let (finite, outputs) = (self.zeros.finite.len(), self.outputs.len());
+        let cancelled = self
+            .zeros
+            .finite
+            .iter()
+            .filter(|it| it.decoupling.is_some());
+        let cancelled = match cancelled.count() {
+            0 => String::new(),
+            count => format!("; {count} of them are poles that inputs or outputs miss, and cancel"),
+        };
+        let why = match self.zeros.regular {
+            true => format!(
+                "{} states less {outputs} outputs, for C B is regular",
+                M::State::LEN
+            ),
+            false => "C B is singular, so their number depends on the model".to_owned(),
+        };
+        format!("{finite} finite zeros: {why}{cancelled}")
+    }
+
+    fn json(&self) -> Json<'_> {
+        let modes = self.poles.iter().map(|pole| JsonMode {
+            pole: pair(pole.value),
+            name: name(pole),
+            damping: damping(pole.value),
+            frequency: frequency(pole.value),
+            participation: pole.participation,
+        });
+        let zeros = self.zeros.finite.iter().map(|zero| JsonZero {
+            zero: pair(zero.value),
+            damping: damping(zero.value),
+            frequency: frequency(zero.value),
+            decoupling: decoupling(zero),
+        });
+        Json {
+            model: M::NAME,
+            table: self.vehicle.table.as_deref(),
+            set: &self.vehicle.set,
+            choices: Pairs(self.vehicle.choices.clone()),
+            unit_system: self.vehicle.units.name(),
+            place: &self.place,
+            poles: self.poles.iter().map(|it| pair(it.value)).collect(),
+            zeros: self.zeros.finite.iter().map(|it| pair(it.value)).collect(),
+            modes: modes.collect(),
+            zero_details: zeros.collect(),
+            zeros_at_infinity: self.zeros.infinite,
+            zero_count: self.count(),
+            inputs: &self.inputs,
+            outputs: &self.outputs,
+        }
+    }
+
+    fn text(&self) -> String {
+        let line = |root: Complex<f64>, name: String| {
+            let [re, im] = pair(root);
+            format!(
+                "  {re:>12.6} {im:>+12.6}i {:>9.4} {:>11.4}  {name}",
+                damping(root),
+                frequency(root)
+            )
+        };
+        let poles = self.poles.iter().map(|pole| {
+            let name = name(pole).unwrap_or_default();
+            line(
+                pole.value,
+                format!("{name} ({:.0} %)", 100.0 * pole.participation),
+            )
+        });
+        let zeros = self.zeros.finite.iter().map(|zero| {
+            let name = decoupling(zero).map(|it| format!("{it} decoupling"));
+            line(zero.value, name.unwrap_or_default())
+        });
+        let head = format!(
+            "{:>14} {:>13} {:>9} {:>11}",
+            "real [1/s]", "imaginary", "damping", "[rad/s]"
+        );
+        format!(
+            "{}: {}\n{}\npoles\n{head}  mode (participation)\n{}\nzeros from {} to {}\n{head}\n{}\n{}",
+            M::NAME,
+            self.place,
+            self.vehicle.described(),
+            poles.collect::<Vec<_>>().join("\n"),
+            self.inputs.join(", "),
+            self.outputs.join(", "),
+            zeros.collect::<Vec<_>>().join("\n"),
+            self.count()
+        )
+    }
+
+    fn csv(&self, path: &Path) -> Result<(), Failure> {
+        let mut file = CsvFile::create(path)?;
+        let header = [
+            "kind",
+            "real [1/s]",
+            "imaginary [1/s]",
+            "damping [1]",
+            "frequency [rad/s]",
+            "mode",
+        ];
+        file.row(&header)?;
+        let poles = self.poles.iter().map(|it| ("pole", it.value, name(it)));
+        let zeros = self.zeros.finite.iter().map(|it| {
+            let name = decoupling(it).map(|name| format!("{name} decoupling"));
+            ("zero", it.value, name)
+        });
+        for (kind, root, name) in poles.chain(zeros) {
+            let numbers = [root.re, root.im, damping(root), frequency(root)];
+            let mut row = vec![kind.to_owned()];
+            row.extend(numbers.map(|number| number.to_string()));
+            row.push(name.unwrap_or_default());
+            file.row(&row)?;
+        }
+        file.finish()
+    }
+}

@@ -1,0 +1,391 @@
+//! `ahv reduce`: flexible modes and their reduction to coloured noise.
+
+mod figure;
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use ahv_analysis::ensemble::{Drive, Experiment, Moments, Reading, process_of};
+use ahv_analysis::reduce::{Damping, Mode, Peak, ReducedMode, Reduction, section_5_1};
+use ahv_analysis::statistics::Estimate;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use serde::Serialize;
+
+use crate::failure::{Failure, print};
+use crate::output;
+use crate::progress::Progress;
+use crate::simulate::grid::positive;
+
+/// Fewest runs for which the intervals hold.
+const FEWEST_RUNS: u64 = 30;
+/// Most runs and most steps.
+const MOST: u64 = 1_000_000;
+
+/// Reduces flexible modes to coloured noise and compares the two.
+///
+/// A mode eta'' + 2 zeta omega eta' + omega^2 eta = sigma xi (17) becomes the Ornstein-Uhlenbeck process
+/// dchi = -a chi dt + b dw (24). Moments, autocorrelations and spectra are in closed form, from rest; beside them stand
+/// samples of an ensemble with intervals of 95 %. Lists have one value a mode.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Natural frequencies in rad/s [default: those of (36): 19.7437,47.7851,94.8203]
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    omega: Option<Vec<f64>>,
+
+    /// Damping ratios [default: those of (36): 0.7,0.6,0.5]
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    zeta: Option<Vec<f64>>,
+
+    /// Intensities of the white noise in (ft*slug)^0.5/s^1.5 [default: 100 for each mode, as in section 5.1]
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    sigma: Option<Vec<f64>>,
+
+    /// Choice of a and b: printed keeps decay rate and gain at zero frequency (23), variance decay rate and variance,
+    /// moment variance and gain
+    #[arg(long, default_value = Reduction::Printed.name(), value_parser = methods())]
+    method: String,
+
+    /// Runs of the ensemble
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(FEWEST_RUNS..=MOST))]
+    runs: u64,
+
+    /// End of a run in s
+    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = positive, allow_negative_numbers = true)]
+    t_end: f64,
+
+    /// Time between samples in s; a step is exact however long
+    #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = positive, allow_negative_numbers = true)]
+    dt: f64,
+
+    /// Seed of the noise: the same seed gives the same numbers on every machine
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+
+    /// Folder for reduce.svg and reduce.csv
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+
+    /// Print the outcome as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+fn methods() -> PossibleValuesParser {
+    Reduction::ALL.map(Reduction::name).into()
+}
+
+/// A mode, its reduction and an ensemble of both.
+struct Subject {
+    reduced: ReducedMode,
+    times: Vec<f64>,
+    eta: Moments,
+    chi: Moments,
+    runs: u64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Failure::Request`] for modes or times without sense and files that cannot be written.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let method = Reduction::from_name(&arguments.method).unwrap_or(Reduction::Printed);
+    let experiment = arguments.experiment()?;
+    let modes = arguments.modes()?;
+    let work = experiment.runs * experiment.steps;
+    let mut progress = Progress::new(work * modes.len() as u64);
+    let mut subjects = Vec::new();
+    for (index, mode) in (0..).zip(&modes) {
+        let problem = |error| Failure::Request(format!("mode {}: {error}", index + 1));
+        let reduced = ReducedMode::new(*mode, method).map_err(problem)?;
+        let moments = experiment.moments(mode, index, 0).map_err(problem)?;
+        subjects.push(Subject {
+            reduced,
+            times: experiment.times(),
+            eta: moments[0].clone(),
+            chi: moments[process_of(method)].clone(),
+            runs: experiment.runs,
+        });
+        progress.tell(work * (index + 1));
+    }
+    drop(progress);
+    if let Some(folder) = &arguments.out {
+        write_parts(folder, &subjects)?;
+    }
+    if arguments.json {
+        output::print_json(&Json::new(method, &experiment, &subjects))
+    } else {
+        print(&text(method, &experiment, &subjects))
+    }
+}
+
+impl Arguments {
+    fn experiment(&self) -> Result<Experiment, Failure> {
+        let steps = (self.t_end / self.dt).round();
+        if !(1.0..=MOST as f64).contains(&steps) {
+            return Err(Failure::Request(format!(
+                "--t-end {} with --dt {} makes {steps} steps; 1 to {MOST} are allowed",
+                self.t_end, self.dt
+            )));
+        }
+        Ok(Experiment {
+            reading: Reading::White,
+            drive: Drive::Common,
+            runs: self.runs,
+            steps: steps as u64,
+            dt: self.dt,
+            seed: self.seed,
+        })
+    }
+
+    fn modes(&self) -> Result<Vec<Mode>, Failure> {
+        let list = |given: &Option<Vec<f64>>, of: fn(&Mode) -> f64| {
+            let default = || section_5_1().iter().map(of).collect();
+            given.clone().unwrap_or_else(default)
+        };
+        let omega = list(&self.omega, |mode| mode.omega);
+        let zeta = list(&self.zeta, |mode| mode.zeta);
+        let [first, ..] = section_5_1();
+        let default = || vec![first.sigma; omega.len()];
+        let sigma = self.sigma.clone().unwrap_or_else(default);
+        if omega.len() != zeta.len() || omega.len() != sigma.len() {
+            return Err(Failure::Request(format!(
+                "--omega has {} values, --zeta {} and --sigma {}: each needs one value a mode",
+                omega.len(),
+                zeta.len(),
+                sigma.len()
+            )));
+        }
+        let modes = omega.into_iter().zip(zeta).zip(sigma);
+        Ok(modes
+            .map(|((omega, zeta), sigma)| Mode { omega, zeta, sigma })
+            .collect())
+    }
+}
+
+impl Subject {
+    /// Standard deviations of the samples with their intervals, at each time.
+    fn sampled(&self, moments: &Moments) -> Vec<Estimate> {
+        let runs = self.runs as f64;
+        moments
+            .std
+            .iter()
+            .map(|&std| Estimate::of_std(std, runs))
+            .collect()
+    }
+
+    /// Share of the sampled deviations whose interval holds the exact one; nothing moves at 0 s.
+    fn coverage(&self, moments: &Moments, variance: impl Fn(f64) -> f64) -> f64 {
+        let samples = self.sampled(moments);
+        let held = samples.iter().zip(&self.times).skip(1);
+        let held = held.filter(|&(sample, &time)| sample.holds(variance(time).sqrt()));
+        held.count() as f64 / (self.times.len() - 1) as f64
+    }
+}
+
+/// The outcome as JSON.
+#[derive(Serialize)]
+struct Json {
+    method: &'static str,
+    experiment: Experiment,
+    eta_std: Vec<f64>,
+    chi_std: Vec<f64>,
+    max_abs_std_error: Vec<f64>,
+    modes: Vec<JsonMode>,
+}
+
+#[derive(Serialize)]
+struct JsonMode {
+    omega: f64,
+    zeta: f64,
+    sigma: f64,
+    damping: Damping,
+    decay: f64,
+    intensity: f64,
+    eta_std: f64,
+    chi_std: f64,
+    max_abs_std_error: f64,
+    /// `null` where the greatest error is that of the stationary processes.
+    max_abs_std_error_time: Option<f64>,
+    variance_ratio: f64,
+    spectrum_ratio_at_zero: f64,
+    monte_carlo: JsonSamples,
+}
+
+#[derive(Serialize)]
+struct JsonSamples {
+    eta_std: Estimate,
+    chi_std: Estimate,
+    max_abs_mean_error: f64,
+    max_abs_std_error: f64,
+    eta_std_coverage: f64,
+    chi_std_coverage: f64,
+}
+
+impl Json {
+    fn new(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Self {
+        let modes: Vec<JsonMode> = subjects.iter().map(JsonMode::new).collect();
+        let list = |of: fn(&JsonMode) -> f64| modes.iter().map(of).collect();
+        Self {
+            method: method.name(),
+            experiment: *experiment,
+            eta_std: list(|mode| mode.eta_std),
+            chi_std: list(|mode| mode.chi_std),
+            max_abs_std_error: list(|mode| mode.max_abs_std_error),
+            modes,
+        }
+    }
+}
+
+impl JsonMode {
+    fn new(subject: &Subject) -> Self {
+        let Subject {
+            reduced, eta, chi, ..
+        } = subject;
+        let Mode { omega, zeta, sigma } = reduced.mode;
+        let Peak { value, time } = reduced.largest_std_error();
+        let largest = |a: &[f64], b: &[f64]| {
+            let errors = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            errors.fold(0.0, f64::max)
+        };
+        let last = |moments: &Moments| {
+            let last = moments.std.last().copied().unwrap_or_default();
+            Estimate::of_std(last, subject.runs as f64)
+        };
+        Self {
+            omega,
+            zeta,
+            sigma,
+            damping: reduced.damping,
+            decay: reduced.decay(),
+            intensity: reduced.intensity(),
+            eta_std: reduced.eta_variance().sqrt(),
+            chi_std: reduced.chi_variance().sqrt(),
+            max_abs_std_error: value,
+            max_abs_std_error_time: time,
+            variance_ratio: reduced.variance_ratio(),
+            spectrum_ratio_at_zero: reduced.spectrum_ratio(),
+            monte_carlo: JsonSamples {
+                eta_std: last(eta),
+                chi_std: last(chi),
+                max_abs_mean_error: largest(&eta.mean, &chi.mean),
+                max_abs_std_error: largest(&eta.std, &chi.std),
+                eta_std_coverage: subject.coverage(eta, |time| reduced.eta_variance_at(time)),
+                chi_std_coverage: subject.coverage(chi, |time| reduced.chi_variance_at(time)),
+            },
+        }
+    }
+}
+
+/// What a method keeps, and what it gives up.
+fn bargain(method: Reduction) -> &'static str {
+    match method {
+        Reduction::Printed => {
+            "keeps decay rate and gain at zero frequency; gives up the variance: 2 zeta^2 of the mode's"
+        }
+        Reduction::Variance => {
+            "keeps decay rate and variance; gives up the spectrum at zero frequency: 1/(2 zeta^2) of the mode's"
+        }
+        Reduction::Moment => {
+            "keeps variance and spectrum at zero frequency; gives up the decay rate: omega/(2 zeta)"
+        }
+    }
+}
+
+fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> String {
+    let mut text = format!("{}: {}\n", method.name(), bargain(method));
+    for (index, subject) in subjects.iter().enumerate() {
+        let mode = JsonMode::new(subject);
+        let when = mode.max_abs_std_error_time;
+        let when = when.map_or_else(
+            || "in the long run".to_owned(),
+            |time| format!("at {time:.4} s"),
+        );
+        let sample = |estimate: &Estimate| {
+            format!(
+                "{:.6} [{:.6}, {:.6}]",
+                estimate.value, estimate.low, estimate.high
+            )
+        };
+        // Writing into a String cannot fail.
+        let _ = write!(
+            text,
+            "mode {}: omega {} rad/s, zeta {}, sigma {}\n  \
+             decay {:.6} 1/s, intensity {:.6}; variance {:.4} and spectrum at zero frequency {:.4} of the mode's\n  \
+             std of eta {:.6}, of chi {:.6}; they differ by {:.6} at most, {when}\n  \
+             sampled at {} s: eta {}, chi {}\n",
+            index + 1,
+            mode.omega,
+            mode.zeta,
+            mode.sigma,
+            mode.decay,
+            mode.intensity,
+            mode.variance_ratio,
+            mode.spectrum_ratio_at_zero,
+            mode.eta_std,
+            mode.chi_std,
+            mode.max_abs_std_error,
+            experiment.steps as f64 * experiment.dt,
+            sample(&mode.monte_carlo.eta_std),
+            sample(&mode.monte_carlo.chi_std),
+        );
+    }
+    let _ = write!(
+        text,
+        "Units: (ft*slug)^0.5. Samples: {} runs, one noise for eta and chi, seed {}, intervals of 95 %.",
+        experiment.runs, experiment.seed
+    );
+    text
+}
+
+/// Writes picture and table.
+fn write_parts(folder: &Path, subjects: &[Subject]) -> Result<(), Failure> {
+    output::folder(folder)?;
+    let svg = figure::draw(subjects);
+    let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
+    output::write(&folder.join("reduce.svg"), svg)?;
+    let mut table = String::from(
+        "mode,time [s],eta_std,chi_std,eta_std_sampled,eta_std_low,eta_std_high,chi_std_sampled,chi_std_low,chi_std_high\n",
+    );
+    for (index, subject) in subjects.iter().enumerate() {
+        let samples = subject
+            .sampled(&subject.eta)
+            .into_iter()
+            .zip(subject.sampled(&subject.chi));
+        for (&time, (eta, chi)) in subject.times.iter().zip(samples) {
+            let exact = [
+                subject.reduced.eta_variance_at(time),
+                subject.reduced.chi_variance_at(time),
+            ];
+            let [eta_std, chi_std] = exact.map(f64::sqrt);
+            let _ = writeln!(
+                table,
+                "{},{time},{eta_std},{chi_std},{},{},{},{},{},{}",
+                index + 1,
+                eta.value,
+                eta.low,
+                eta.high,
+                chi.value,
+                chi.low,
+                chi.high
+            );
+        }
+    }
+    output::write(&folder.join("reduce.csv"), table)
+}

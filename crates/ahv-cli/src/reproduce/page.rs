@@ -1,0 +1,174 @@
+//! The page: sections of words, tables and pictures.
+
+use askama::Template;
+
+use crate::failure::Failure;
+
+/// The whole page.
+#[derive(Template)]
+#[template(path = "reproduce.html")]
+pub(super) struct Page {
+    /// What it is about, and how it was made.
+    pub(super) subject: String,
+    /// What agrees with the paper.
+    pub(super) agrees: Vec<String>,
+    /// What does not, or cannot.
+    pub(super) cannot: Vec<String>,
+    /// The rest.
+    pub(super) sections: Vec<Section>,
+}
+
+/// A part of the page.
+#[derive(Default)]
+pub(super) struct Section {
+    pub(super) id: &'static str,
+    pub(super) title: &'static str,
+    pub(super) paragraphs: Vec<String>,
+    pub(super) tables: Vec<Table>,
+    pub(super) pictures: Vec<Picture>,
+}
+
+/// A table, on the page and as a CSV file.
+pub(super) struct Table {
+    /// Its file.
+    pub(super) file: &'static str,
+    pub(super) caption: String,
+    pub(super) head: Vec<&'static str>,
+    pub(super) rows: Vec<Vec<Cell>>,
+}
+
+/// An entry of a table.
+pub(super) enum Cell {
+    /// Words.
+    Words(String),
+    /// A number or an interval.
+    Number(String),
+    /// Whether something holds.
+    Verdict(bool),
+}
+
+/// A picture, on the page and as an SVG file.
+pub(super) struct Picture {
+    /// Its file.
+    pub(super) file: &'static str,
+    pub(super) caption: String,
+    pub(super) svg: String,
+}
+
+impl Cell {
+    /// Words.
+    pub(super) fn words(text: impl Into<String>) -> Self {
+        Self::Words(text.into())
+    }
+
+    /// A number, as [`number`] writes it.
+    pub(super) fn number(value: f64) -> Self {
+        Self::Number(number(value))
+    }
+
+    /// What stands in the cell.
+    pub(super) fn text(&self) -> &str {
+        match self {
+            Self::Words(text) | Self::Number(text) => text,
+            Self::Verdict(true) => "yes",
+            Self::Verdict(false) => "no",
+        }
+    }
+
+    /// How it looks.
+    pub(super) fn class(&self) -> &'static str {
+        match self {
+            Self::Words(_) => "words",
+            Self::Number(_) => "number",
+            Self::Verdict(true) => "yes",
+            Self::Verdict(false) => "no",
+        }
+    }
+}
+
+impl Page {
+    /// The page as HTML that needs nothing else to be read.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Numeric`] if it cannot be written.
+    pub(super) fn html(&self) -> Result<String, Failure> {
+        let html = self.render();
+        html.map_err(|error| Failure::Numeric(format!("cannot write the page: {error}")))
+    }
+}
+
+impl Table {
+    /// The table as CSV.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Numeric`] if it cannot be written.
+    pub(super) fn csv(&self) -> Result<Vec<u8>, Failure> {
+        let problem =
+            |error: String| Failure::Numeric(format!("cannot write {}: {error}", self.file));
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut write = |row: Vec<&str>| {
+            writer
+                .write_record(row)
+                .map_err(|error| problem(error.to_string()))
+        };
+        write(self.head.clone())?;
+        for row in &self.rows {
+            write(row.iter().map(Cell::text).collect())?;
+        }
+        writer
+            .into_inner()
+            .map_err(|error| problem(error.to_string()))
+    }
+}
+
+/// A number with four significant digits.
+pub(super) fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    // The exponent after rounding: 0.99999 has one digit before the point.
+    let scientific = format!("{value:.3e}");
+    let exponent = scientific
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok());
+    match exponent {
+        Some(exponent @ -4..6) => {
+            let decimals = usize::try_from(3 - exponent).unwrap_or(0);
+            format!("{value:.decimals$}")
+        }
+        _ => scientific,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let texts = [
+            0.0,
+            0.30735,
+            -0.000_970_4,
+            13.100_56,
+            7702.08,
+            85_000.0,
+            1e-5,
+        ]
+        .map(number);
+        assert_eq!(
+            texts,
+            [
+                "0",
+                "0.3074",
+                "-0.0009704",
+                "13.10",
+                "7702",
+                "85000",
+                "1.000e-5"
+            ]
+        );
+    }
+}

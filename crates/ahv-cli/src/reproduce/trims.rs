@@ -1,0 +1,107 @@
+//! The section on Table 2.
+
+use ahv_analysis::reproduce::printed::TABLE_2;
+use ahv_analysis::reproduce::vehicle::{TrimPoint, Vehicle};
+
+use super::Findings;
+use super::page::{Cell, Section, Table, number};
+
+/// Distance of a trim from the printed one: the largest relative difference of α, φ, δe.
+fn distance(trim: &TrimPoint) -> f64 {
+    let pairs = [
+        (trim.alpha_deg, TABLE_2.alpha_deg),
+        (trim.phi, TABLE_2.phi),
+        (trim.delta_e_deg, TABLE_2.delta_e_deg),
+    ];
+    pairs
+        .iter()
+        .map(|(ours, printed)| (ours / printed - 1.0).abs())
+        .fold(0.0, f64::max)
+}
+
+fn name(vehicle: &Vehicle) -> String {
+    let condition = &vehicle.condition;
+    let canard = condition
+        .canard
+        .map_or_else(String::new, |canard| format!(", canard {canard}"));
+    format!(
+        "{}, {}{canard}, {} Earth",
+        condition.model, condition.set, condition.earth
+    )
+}
+
+/// A number with its difference from the printed one.
+fn beside(ours: f64, printed: f64) -> Cell {
+    let sign = if ours >= printed { "+" } else { "" };
+    Cell::Number(format!(
+        "{} ({sign}{})",
+        number(ours),
+        number(ours - printed)
+    ))
+}
+
+/// Table 2.
+pub(super) fn section(vehicles: &[Vehicle], findings: &mut Findings) -> Section {
+    let etas = |values: &[f64], printed: &[f64]| {
+        let three = (0..3).map(|index| match (values.get(index), printed.get(index)) {
+            (Some(&ours), Some(&printed)) => beside(ours, printed),
+            _ => Cell::words(""),
+        });
+        three.collect::<Vec<_>>()
+    };
+    let mut rows = vec![vec![
+        Cell::words("printed (η of DCOM, SDCOM)"),
+        Cell::number(TABLE_2.alpha_deg),
+        Cell::number(TABLE_2.phi),
+        Cell::number(TABLE_2.delta_e_deg),
+    ]];
+    rows[0].extend(TABLE_2.eta.map(Cell::number));
+    let mut nearest: Option<(f64, String)> = None;
+    for vehicle in vehicles {
+        let mut row = vec![Cell::words(name(vehicle))];
+        match &vehicle.trim {
+            Some(trim) => {
+                row.push(beside(trim.alpha_deg, TABLE_2.alpha_deg));
+                row.push(beside(trim.phi, TABLE_2.phi));
+                row.push(beside(trim.delta_e_deg, TABLE_2.delta_e_deg));
+                let printed: &[f64] = if vehicle.condition.model == "com" {
+                    &TABLE_2.eta_cantilever
+                } else {
+                    &TABLE_2.eta
+                };
+                row.extend(etas(&trim.eta, printed));
+                let distance = distance(trim);
+                if nearest.as_ref().is_none_or(|(least, _)| distance < *least) {
+                    nearest = Some((distance, name(vehicle)));
+                }
+            }
+            None => row.push(Cell::words(vehicle.problem.clone().unwrap_or_default())),
+        }
+        rows.push(row);
+    }
+    let nearest = nearest.map_or_else(String::new, |(distance, name)| {
+        format!("{name} comes nearest, within {:.1} %", 100.0 * distance)
+    });
+    findings.cannot.push(format!(
+        "Table 2: no model with the tables of this project trims where the paper does; {nearest}. The printed trim is said to be \
+         that of all models, which have different equations."
+    ));
+    Section {
+        id: "table2",
+        title: "Table 2",
+        paragraphs: vec![format!(
+            "Level flight at {} ft/s and {} ft; the paper's table gives V the value of h and h that of V. One trim is printed for \
+             all models; it is not the COM's: with coefficients on which three transcriptions agree, the rigid COM trims \
+             elsewhere. {nearest}. The coefficients of the DCOM could not be had, so its rows are those of a table that was derived \
+             in its place. Differences from the printed values are in brackets; η of com is that of forebody and aftbody.",
+            TABLE_2.velocity, TABLE_2.altitude
+        )],
+        tables: vec![Table {
+            file: "table2.csv",
+            caption: "Table 2 beside the trims of this project".to_owned(),
+            head: vec!["model", "α [deg]", "φ", "δe [deg]", "η₁", "η₂", "η₃"],
+            rows,
+        }],
+        pictures: Vec::new(),
+    }
+}

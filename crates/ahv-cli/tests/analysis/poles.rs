@@ -1,0 +1,101 @@
+//! `ahv poles`.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::bench::{fail, json, number, numbers, text};
+
+fn named<'a>(roots: &'a Value, name: &str) -> Vec<&'a Value> {
+    let modes = roots["modes"].as_array().expect("modes");
+    modes.iter().filter(|mode| mode["name"] == name).collect()
+}
+
+#[test]
+fn the_dcom_has_nine_zeros() {
+    for set in ["section5.1", "section5.3"] {
+        let roots = json(&["poles", "--model", "dcom", "--set", set]);
+        assert_eq!(roots["poles"].as_array().map(Vec::len), Some(11));
+        assert_eq!(roots["zeros"].as_array().map(Vec::len), Some(9));
+        assert_eq!(roots["zeros_at_infinity"], 4);
+    }
+    let roots = json(&["poles", "--model", "dcom", "--set", "section5.3"]);
+    let mut short: Vec<f64> = named(&roots, "short period")
+        .iter()
+        .map(|it| number(&it["pole"][0]))
+        .collect();
+    short.sort_by(f64::total_cmp);
+    assert!(
+        (short[0] + 3.9694).abs() < 6e-5 && (short[1] - 3.8612).abs() < 6e-5,
+        "{short:?}"
+    );
+    for (name, frequency) in [
+        ("flexible 1", 20.5),
+        ("flexible 2", 52.5),
+        ("flexible 3", 105.0),
+    ] {
+        let pair = named(&roots, name);
+        assert_eq!(pair.len(), 2, "{roots}");
+        assert!((number(&pair[0]["frequency"]) - frequency).abs() < 0.1);
+        assert!((number(&pair[0]["damping"]) - 0.02).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn the_sdcom_says_how_many_zeros_it_has() {
+    let roots = json(&["poles", "--model", "sdcom"]);
+    assert_eq!(roots["poles"].as_array().map(Vec::len), Some(8));
+    assert_eq!(roots["zeros"].as_array().map(Vec::len), Some(6));
+    let told = text(&["poles", "--model", "sdcom"]);
+    for part in [
+        "6 finite zeros: 8 states less 2 outputs, for C B is regular; 3 of them are poles that inputs or outputs miss",
+        "input decoupling",
+        "coloured noise 3",
+        "short period",
+        "height",
+    ] {
+        assert!(told.contains(part), "no {part:?} in: {told}");
+    }
+    // The coloured noise decays at zeta omega of (36), and no input reaches it.
+    let zeros: Vec<Vec<f64>> = roots["zeros"]
+        .as_array()
+        .expect("zeros")
+        .iter()
+        .map(numbers)
+        .collect();
+    assert!(
+        zeros
+            .iter()
+            .any(|zero| (zero[0] + 0.7 * 19.7437).abs() < 1e-9),
+        "{zeros:?}"
+    );
+}
+
+#[test]
+fn the_picture_and_the_table_are_written() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().to_str().expect("UTF-8");
+    text(&["poles", "--model", "dcom", "--out", out]);
+    let svg = fs::read_to_string(folder.path().join("poles.svg")).expect("it is written");
+    for part in ["Poles and zeros of dcom", "imaginary part [1/s]", "zeros"] {
+        assert!(svg.contains(part), "no {part:?}");
+    }
+    let csv = fs::read_to_string(folder.path().join("poles.csv")).expect("it is written");
+    assert_eq!(
+        csv.lines().filter(|line| line.starts_with("pole,")).count(),
+        11
+    );
+    assert_eq!(
+        csv.lines().filter(|line| line.starts_with("zero,")).count(),
+        9
+    );
+}
+
+#[test]
+fn outputs_and_inputs_must_be_as_many() {
+    fail(
+        &["poles", "--model", "dcom", "--outputs", "gamma"],
+        2,
+        &["as many outputs as inputs", "not 1 and 2"],
+    );
+}

@@ -1,0 +1,155 @@
+//! `ahv reduce`, through the real binary.
+#![forbid(unsafe_code)]
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ahv"));
+    command.arg("reduce").args(arguments);
+    command.output().expect("ahv starts")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = run(&[arguments, &["--json"]].concat());
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+fn list(value: &Value) -> Vec<f64> {
+    let list = value.as_array().expect("a list");
+    list.iter()
+        .map(|value| value.as_f64().expect("a number"))
+        .collect()
+}
+
+fn close(found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        assert!(
+            (found - expected).abs() <= tolerance,
+            "{found} is not {expected}"
+        );
+    }
+}
+
+/// σ/√(4ζω³) and √(ζσ²/(2ω³)), worked out by hand for (36), and the checked maxima of `science.md`.
+#[test]
+fn the_default_is_section_5_1() {
+    let outcome = json(&[]);
+    close(
+        &list(&outcome["eta_std"]),
+        &[0.68121, 0.19541, 0.07658],
+        1e-5,
+    );
+    close(
+        &list(&outcome["chi_std"]),
+        &[0.67436, 0.16581, 0.05415],
+        1e-5,
+    );
+    close(
+        &list(&outcome["max_abs_std_error"]),
+        &[0.3074, 0.0664, 0.0225],
+        5e-5,
+    );
+    let modes = outcome["modes"].as_array().expect("a list");
+    assert_eq!(modes.len(), 3);
+    for (index, mode) in modes.iter().enumerate() {
+        for key in ["eta_std", "chi_std", "max_abs_std_error"] {
+            assert_eq!(mode[key], outcome[key][index]);
+        }
+        assert_eq!(mode["sigma"], 100.0);
+        let sampled = &mode["monte_carlo"]["eta_std"];
+        assert!(sampled["low"].as_f64() < sampled["value"].as_f64());
+    }
+    assert_eq!(modes[0]["damping"], "underdamped");
+    assert_eq!(outcome, json(&[]), "equal seeds give equal numbers");
+    assert_ne!(outcome, json(&["--seed", "1"]));
+}
+
+#[test]
+fn a_method_gives_up_what_it_says() {
+    let mode = [
+        "--omega", "20.5", "--zeta", "0.02", "--sigma", "17", "--runs", "30",
+    ];
+    let of = |method| json(&[&mode[..], &["--method", method]].concat())["modes"][0].clone();
+    let [printed, variance, moment] = ["printed", "variance", "moment"].map(of);
+    let ratios = |mode: &Value| {
+        [
+            mode["variance_ratio"].as_f64(),
+            mode["spectrum_ratio_at_zero"].as_f64(),
+        ]
+        .map(Option::unwrap)
+    };
+    close(&ratios(&printed), &[0.0008, 1.0], 1e-9);
+    close(&ratios(&variance), &[1.0, 1250.0], 1e-6);
+    close(&ratios(&moment), &[1.0, 1.0], 1e-9);
+    close(
+        &[moment["decay"].as_f64().expect("a number")],
+        &[512.5],
+        1e-9,
+    );
+    assert!(printed["max_abs_std_error_time"].is_null());
+}
+
+#[test]
+fn bad_lists_are_explained() {
+    for (arguments, words) in [
+        (
+            &["--omega", "20", "--zeta", "0.5,0.6"][..],
+            "each needs one value a mode",
+        ),
+        (&["--omega", "20"], "--omega has 1 values, --zeta 3"),
+        (
+            &["--omega", "20,30,40", "--zeta", "0.5,0,0.5"],
+            "mode 2: zeta must be positive",
+        ),
+        (
+            &["--omega", "-20", "--zeta", "0.5"],
+            "mode 1: omega must be positive",
+        ),
+        (&["--sigma", "1,2,NaN"], "mode 3: sigma must be positive"),
+        (&["--omega", "1e200", "--zeta", "0.5"], "mode 1: the"),
+        (&["--t-end", "1e-9"], "steps"),
+        (&["--method", "best"], "printed, variance, moment"),
+        (&["--runs", "5"], "30"),
+    ] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains(words), "{arguments:?}: {message}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn picture_and_table_are_written() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("new");
+    let output = run(&["--zeta", "0.3,1,2", "--out", &out.display().to_string()]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(
+        text.contains("gives up the variance") && text.contains("mode 3: omega 94.8203 rad/s"),
+        "{text}"
+    );
+    let svg = std::fs::read_to_string(out.join("reduce.svg")).expect("a picture");
+    assert!(svg.contains("time [s]") && svg.contains("spectrum"));
+    let mut table = csv::Reader::from_path(out.join("reduce.csv")).expect("a table");
+    let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().expect("rows");
+    assert_eq!(rows.len(), 3 * 101);
+    assert!(
+        rows.iter()
+            .flatten()
+            .all(|field| field.parse::<f64>().is_ok_and(f64::is_finite))
+    );
+}

@@ -1,0 +1,227 @@
+//! `ahv disperse` and `ahv covariance`, through the real binary.
+#![forbid(unsafe_code)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ahv"));
+    command.args(arguments).output().expect("ahv starts")
+}
+
+fn text(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&text(&[arguments, &["--json"]].concat())).expect("JSON")
+}
+
+fn fails(arguments: &[&str], words: &[&str]) {
+    let output = run(arguments);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    for word in words {
+        assert!(message.contains(word), "no {word:?} in: {message}");
+    }
+    assert!(output.stdout.is_empty());
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+const FEW: [&str; 5] = ["disperse", "--model", "dcom", "--members", "60"];
+
+#[test]
+fn the_spread_is_told_in_numbers() {
+    let outcome = json(&FEW);
+    assert_eq!(outcome["distribution"], "uniform");
+    let failed = outcome["failed"].as_object().expect("reasons");
+    let failed: f64 = failed.values().map(number).sum();
+    assert_eq!(number(&outcome["trimmed"]) + failed, 60.0);
+    let share = &outcome["shares"]["trims"];
+    assert!((number(&share["value"]) - number(&outcome["trimmed"]) / 60.0).abs() < 1e-12);
+    let quantities = outcome["quantities"].as_array().expect("a list");
+    let alpha = &quantities[0];
+    assert_eq!(
+        (&alpha["name"], &alpha["unit"]),
+        (&"alpha".into(), &"rad".into())
+    );
+    assert!((number(&alpha["nominal"]).to_degrees() - 1.5018).abs() < 1e-4);
+    assert_eq!(alpha["spread"]["count"], outcome["trimmed"]);
+    assert!(number(&alpha["linear_std"]) > 0.0);
+    let effects = alpha["sensitivities"].as_array().expect("a list");
+    let sizes: Vec<f64> = effects
+        .iter()
+        .map(|it| number(&it["effect"]).abs())
+        .collect();
+    assert!(sizes.is_sorted_by(|a, b| a >= b) && !sizes.is_empty());
+    let zeros = quantities
+        .iter()
+        .filter(|it| it["kind"] == "zero" && it["part"] == "real");
+    // Nine zeros, three of them pairs.
+    assert_eq!(zeros.count(), 6);
+}
+
+#[test]
+fn what_varies_and_what_moves_together_is_chosen() {
+    let lift = json(&[&FEW[..], &["--vary", "C_L"]].concat());
+    let names = |outcome: &Value| -> Vec<String> {
+        let effects = outcome["quantities"][0]["sensitivities"]
+            .as_array()
+            .cloned();
+        let effects = effects.unwrap_or_default();
+        effects
+            .iter()
+            .map(|it| it["parameter"].as_str().unwrap_or_default().to_owned())
+            .collect()
+    };
+    assert!(names(&lift).iter().all(|name| name.starts_with("c_l_")));
+    let vary = ["--vary", "c_l_alpha,c_l_delta_e"];
+    let apart = json(&[&FEW[..], &vary].concat());
+    let joined = json(
+        &[
+            &FEW[..],
+            &vary,
+            &["--group", "lift=c_l_alpha,c_l_delta_e:0.5"],
+        ]
+        .concat(),
+    );
+    let std = |outcome: &Value| number(&outcome["quantities"][0]["linear_std"]);
+    let effects: Vec<f64> = apart["quantities"][0]["sensitivities"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|it| number(&it["effect"]))
+        .collect();
+    let [a, b] = effects[..] else {
+        panic!("two parameters")
+    };
+    assert!((std(&apart) - a.hypot(b)).abs() < 1e-12);
+    assert!((std(&joined) - (a * a + b * b + a * b).sqrt()).abs() < 1e-12);
+}
+
+#[test]
+fn pictures_and_members_are_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("new");
+    let path = out.to_str().expect("text");
+    let printed = text(&[&FEW[..], &["--out", path]].concat());
+    for word in [
+        "% of the members",
+        "alpha [deg]",
+        "first order",
+        "pole short period 1, real",
+    ] {
+        assert!(printed.contains(word), "no {word:?} in: {printed}");
+    }
+    for picture in ["trim.svg", "roots.svg", "sensitivities.svg"] {
+        let svg = fs::read_to_string(out.join(picture)).expect("a picture");
+        assert!(svg.starts_with("<svg") && !svg.contains("NaN"), "{picture}");
+    }
+    let members = fs::read_to_string(out.join("members.csv")).expect("a table");
+    assert_eq!(members.lines().count(), 61);
+    assert!(
+        !members.contains("NaN") && members.contains("bound of delta_e"),
+        "{members}"
+    );
+    text(&[&FEW[..], &["--out", path]].concat());
+    assert_eq!(
+        fs::read_to_string(out.join("members.csv")).expect("a table"),
+        members
+    );
+}
+
+/// A table's own uncertainties take the place of those that the models were generated with.
+#[test]
+fn a_table_brings_its_uncertainties() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let table = fs::read_to_string(root.join("generator/tables/dcom.toml")).expect("a table");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("dcom.toml");
+    let halved = table.replacen("uncertainty = 0.4", "uncertainty = 0.2", 1);
+    assert_ne!(halved, table);
+    fs::write(&path, halved).expect("written");
+    let with_table = ["--table", path.to_str().expect("text")];
+    let std = |outcome: Value| number(&outcome["quantities"][0]["linear_std"]);
+    let (whole, half) = (
+        std(json(&FEW)),
+        std(json(&[&FEW[..], &with_table].concat())),
+    );
+    assert!((half / whole - 0.5).abs() < 1e-9, "{half} {whole}");
+}
+
+#[test]
+fn slips_are_explained() {
+    let with = |more: &[&'static str]| [&FEW[..], more].concat();
+    fails(
+        &with(&["--group", "lift=c_l_alfa:0.5"]),
+        &["--group: unknown parameter `c_l_alfa`; did you mean `c_l_alpha`?"],
+    );
+    fails(
+        &with(&["--group", "c_l_alpha"]),
+        &["NAME=PARAMETERS:CORRELATION"],
+    );
+    fails(
+        &with(&["--group", "lift=c_l:high"]),
+        &["correlation that is no number"],
+    );
+    fails(&with(&["--group", "lift=c_l:2"]), &["between 0 and 1"]);
+    fails(
+        &with(&["--group", "a=c_l", "--group", "b=c_l_0"]),
+        &["c_l_0", "second time"],
+    );
+    fails(
+        &with(&["--vary", "weight"]),
+        &["--vary: unknown parameter `weight`"],
+    );
+    fails(&with(&["--vary", "g"]), &["nothing to draw"]);
+    fails(&["covariance", "--model", "com"], &["no noise"]);
+}
+
+#[test]
+fn first_order_and_flights_stand_side_by_side() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("text");
+    let arguments = [
+        "covariance",
+        "--model",
+        "sdcom",
+        "--t-end",
+        "0.4",
+        "--dt",
+        "0.01",
+        "--members",
+        "200",
+        "--out",
+        out,
+    ];
+    let outcome = json(&arguments);
+    let times = outcome["times"].as_array().expect("a list");
+    assert_eq!(times.len(), 20);
+    let last = &times[19];
+    // The coloured noise by itself: b² (1 − exp(−2at))/(2a) with a = ζω and b = ζσ/ω of mode 1.
+    let (zeta, omega, sigma) = (0.7_f64, 19.7437, 17.0);
+    let (a, b): (f64, f64) = (zeta * omega, zeta * sigma / omega);
+    let expected = (b * b * (1.0 - (-2.0 * a * 0.4).exp()) / (2.0 * a)).sqrt();
+    assert!((number(&last["linear_std"]["chi_1"]) - expected).abs() < 1e-6);
+    assert_eq!(last["members"], 200);
+    assert!(number(&outcome["share_inside"]) > 0.7);
+    let printed = text(&arguments);
+    assert!(
+        printed.contains("alpha")
+            && printed.contains("deg [")
+            && printed.contains("flights broke down")
+    );
+    let svg = fs::read_to_string(folder.path().join("covariance.svg")).expect("a picture");
+    assert!(svg.contains("standard deviation [deg]") && !svg.contains("NaN"));
+    let table = fs::read_to_string(folder.path().join("covariance.csv")).expect("a table");
+    assert_eq!(table.lines().count(), 21);
+}
