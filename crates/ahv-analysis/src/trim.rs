@@ -90,7 +90,8 @@ pub struct Trim<X, U> {
 /// The point inside the bounds that comes nearest to a trim.
 ///
 /// The sum of squares of the scaled residuals has a minimum there. A row's scale is its largest derivative by an
-/// unknown where the search starts, with 0.1 for a unit of `alpha`, `phi` and `delta_e`; the row `velocity` weighs as V γ̇.
+/// unknown where the search starts, with 0.1 for a unit of `alpha`, `phi` and `delta_e`; the row `velocity` weighs as V γ̇,
+/// and those of the modes a hundred times as much, so that they rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearest {
     /// The state by name.

@@ -6,10 +6,10 @@ use nalgebra::{DMatrix, DVector};
 use super::{Blocking, Point, System};
 
 /// Steps before the search gives up.
-const MAX_ITERATIONS: usize = 200;
+const MAX_ITERATIONS: usize = 500;
 
 /// Cosine between residual and a column of the Jacobian below which the unknown no longer helps.
-const STATIONARY: f64 = 1e-8;
+const STATIONARY: f64 = 1e-6;
 
 /// Scaled residual at which there is nothing left to reduce.
 const SOLVED: f64 = 1e-12;

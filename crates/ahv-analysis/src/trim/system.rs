@@ -11,6 +11,9 @@ const GIVEN_STATES: [&str; 4] = ["velocity", "altitude", "gamma", "pitch_rate"];
 /// Rows of the drift that hold by construction.
 const REDUNDANT_ROWS: [&str; 2] = ["altitude", "alpha"];
 
+/// Weight of the flexible rows: where there is no trim, the rigid body is off balance, not the modes.
+const FLEXIBLE: f64 = 1e2;
+
 /// A state with its input.
 pub(super) struct Point<M: DifferentiableModel<Scalar = f64>> {
     pub(super) x: M::State,
@@ -68,9 +71,15 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
             column_scale,
         };
         system.row_scale = row_scale(&system.jacobian(&system.start(flight)?));
-        // Accelerations along and across the path weigh alike: V̇ as V γ̇.
         let row = |name| system.rows.iter().position(|&row| names[row] == name);
-        if let (Some(along), Some(across)) = (row("velocity"), row("gamma")) {
+        let rigid = ["velocity", "gamma", "pitch_rate"].map(row);
+        for (index, scale) in system.row_scale.iter_mut().enumerate() {
+            if !rigid.contains(&Some(index)) {
+                *scale *= FLEXIBLE;
+            }
+        }
+        // Accelerations along and across the path weigh alike: V̇ as V γ̇.
+        if let [Some(along), Some(across), _] = rigid {
             system.row_scale[along] = system.row_scale[across] / flight.velocity.abs();
         }
         Ok(system)
