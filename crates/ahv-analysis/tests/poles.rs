@@ -223,6 +223,24 @@ fn modes_are_told_by_participation() {
     );
 }
 
+/// Participation factors are pure numbers: those of the model in SI are the same.
+#[test]
+fn participation_does_not_depend_on_units() {
+    let feet = com::NOMINAL;
+    let mut factors = com::Parameters::<f64>::SI_FACTORS.iter();
+    let metres = feet.map(|value| value * factors.next().expect("a factor for each"));
+    let model = com::Model::new(&metres);
+    let flight = SteadyFlight::new(7702.0808 * 0.3048, 85_000.0 * 0.3048);
+    let trim = trim(&model, &flight).expect("the model trims in SI");
+    let in_si = linearize(&model, &trim.state, &trim.input, &[], &[]).expect("smooth");
+    let found = poles(&system(&com::Model::new(&feet))).expect("poles");
+    let found_in_si = poles(&in_si).expect("poles in SI");
+    for (pole, in_si) in found.iter().zip(&found_in_si) {
+        assert_eq!(pole.mode, in_si.mode);
+        assert_abs_diff_eq!(pole.participation, in_si.participation, epsilon = 1e-7);
+    }
+}
+
 #[test]
 fn coloured_noise_and_gust_have_their_own_decay_rates() {
     let p = dcom::NOMINAL;

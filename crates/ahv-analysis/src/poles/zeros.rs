@@ -9,7 +9,7 @@ use super::{PolesError, frequency, told_from_zero};
 use crate::linearize::LinearSystem;
 
 /// A zero is infinite when |β| is at most this share of |α| + |β|.
-const INFINITE: f64 = 2e-2;
+const INFINITE: f64 = 1e-10;
 
 /// Singular value, as a share of the largest, below which a rank is lost.
 const RANK: f64 = 1e-9;
