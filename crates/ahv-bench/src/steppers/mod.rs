@@ -73,7 +73,7 @@ pub(crate) fn measure(
     })
 }
 
-/// Builds the program with the solvers from crates.io.
+/// Builds the program with the solvers of other crates.
 fn crates(root: &Path, out: &Path) -> Result<std::path::PathBuf, String> {
     let folder = root.join("crates/ahv-bench/peers/solver-crates");
     let target = out.join("solver-crates");

@@ -1,4 +1,4 @@
-//! Solvers from crates.io on the generated right-hand side of DCOM: a line of JSON in, a line of JSON out.
+//! Solvers of other Rust crates on the generated right-hand side of DCOM: a line of JSON in, a line of JSON out.
 //!
 //! The first line in is the [`Problem`], every other a [`Request`]; each is answered by an [`Answer`].
 #![forbid(unsafe_code)]
