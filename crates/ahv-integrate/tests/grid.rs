@@ -1,41 +1,20 @@
 //! Fixed steps know their times, and a failure tells its own.
 #![forbid(unsafe_code)]
 
+#[path = "common/blow_up.rs"]
+mod blow_up;
 mod common;
 
-use ahv_core::{Model, Vector};
+use ahv_core::Vector;
 use ahv_integrate::{Failure, Progress, Rk4, TimeGrid};
-use common::vector;
-
-vector!(State, size, time);
-
-/// x' = x² blows up at t = 1/x₀; y' = 1.
-struct BlowUp;
-
-impl Model for BlowUp {
-    type Scalar = f64;
-    type State = State<f64>;
-    type Input = State<f64>;
-
-    fn drift(&self, x: &State<f64>, _: &State<f64>) -> State<f64> {
-        State {
-            size: x.size * x.size,
-            time: 1.0,
-        }
-    }
-}
-
-const START: State<f64> = State {
-    size: 1.0,
-    time: 0.0,
-};
+use blow_up::{BlowUp, ONE, State};
 
 fn grid(begin: f64, end: f64, dt: f64) -> TimeGrid {
     TimeGrid::new(begin, end, dt).expect("few steps")
 }
 
 fn fly(grid: &TimeGrid, progress: &mut Progress<State<f64>>) -> Result<(), Failure> {
-    while grid.step(progress, |x, _, dt| Rk4::new(dt).step(&BlowUp, x, &START))? {}
+    while grid.step(progress, |x, _, dt| Rk4::new(dt).step(&BlowUp, x, &ONE))? {}
     Ok(())
 }
 
@@ -75,11 +54,11 @@ fn the_last_step_is_shortened() {
 #[test]
 fn a_run_passes_the_times_of_the_grid() {
     let grid = grid(0.5, 1.2, 0.3);
-    let mut progress = Progress::new(0.5, START);
+    let mut progress = Progress::new(0.5, ONE);
     let mut seen = Vec::new();
     let step = |x: &mut State<f64>, step, dt| {
         seen.push((step, dt));
-        Rk4::new(dt).step(&BlowUp, x, &START)
+        Rk4::new(dt).step(&BlowUp, x, &ONE)
     };
     let mut step = step;
     while grid.step(&mut progress, &mut step).expect("finite") {}
@@ -92,7 +71,7 @@ fn a_run_passes_the_times_of_the_grid() {
 #[test]
 fn a_failure_tells_time_name_and_value_and_leaves_the_last_good_state() {
     let grid = grid(0.0, 4.0, 0.25);
-    let mut progress = Progress::new(0.0, START);
+    let mut progress = Progress::new(0.0, ONE);
     let failure = fly(&grid, &mut progress).expect_err("the pole is at 1 s");
     let Failure::NonFinite { time, name, value } = failure else {
         panic!("{failure}");

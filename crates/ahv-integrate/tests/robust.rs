@@ -1,7 +1,11 @@
 //! Failures are typed, and leave the last good state.
 #![forbid(unsafe_code)]
 
+#[path = "common/blow_up.rs"]
+mod blow_up;
 mod common;
+#[path = "common/random.rs"]
+mod random;
 
 use ahv_core::{Bounds, DifferentiableModel, Model, Outside, Vector, first_outside};
 use ahv_integrate::{
@@ -9,30 +13,9 @@ use ahv_integrate::{
     Observer, Problem, Progress, Rodas4, Tsit5, When, Within,
 };
 use ahv_models::{com, com_rigid, dcom, sdcom};
-use common::vector;
+use blow_up::{BlowUp, ONE, State};
+use random::Random;
 
-vector!(State, size, time);
-
-/// x' = x² blows up at t = 1/x₀; y' = 1.
-struct BlowUp;
-
-impl Model for BlowUp {
-    type Scalar = f64;
-    type State = State<f64>;
-    type Input = State<f64>;
-
-    fn drift(&self, x: &State<f64>, _: &State<f64>) -> State<f64> {
-        State {
-            size: x.size * x.size,
-            time: 1.0,
-        }
-    }
-}
-
-const ONE: State<f64> = State {
-    size: 1.0,
-    time: 0.0,
-};
 const HELD: Constant<State<f64>> = Constant(ONE);
 const ABSOLUTE: State<f64> = State {
     size: 1e-9,
@@ -204,26 +187,6 @@ fn the_edge_of_the_box_warns_or_stops() {
         "{progress:?}"
     );
     assert!(warnings.0.is_empty());
-}
-
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn within<X: Vector<f64>, B: Vector<Bounds>>(&mut self, bounds: &B) -> X {
-        X::from_fn(|index| {
-            let bounds = bounds.get(index).expect("one interval a component");
-            bounds.min + self.unit() * (bounds.max - bounds.min)
-        })
-    }
 }
 
 /// From anywhere in the box, inputs and all: a finite state at the end, or a typed failure with the last good state.
