@@ -2,16 +2,18 @@
 
 use std::borrow::Cow;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ahv_analysis::trim::{SOUGHT_INPUTS, SteadyFlight};
 use ahv_models::dcom::{Canard, Earth, ModalNoise, Reduction};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 
 use crate::assignment::Assignments;
 use crate::failure::{Failure, complain};
 use crate::names;
+use crate::output::Pairs;
 use crate::place;
 use crate::table::Table;
 use crate::units::Units;
@@ -74,6 +76,16 @@ pub(crate) struct Vehicle<M: FlightModel> {
     pub(crate) uncertainty: M::Parameters,
     pub(crate) state_bounds: M::StateBounds,
     pub(crate) input_bounds: M::InputBounds,
+}
+
+/// Which model an outcome is of: what the JSON of every command that takes a condition begins with.
+#[derive(Serialize)]
+pub(crate) struct Heading<'a> {
+    pub(crate) model: &'static str,
+    table: Option<&'a Path>,
+    set: &'a str,
+    choices: Pairs<Option<&'static str>>,
+    unit_system: &'static str,
 }
 
 /// What a table says of a model, in the units that the model was generated with.
@@ -208,6 +220,17 @@ impl<M: FlightModel> Vehicle<M> {
         let mut level = SteadyFlight::new(velocity, altitude);
         inputs.apply(&mut level.input, &SOUGHT_INPUTS);
         Ok(level)
+    }
+
+    /// Model, parameters and choices, for a program.
+    pub(crate) fn heading(&self) -> Heading<'_> {
+        Heading {
+            model: M::NAME,
+            table: self.table.as_deref(),
+            set: &self.set,
+            choices: Pairs(self.choices.clone()),
+            unit_system: self.units.name(),
+        }
     }
 
     /// Parameters and choices, for a person.

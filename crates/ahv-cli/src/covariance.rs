@@ -13,7 +13,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::assignment::show;
-use crate::condition::{Condition, Vehicle};
+use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
 use crate::output::{self, Pairs};
@@ -140,11 +140,8 @@ where
 
 #[derive(Serialize)]
 struct Json<'a> {
-    model: &'static str,
-    table: Option<&'a Path>,
-    set: &'a str,
-    choices: Pairs<Option<&'static str>>,
-    unit_system: &'static str,
+    #[serde(flatten)]
+    heading: Heading<'a>,
     units: Pairs<&'static str>,
     members: u64,
     seed: u64,
@@ -201,11 +198,7 @@ impl<M: FlightModel> Outcome<'_, M> {
             sampled_mean: named::<M::State, _>(&sampled.mean),
         };
         Json {
-            model: M::NAME,
-            table: self.vehicle.table.as_deref(),
-            set: &self.vehicle.set,
-            choices: Pairs(self.vehicle.choices.clone()),
-            unit_system: self.vehicle.units.name(),
+            heading: self.vehicle.heading(),
             units: Pairs::units::<M::State>(self.vehicle.units),
             members: self.arguments.members,
             seed: self.arguments.seed,

@@ -11,7 +11,7 @@ use clap::Args;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
-use crate::condition::{Condition, Vehicle};
+use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
 use crate::names;
@@ -116,11 +116,8 @@ impl<M: FlightModel> Vehicle<M> {
 /// The system by the names of its matrices, with the point that it stands for.
 #[derive(Serialize)]
 struct Json<'a> {
-    model: &'static str,
-    table: Option<&'a Path>,
-    set: &'a str,
-    choices: Pairs<Option<&'static str>>,
-    unit_system: &'static str,
+    #[serde(flatten)]
+    heading: Heading<'a>,
     velocity: f64,
     altitude: f64,
     gamma_deg: f64,
@@ -146,23 +143,15 @@ fn json<'a, M: FlightModel>(
     trim: &Trim<M::State, M::Input>,
     system: &'a LinearSystem,
 ) -> Json<'a> {
-    let units = [
-        Pairs::units::<M::State>(vehicle.units).0,
-        Pairs::units::<M::Input>(vehicle.units).0,
-    ];
     Json {
-        model: M::NAME,
-        table: vehicle.table.as_deref(),
-        set: &vehicle.set,
-        choices: Pairs(vehicle.choices.clone()),
-        unit_system: vehicle.units.name(),
+        heading: vehicle.heading(),
         velocity: flight.velocity,
         altitude: flight.altitude,
         gamma_deg: flight.gamma.to_degrees(),
         states: &system.states,
         inputs: &system.inputs,
         outputs: &system.outputs,
-        units: Pairs(units.concat()),
+        units: Pairs::units_of_both::<M::State, M::Input>(vehicle.units),
         state: Pairs::of(&trim.state),
         input: Pairs::of(&trim.input),
         a: rows(&system.a),

@@ -11,7 +11,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::assignment::Assignments;
-use crate::condition::{Condition, Vehicle};
+use crate::condition::{Condition, Heading, Vehicle};
 use crate::failure::{Failure, print};
 use crate::output::{self, Pairs, describe};
 use crate::place::Place;
@@ -49,11 +49,9 @@ pub(crate) struct Arguments {
 
 /// A file of gains.
 #[derive(Serialize)]
-struct Gains {
-    model: &'static str,
-    set: String,
-    choices: Pairs<Option<&'static str>>,
-    unit_system: &'static str,
+struct Gains<'a> {
+    #[serde(flatten)]
+    heading: Heading<'a>,
     law: &'static str,
     /// Columns of the gain.
     states: Vec<&'static str>,
@@ -123,9 +121,9 @@ fn costs<M: FlightModel, V: Vector<f64>>(
     }
 }
 
-impl Gains {
+impl<'a> Gains<'a> {
     fn new<M: FlightModel>(
-        vehicle: &Vehicle<M>,
+        vehicle: &'a Vehicle<M>,
         trim: &Trim<M::State, M::Input>,
         states: &M::State,
         inputs: &M::Input,
@@ -156,17 +154,10 @@ impl Gains {
             )
         };
         let rows = regulator.gain.row_iter();
-        let units = [
-            Pairs::units::<M::State>(vehicle.units).0,
-            Pairs::units::<M::Input>(vehicle.units).0,
-        ];
         Ok(Self {
-            model: M::NAME,
-            set: vehicle.set.to_string(),
-            choices: Pairs(vehicle.choices.clone()),
-            unit_system: vehicle.units.name(),
+            heading: vehicle.heading(),
             law: "u = input - gain (x - state)",
-            units: Pairs(units.concat()),
+            units: Pairs::units_of_both::<M::State, M::Input>(vehicle.units),
             state: Pairs::of(&trim.state),
             input: Pairs::of(&trim.input),
             gain: rows.map(|row| row.iter().copied().collect()).collect(),
@@ -184,7 +175,10 @@ impl Gains {
     }
 
     fn text(&self, place: &str, trim: &str) -> String {
-        let mut text = format!("{}: regulator at {place}\n{trim}\ngain:", self.model);
+        let mut text = format!(
+            "{}: regulator at {place}\n{trim}\ngain:",
+            self.heading.model
+        );
         // Writing into a String cannot fail.
         for (input, row) in self.inputs.iter().zip(&self.gain) {
             let _ = write!(text, "\n  {input}");

@@ -163,6 +163,11 @@ impl Pairs<&'static str> {
         let labels = units.labels::<V>().iter().copied();
         Self(V::NAMES.iter().copied().zip(labels).collect())
     }
+
+    /// The units of a state's and an input's components by name.
+    pub(crate) fn units_of_both<X: Vector<f64>, U: Vector<f64>>(units: Units) -> Self {
+        Self([Self::units::<X>(units).0, Self::units::<U>(units).0].concat())
+    }
 }
 
 /// One line for each component, in units for a person.

@@ -13,10 +13,10 @@ use clap::Args;
 use nalgebra::Complex;
 use serde::Serialize;
 
-use crate::condition::{Condition, Vehicle};
+use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
-use crate::output::{self, Pairs};
+use crate::output;
 use crate::place::Place;
 use crate::vehicle::{FlightModel, for_model};
 
@@ -73,11 +73,8 @@ struct Roots<'a, M: FlightModel> {
 
 #[derive(Serialize)]
 struct Json<'a> {
-    model: &'static str,
-    table: Option<&'a Path>,
-    set: &'a str,
-    choices: Pairs<Option<&'static str>>,
-    unit_system: &'static str,
+    #[serde(flatten)]
+    heading: Heading<'a>,
     place: &'a str,
     poles: Vec<[f64; 2]>,
     zeros: Vec<[f64; 2]>,
@@ -188,11 +185,7 @@ impl<M: FlightModel> Roots<'_, M> {
             decoupling: decoupling(zero),
         });
         Json {
-            model: M::NAME,
-            table: self.vehicle.table.as_deref(),
-            set: &self.vehicle.set,
-            choices: Pairs(self.vehicle.choices.clone()),
-            unit_system: self.vehicle.units.name(),
+            heading: self.vehicle.heading(),
             place: &self.place,
             poles: self.poles.iter().map(|it| pair(it.value)).collect(),
             zeros: self.zeros.finite.iter().map(|it| pair(it.value)).collect(),

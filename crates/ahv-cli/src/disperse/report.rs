@@ -13,6 +13,7 @@ use ahv_core::{Vector, first_outside};
 use serde::Serialize;
 
 use super::Outcome;
+use crate::condition::Heading;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::output::Pairs;
@@ -20,11 +21,8 @@ use crate::vehicle::FlightModel;
 
 #[derive(Serialize)]
 pub(super) struct Json<'a> {
-    model: &'static str,
-    table: Option<&'a Path>,
-    set: &'a str,
-    choices: Pairs<Option<&'static str>>,
-    unit_system: &'static str,
+    #[serde(flatten)]
+    heading: Heading<'a>,
     distribution: Distribution,
     seed: u64,
     members: usize,
@@ -99,11 +97,7 @@ impl<M: FlightModel> Outcome<'_, M> {
                 .collect(),
         };
         Json {
-            model: M::NAME,
-            table: self.vehicle.table.as_deref(),
-            set: &self.vehicle.set,
-            choices: Pairs(self.vehicle.choices.clone()),
-            unit_system: self.vehicle.units.name(),
+            heading: self.vehicle.heading(),
             distribution: self.draws.distribution(),
             seed: self.arguments.seed,
             members: self.members.len(),

@@ -90,11 +90,6 @@ impl<X: Vector<f64>, U: Vector<f64>> Report<'_, X, U> {
     }
 
     fn json(&self) -> Result<String, Failure> {
-        let units = [
-            Pairs::units::<X>(self.units).0,
-            Pairs::units::<U>(self.units).0,
-        ]
-        .concat();
         let json = Json {
             model: self.model,
             set: self.set,
@@ -107,7 +102,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Report<'_, X, U> {
             initial_state: Pairs::of(&self.initial_state),
             final_state: Pairs::of(&self.final_state),
             input: Pairs::of(&self.input),
-            units: Pairs(units),
+            units: Pairs::units_of_both::<X, U>(self.units),
             out: self.out.display().to_string(),
             left_validity_box: self
                 .departure

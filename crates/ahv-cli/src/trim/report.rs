@@ -1,13 +1,11 @@
 //! What a trim at one point tells.
 
-use std::path::Path;
-
 use ahv_analysis::trim::{Nearest, SteadyFlight, Trim, TrimError};
 use ahv_core::{Outside, Vector, first_outside};
 use serde::Serialize;
 
 use crate::assignment::show;
-use crate::condition::Vehicle;
+use crate::condition::{Heading, Vehicle};
 use crate::output::{Pairs, describe, describe_outside};
 use crate::vehicle::FlightModel;
 
@@ -32,11 +30,8 @@ pub(super) struct Report<'a, M: FlightModel> {
 /// Angles by the names of their unit; everything else in the units of the model.
 #[derive(Serialize)]
 pub(super) struct Json<'a> {
-    model: &'static str,
-    table: Option<&'a Path>,
-    set: &'a str,
-    choices: Pairs<Option<&'static str>>,
-    unit_system: &'static str,
+    #[serde(flatten)]
+    heading: Heading<'a>,
     velocity: f64,
     altitude: f64,
     gamma_deg: f64,
@@ -95,16 +90,8 @@ impl<'a, M: FlightModel> Report<'a, M> {
         let state = |name| found.and_then(|it| it.state.get(M::State::index_of(name)?));
         let input = |name| found.and_then(|it| it.input.get(M::Input::index_of(name)?));
         let outside = self.outside();
-        let units = [
-            Pairs::units::<M::State>(vehicle.units).0,
-            Pairs::units::<M::Input>(vehicle.units).0,
-        ];
         Json {
-            model: M::NAME,
-            table: vehicle.table.as_deref(),
-            set: &vehicle.set,
-            choices: Pairs(vehicle.choices.clone()),
-            unit_system: vehicle.units.name(),
+            heading: vehicle.heading(),
             velocity: self.flight.velocity,
             altitude: self.flight.altitude,
             gamma_deg: self.flight.gamma.to_degrees(),
@@ -133,7 +120,7 @@ impl<'a, M: FlightModel> Report<'a, M> {
             state: found.map(|it| Pairs::of(&it.state)),
             input: found.map(|it| Pairs::of(&it.input)),
             residuals: found.map(|it| Pairs::of(&it.residuals)),
-            units: Pairs(units.concat()),
+            units: Pairs::units_of_both::<M::State, M::Input>(vehicle.units),
         }
     }
 
