@@ -54,6 +54,18 @@ pub enum CovarianceError {
     /// Times that do not ascend from 0, or a step that is not positive.
     #[error("times must ascend from 0 and the step be positive and finite")]
     Times,
+    /// Too few members of an ensemble are left for a standard deviation.
+    #[error(
+        "at {time} s {left} of {members} flights are left, too few for a standard deviation: the others are no longer finite"
+    )]
+    BrokenDown {
+        /// Time, in s.
+        time: f64,
+        /// Members whose state is finite.
+        left: usize,
+        /// Members in all.
+        members: u64,
+    },
     /// State or covariance is not finite, or a variance is negative: the step is too long, or the flight diverges.
     #[error("at {time} s the {what} of {name} is {value}")]
     Diverged {

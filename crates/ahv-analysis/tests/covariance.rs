@@ -274,3 +274,23 @@ fn threads_do_not_matter() {
     };
     assert_eq!(on(1), on(3));
 }
+
+#[test]
+fn an_ensemble_that_breaks_down_is_an_error() {
+    let model = sdcom::Model::new(&sdcom::NOMINAL);
+    let mut flight = level(&model, 0.1);
+    // So far down that the density overflows.
+    flight.start.altitude = -1e8;
+    let ensemble = Ensemble {
+        members: 5,
+        seed: 1,
+    };
+    assert_eq!(
+        flight.monte_carlo::<_, 6>(&model, &[0.2], ensemble),
+        Err(CovarianceError::BrokenDown {
+            time: 0.2,
+            left: 0,
+            members: 5
+        })
+    );
+}

@@ -7,6 +7,9 @@ use rayon::prelude::*;
 use super::{CovarianceError, Flight};
 use crate::statistics::{Estimate, mean_and_std};
 
+/// Fewest members that a standard deviation with an interval takes.
+const FEWEST: usize = 2;
+
 /// Many flights, each with noise of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ensemble {
@@ -38,7 +41,7 @@ impl<X: Vector<f64> + Send + Sync, U: Vector<f64> + Sync> Flight<X, U> {
     ///
     /// # Errors
     ///
-    /// [`CovarianceError::Times`].
+    /// [`CovarianceError::Times`], [`CovarianceError::BrokenDown`] when fewer than 2 members are left.
     pub fn monte_carlo<M, const N: usize>(
         &self,
         model: &M,
@@ -74,6 +77,13 @@ impl<X: Vector<f64> + Send + Sync, U: Vector<f64> + Sync> Flight<X, U> {
                 .iter()
                 .filter_map(|x| x.get(index).copied())
                 .collect();
+            if states.len() < FEWEST {
+                return Err(CovarianceError::BrokenDown {
+                    time,
+                    left: states.len(),
+                    members: ensemble.members,
+                });
+            }
             let count = states.len() as f64;
             let estimates = (0..X::LEN).map(|state| {
                 let sample: Vec<f64> = states.iter().filter_map(|x| x.get(state)).collect();
@@ -84,13 +94,13 @@ impl<X: Vector<f64> + Send + Sync, U: Vector<f64> + Sync> Flight<X, U> {
                 )
             });
             let (mean, std) = estimates.unzip();
-            Sampled {
+            Ok(Sampled {
                 time,
                 mean,
                 std,
                 members: states.len() as u64,
-            }
+            })
         };
-        Ok(times.iter().enumerate().map(at).collect())
+        times.iter().enumerate().map(at).collect()
     }
 }
