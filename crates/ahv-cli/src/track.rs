@@ -33,8 +33,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Choice::Both)]
     controller: Choice,
 
-    /// Flights of each controller
-    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=MOST_RUNS))]
+    /// Flights of each controller, two at least: one tells nothing of a spread
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u64).range(2..=MOST_RUNS))]
     runs: u64,
 
     /// Seed of the noise: the same seed gives the same numbers on every machine

@@ -140,7 +140,7 @@ fn requests_without_sense_are_refused() {
         &["altitude"],
     );
     fail(
-        &["track", "--runs", "0", "--out", "nowhere"],
+        &["track", "--runs", "1", "--out", "nowhere"],
         2,
         &["--runs"],
     );
@@ -148,7 +148,7 @@ fn requests_without_sense_are_refused() {
         &[
             "track",
             "--runs",
-            "1",
+            "2",
             "--out",
             "/dev/null/folder",
             "--controller",
