@@ -17,7 +17,7 @@ pub const {{ pattern.name }}: Pattern<{{ pattern.dimensions }}> = Pattern::new([
 {%- for line in f.docs %}
 ///{% if !line.is_empty() %} {{ line }}{% endif %}
 {%- endfor %}
-#[inline]
+#[inline(always)]
 pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
 {%- if let Some(source) = f.source %}
     {{ source }}
@@ -25,7 +25,7 @@ pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
 {%- for statement in f.statements %}
     {{ statement.source() }}
 {%- endfor %}
-{%- if f.outputs.len() > 1 || !f.zeros.is_empty() %}
+{%- if f.outputs.len() > 1 || !(f.zeros.is_empty() || f.statements.is_empty()) %}
     __section!("Result");
 {%- else if f.sets_result_off() %}
     __section!("");

@@ -14,6 +14,18 @@ pub struct Prepared<R> {
 {%- endfor %}
 }
 
+impl<R> Prepared<R> {
+    /// Applies `f` to each field; the type of the fields may change.
+    #[inline(always)]
+    pub fn map_ref<U>(&self, mut f: impl FnMut(&R) -> U) -> Prepared<U> {
+        Prepared {
+{%- for field in fields %}
+            {{ field.name }}: f(&self.{{ field.name }}),
+{%- endfor %}
+        }
+    }
+}
+
 /// Computes everything that depends on parameters alone.
 ///
 /// {{ cost }}.

@@ -76,9 +76,16 @@ fn evaluation(model: &Value) -> String {
             // Computed at one go, they are the same numbers: the oracle needs no second look at them.
             let _ = writeln!(
                 body,
-                "    let (drift, {pattern}) = (model::drift(&x, &u, &p), model::{parts}(&x, &u, &p));\n    \
+                "    let (drift, {pattern}) = (model::drift(&x, &u, &p), model::{parts}({arguments}));\n    \
                  assert_eq!({call}, {tuple});"
             );
+            if function["compressed"] == true {
+                let _ = writeln!(
+                    body,
+                    "    let {pattern} = model::{parts}_values({arguments});\n    \
+                     assert_eq!(model::{function_name}_values({arguments}), {tuple});"
+                );
+            }
             continue;
         }
         let names: Vec<String> = (0..outputs.len()).map(|k| format!("y{k}")).collect();

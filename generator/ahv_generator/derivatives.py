@@ -19,7 +19,7 @@ def add_drift_and_derivatives(m: Model, rates: dict[str, ca.SX], equation: str) 
     m.add("drift", "drift", "Time derivative of the state", equation, [drift])
     m.add("jacobians", "jacobians", slopes.capitalize(), equation, [by_state, by_input], compressed=True)
     both = f"Time derivative of the state, and the {slopes}, for less than one after the other"
-    m.add("drift_and_jacobians", "jacobians", both, equation, [drift, by_state, by_input])
+    m.add("drift_and_jacobians", "jacobians", both, equation, [drift, by_state, by_input], compressed=True)
     m.add(
         "parameter_jacobian",
         "parameter_jacobian",

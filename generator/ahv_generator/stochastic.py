@@ -41,6 +41,13 @@ def add_diffusion(m: Model, rates: dict[str, ca.SX], gains: Gains, columns_doc: 
         equation,
         [m.vector("state", increments, "increment")],
     )
+    m.add(
+        "drift_and_noise_increment",
+        "diffusion",
+        "Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other",
+        equation,
+        [m.vector("state", rates, "drift"), m.vector("state", increments, "increment")],
+    )
     _add_derivatives(m, gains, equation)
 
 

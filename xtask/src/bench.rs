@@ -1,19 +1,17 @@
-//! `cargo xtask bench`: the figures of docs/benchmarks.md, measured here.
+//! `cargo xtask bench`: the product beside its peers, measured here.
 
 use std::fs;
 use std::path::PathBuf;
 
 use ahv_generate::Surroundings;
 
-use crate::shell;
+use crate::{python, shell};
 
 /// What the peers need, apart from the project's own environments: other tools in their latest versions.
 const REQUIREMENTS: &str = "crates/ahv-bench/peers/requirements.txt";
 
-/// Builds the product and its peers, and measures them beside each other.
-pub(crate) fn run() -> Result<(), String> {
-    let build = ["build", "--quiet", "--release", "--package", "ahv-cli"];
-    shell::run(shell::cargo().args(build))?;
+/// Builds the product and CasADi's C, or with `peers` all peers, and measures them beside each other.
+pub(crate) fn run(peers: bool) -> Result<(), String> {
     let mut bench = shell::cargo();
     bench.args([
         "run",
@@ -23,15 +21,25 @@ pub(crate) fn run() -> Result<(), String> {
         "ahv-bench",
         "--",
     ]);
-    bench.arg("--python").arg(python()?);
+    // The baseline target, whatever flags the user has.
     bench
-        .arg("--generate")
-        .arg(shell::target().join("release/ahv"));
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .env("RUSTFLAGS", "");
     bench.arg("--out").arg(shell::target().join("bench"));
+    if peers {
+        let build = ["build", "--quiet", "--release", "--package", "ahv-cli"];
+        shell::run(shell::cargo().args(build))?;
+        bench
+            .arg("--peers")
+            .arg(shell::target().join("release/ahv"));
+        bench.arg("--python").arg(environment()?);
+    } else {
+        bench.arg("--python").arg(python::generation()?);
+    }
     shell::run(&mut bench)
 }
 
-fn python() -> Result<PathBuf, String> {
+fn environment() -> Result<PathBuf, String> {
     let path = shell::root().join(REQUIREMENTS);
     let text = fs::read_to_string(&path)
         .map_err(|error| format!("error: cannot read {}: {error}", path.display()))?;

@@ -6,6 +6,7 @@ mod book;
 mod demo;
 mod determinism;
 mod firmware;
+mod instructions;
 mod no_panic;
 mod plot;
 mod python;
@@ -37,8 +38,18 @@ enum Task {
     Determinism,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
-    /// Measure the generated functions beside their peers, and write docs/benchmarks.md
-    Bench,
+    /// Measure the generated functions and the steppers beside CasADi's C
+    Bench {
+        /// Beside all peers, and write docs/benchmarks.md
+        #[arg(long)]
+        peers: bool,
+    },
+    /// Count the instructions of a call under valgrind, and hold them to crates/ahv-bench-kernels/instructions.json
+    Instructions {
+        /// Write the counts there
+        #[arg(long)]
+        write: bool,
+    },
     /// Build the documentation as pages for a browser, in target/book
     Book,
     /// Fly on a Cortex-M7 under QEMU, compare with this machine bit for bit, and print what a step costs
@@ -59,7 +70,8 @@ fn main() -> ExitCode {
         Task::Audit { points } => audit(points),
         Task::Determinism => determinism::run(),
         Task::Vectors => vectors::run(),
-        Task::Bench => bench::run(),
+        Task::Bench { peers } => bench::run(peers),
+        Task::Instructions { write } => instructions::run(write),
         Task::Book => book::run(),
         Task::Firmware { write } => firmware::run(steps::BARE_METAL, write),
         Task::Demo => demo::run(),

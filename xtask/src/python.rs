@@ -9,12 +9,14 @@ use crate::shell;
 
 /// Makes both environments, and says where they are.
 pub(crate) fn set_up() -> Result<(), String> {
-    println!(
-        "generation:  {}",
-        environment("generation", "requirements.txt")?.display()
-    );
+    println!("generation:  {}", generation()?.display());
     println!("development: {}", development()?.display());
     Ok(())
+}
+
+/// The interpreter that has what generation needs.
+pub(crate) fn generation() -> Result<PathBuf, String> {
+    environment("generation", "requirements.txt")
 }
 
 /// The interpreter that has what tests and the audit need.

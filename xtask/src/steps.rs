@@ -3,7 +3,7 @@
 use std::process::Command;
 use std::time::Instant;
 
-use crate::{book, determinism, firmware, no_panic, python, shell};
+use crate::{book, determinism, firmware, instructions, no_panic, python, shell};
 
 const XTASK: [&str; 2] = ["--manifest-path", "xtask/Cargo.toml"];
 /// With what `cargo xtask` itself was built from.
@@ -32,7 +32,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 18] = [
+const STEPS: [Step; 19] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK, &[])
@@ -77,6 +77,7 @@ const STEPS: [Step; 18] = [
         bare_metal(|| no_panic::run(BARE_METAL).map(|()| Outcome::Passed))
     }),
     ("firmware", || bare_metal(emulated_flights)),
+    ("instructions", counted_calls),
 ];
 const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
@@ -165,6 +166,14 @@ fn bare_metal(step: fn() -> Result<Outcome, String>) -> Result<Outcome, String> 
 fn emulated_flights() -> Result<Outcome, String> {
     match firmware::found() {
         Ok(()) => firmware::run(BARE_METAL, false).map(|()| Outcome::Passed),
+        Err(reason) => Ok(Outcome::Skipped(reason)),
+    }
+}
+
+/// Instructions of a call, which need valgrind.
+fn counted_calls() -> Result<Outcome, String> {
+    match instructions::found() {
+        Ok(()) => instructions::run(false).map(|()| Outcome::Passed),
         Err(reason) => Ok(Outcome::Skipped(reason)),
     }
 }

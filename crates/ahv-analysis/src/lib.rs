@@ -7,6 +7,7 @@
 //! * [`reduce`]: a flexible mode and its reduction to coloured noise in closed form; [`ensemble`]: the same by Monte Carlo;
 //!   [`statistics`]: estimates with their confidence.
 //! * [`track`]: closed loops, with [`backstepping`] on SDCOM's strict-feedback form and the linear-quadratic regulator of [`lqr`].
+//! * [`monte_carlo`]: many flights with noise and dispersions, as fast as the machine goes.
 //! * [`reproduce`]: section 5 of the paper, computed again.
 #![forbid(unsafe_code)]
 
@@ -16,6 +17,7 @@ pub mod disperse;
 pub mod ensemble;
 pub mod linearize;
 pub mod lqr;
+pub mod monte_carlo;
 pub mod parametric;
 pub mod poles;
 pub mod reduce;

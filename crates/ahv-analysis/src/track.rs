@@ -12,7 +12,7 @@ mod statistics;
 
 use ahv_models::sdcom;
 
-pub use actuator::{Actuator, Limits};
+pub use actuator::{Actuator, ActuatorStep, Limits};
 pub use ensemble::{ACTUATORS, ErrorSize, Flight, LimitedShare, Sample, TrackError, Trial, silent};
 pub use flight::{ClosedLoop, Increments, LoopState, SUBSTEPS};
 pub use linear::{LinearTracker, LinearTrackerError};

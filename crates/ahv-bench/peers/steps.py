@@ -50,11 +50,11 @@ def loop(name: str, expansion: Expansion, steps: int, end: float) -> ca.Function
     return ca.Function(name, [x, p], [integrator(x0=x, p=p)["xf"]])
 
 
-def steps(expansion: Expansion, end: float) -> list[ca.Function]:
-    """The functions for a model."""
+def steps(expansion: Expansion, end: float | None) -> list[ca.Function]:
+    """The functions for a model, with whole loops if there is an end."""
     name = expansion.model.name
     if name == "dcom":
-        loops = [loop(f"{name}_rk_{count}", expansion, count, end) for count in LOOPS]
+        loops = [] if end is None else [loop(f"{name}_rk_{count}", expansion, count, end) for count in LOOPS]
         return [runge_kutta(f"{name}_runge_kutta", expansion), *loops]
     if name == "sdcom":
         return [

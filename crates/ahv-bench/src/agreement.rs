@@ -28,8 +28,9 @@ pub(crate) fn check(
 ) -> Result<Vec<Agreement>, String> {
     let mut found = Vec::new();
     for (index, (subject, points)) in SUBJECTS.iter().zip(points).enumerate() {
-        let values = |it: &mut Candidate| (it.name, it.kernels[index].values(points));
-        let all: Vec<_> = candidates.iter_mut().map(values).collect();
+        let values = |it: &mut Candidate| Ok((it.name, it.kernels[index].values(points)?));
+        let all = candidates.iter_mut().map(values);
+        let all: Vec<_> = all.collect::<Result<_, String>>()?;
         let Some((_, reference)) = all.iter().find(|(name, _)| *name == REFERENCE) else {
             continue;
         };

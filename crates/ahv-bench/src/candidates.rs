@@ -1,17 +1,16 @@
-//! The candidates: how each is built and where its values lie.
-
-use std::env;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+//! The candidates for kernels: how each is built and where its values lie.
 
 use serde_json::Value;
 
+use crate::arrays::Arrays;
 use crate::commands;
-use crate::kernel::{self, Kernel, Layout, Work};
+use crate::interpreted::Interpreted;
+use crate::kernel::{self, Evaluate, Kernel, Layout, Work};
+use crate::setting::{Built, NATIVE, Setting, rustc};
 use crate::steppers::END;
 use crate::subject::{SUBJECTS, Subject};
 
-/// The one that the others are compared with.
+/// The one that the others are compared with: it comes first.
 pub(crate) const REFERENCE: &str = "CasADi C";
 /// The one that the goals are about.
 pub(crate) const PRODUCT: &str = "ahv";
@@ -21,75 +20,84 @@ pub(crate) struct Candidate {
     pub(crate) name: &'static str,
     /// What it was compiled with.
     pub(crate) built: String,
+    /// Seconds of compilation before it is loaded.
+    pub(crate) compiled: f64,
     /// One a subject.
-    pub(crate) kernels: Vec<Kernel>,
+    pub(crate) kernels: Vec<Box<dyn Evaluate>>,
 }
 
 /// What the peers say of themselves.
 pub(crate) struct Peers {
     pub(crate) casadi: Value,
+    /// Null where it does not run.
     pub(crate) wrenfold: Value,
 }
 
-const NATIVE: &str = "-C target-cpu=native";
-/// How all C is compiled.
-pub(crate) const GCC: [&str; 5] = ["-O3", "-march=native", "-shared", "-fPIC", "-std=c99"];
+/// Runs CasADi's script, and those of the other code generators.
+///
+/// # Errors
+/// A script that fails, or one whose tables are not those of the product.
+pub(crate) fn derive(setting: &Setting) -> Result<Peers, String> {
+    let end = END.to_string();
+    // The loops of whole flights take long to compile.
+    let loops: &[&str] = if setting.peers { &["--end", &end] } else { &[] };
+    let mut peers = Peers {
+        casadi: told(setting, "casadi", loops)?,
+        wrenfold: Value::Null,
+    };
+    check_parameters(&peers.casadi)?;
+    if setting.peers {
+        peers.wrenfold = told(setting, "wrenfold", &[])?;
+        check_parameters(&peers.wrenfold)?;
+        check_parameters(&told(setting, "symforce", &[])?)?;
+    }
+    Ok(peers)
+}
 
 /// Builds and loads all candidates.
 pub(crate) fn build(
-    root: &Path,
-    python: &Path,
-    out: &Path,
-) -> Result<(Peers, Vec<Candidate>), String> {
-    let peers = Peers {
-        casadi: derive(
-            root,
-            python,
-            "casadi_peer",
-            &out.join("casadi"),
-            &["--end".to_owned(), END.to_string()],
-        )?,
-        wrenfold: derive(root, python, "wrenfold_peer", &out.join("wrenfold"), &[])?,
-    };
-    for peer in [&peers.casadi, &peers.wrenfold] {
-        check_parameters(peer)?;
-    }
-    let mut candidates = vec![casadi(&peers.casadi, &out.join("casadi"))?];
+    setting: &Setting,
+    peers: &Peers,
+    arrays: Option<&Arrays>,
+) -> Result<Vec<Candidate>, String> {
+    let mut candidates = vec![casadi(setting, &peers.casadi)?];
     for (names, flags) in [
         (["ahv", "wrenfold"], ""),
         (["ahv, native", "wrenfold, native"], NATIVE),
     ] {
-        candidates.push(own(names[0], flags, root, out)?);
-        candidates.push(wrenfold(names[1], flags, root, out)?);
+        candidates.push(own(names[0], flags, setting)?);
+        if setting.peers {
+            candidates.push(wrenfold(names[1], flags, setting)?);
+        }
     }
-    Ok((peers, candidates))
+    if let Some(arrays) = arrays {
+        candidates.push(symforce(setting)?);
+        let numba = "`njit` of CasADi's instructions and of the loop over the points";
+        let jax = "`jit` and `vmap` over all points, one call";
+        for (name, built, service) in [("numba", numba, &arrays.numba), ("JAX", jax, &arrays.jax)] {
+            let kernel = |subject: &Subject| -> Box<dyn Evaluate> {
+                Box::new(Interpreted::new(&service[0], subject))
+            };
+            candidates.push(Candidate {
+                name,
+                built: built.to_owned(),
+                compiled: 0.0,
+                kernels: SUBJECTS.iter().map(kernel).collect(),
+            });
+        }
+    }
+    Ok(candidates)
 }
 
 /// Runs a peer's script, and reads what it says.
-fn derive(
-    root: &Path,
-    python: &Path,
-    script: &str,
-    out: &Path,
-    options: &[String],
-) -> Result<Value, String> {
-    commands::make_folder(out)?;
-    let mut command = peer(root, python, script);
-    command.arg("--out").arg(out).args(options);
-    command.args(commands::tables(root)?);
+fn told(setting: &Setting, peer: &str, options: &[&str]) -> Result<Value, String> {
+    let out = setting.out.join(peer);
+    commands::make_folder(&out)?;
+    let mut command = setting.script(&format!("{peer}_peer"));
+    command.arg("--out").arg(&out).args(options);
+    command.args(setting.tables()?);
     commands::output(&mut command)?;
     commands::read_json(&out.join("peer.json"))
-}
-
-/// A peer's script, to be given its arguments.
-pub(crate) fn peer(root: &Path, python: &Path, script: &str) -> Command {
-    let mut command = Command::new(python);
-    command
-        .env("PYTHONPATH", root.join("generator"))
-        .env("PYTHONDONTWRITEBYTECODE", "1")
-        .args(["-X", "utf8"])
-        .arg(root.join(format!("crates/ahv-bench/peers/{script}.py")));
-    command
 }
 
 /// The parameters go to the peers as an array, so all must have the same order.
@@ -107,20 +115,20 @@ fn check_parameters(peer: &Value) -> Result<(), String> {
     Ok(())
 }
 
-fn casadi(peer: &Value, out: &Path) -> Result<Candidate, String> {
-    let library = compiled(out, "peer")?;
-    let kernels = |subject: &Subject| {
+fn casadi(setting: &Setting, peer: &Value) -> Result<Candidate, String> {
+    let built = setting.c(&setting.out.join("casadi"), "peer")?;
+    let describe = |subject: &Subject| {
         let said = &peer["kernels"][subject.symbol];
         let outputs = said["outputs"].as_array().into_iter().flatten();
-        let layout = shifted(outputs.map(numbers).collect(), subject);
-        let work = work(&said["work"])?;
-        Kernel::new(kernel::load(&library)?, subject, None, layout, work)
+        Ok((outputs.map(numbers).collect(), work(&said["work"])?))
     };
-    Ok(Candidate {
-        name: REFERENCE,
-        built: format!("gcc {}", GCC[..2].join(" ")),
-        kernels: SUBJECTS.iter().map(kernels).collect::<Result<_, _>>()?,
-    })
+    loaded(
+        REFERENCE,
+        "gcc -O3 -march=native".to_owned(),
+        &built,
+        None,
+        describe,
+    )
 }
 
 fn numbers(value: &Value) -> Vec<usize> {
@@ -144,61 +152,68 @@ pub(crate) fn work(said: &Value) -> Result<Work, String> {
     })
 }
 
-/// Compiles `name`.c in `folder` to a library.
-pub(crate) fn compiled(folder: &Path, name: &str) -> Result<PathBuf, String> {
-    let library = folder.join(format!("lib{name}.so"));
-    let mut gcc = Command::new("gcc");
-    gcc.args(GCC).arg("-o").arg(&library);
-    gcc.arg(folder.join(format!("{name}.c"))).arg("-lm");
-    commands::output(&mut gcc)?;
-    Ok(library)
+fn own(name: &'static str, flags: &str, setting: &Setting) -> Result<Candidate, String> {
+    let packages = ["ahv-bench-kernels", "ahv-models"];
+    let built = setting.rust(&setting.root, flags, &setting.out, &packages)?;
+    loaded(name, rustc(flags), &built, Some("prepare"), by_rows)
 }
 
-fn own(name: &'static str, flags: &str, root: &Path, out: &Path) -> Result<Candidate, String> {
-    let mut cargo = cargo(root, flags, &target(out, flags));
-    cargo.args(["--package", "ahv-bench-kernels"]);
-    commands::output(&mut cargo)?;
-    let library = kernel::load(&built(&target(out, flags), "ahv_bench_kernels"))?;
-    let kernels = SUBJECTS.iter().map(|subject| {
-        let prepare = format!("{}_prepare", subject.model.name());
-        let rows = subject
-            .shapes
-            .iter()
-            .map(|(rows, columns)| (0..rows * columns).collect());
-        let layout = shifted(rows.collect(), subject);
-        Kernel::new(library, subject, Some(&prepare), layout, Work::default())
-    });
-    Ok(Candidate {
-        name,
-        built: rustc(flags),
-        kernels: kernels.collect::<Result<_, _>>()?,
-    })
-}
-
-fn wrenfold(name: &'static str, flags: &str, root: &Path, out: &Path) -> Result<Candidate, String> {
-    let target = target(&out.join("wrenfold"), flags);
-    let mut cargo = cargo(
-        &root.join("crates/ahv-bench/peers/wrenfold-kernels"),
-        flags,
-        &target,
-    );
-    cargo
-        .arg("--locked")
-        .env("AHV_BENCH_WRENFOLD", out.join("wrenfold"));
-    commands::output(&mut cargo)?;
-    let library = kernel::load(&built(&target, "ahv_bench_wrenfold"))?;
-    let kernels = SUBJECTS.iter().map(|subject| {
+fn wrenfold(name: &'static str, flags: &str, setting: &Setting) -> Result<Candidate, String> {
+    let folder = setting.peer_file("wrenfold-kernels");
+    let target = setting.out.join("wrenfold");
+    let built = setting.rust(&folder, flags, &target, &["ahv-bench-wrenfold"])?;
+    let by_columns = |subject: &Subject| {
         let columns = subject.shapes.iter().map(|&(rows, columns)| {
             let place = |k: usize| k % rows * columns + k / rows;
             (0..rows * columns).map(place).collect()
         });
-        let layout = shifted(columns.collect(), subject);
-        Kernel::new(library, subject, None, layout, Work::default())
-    });
+        Ok((columns.collect(), Work::default()))
+    };
+    loaded(name, rustc(flags), &built, None, by_columns)
+}
+
+fn symforce(setting: &Setting) -> Result<Candidate, String> {
+    let folder = setting.out.join("symforce");
+    let built = setting.cpp(&folder, "peer", &folder.join("peer.cpp"))?;
+    loaded(
+        "SymForce",
+        "g++ -O3 -march=native".to_owned(),
+        &built,
+        None,
+        by_rows,
+    )
+}
+
+/// Dense outputs, row by row.
+fn by_rows(subject: &Subject) -> Result<(Layout, Work), String> {
+    let rows = subject
+        .shapes
+        .iter()
+        .map(|(rows, columns)| (0..rows * columns).collect());
+    Ok((rows.collect(), Work::default()))
+}
+
+/// The functions of a library; `describe` says how each lays out its outputs, and what memory it wants.
+fn loaded(
+    name: &'static str,
+    built_with: String,
+    built: &Built,
+    prepare: Option<&str>,
+    describe: impl Fn(&Subject) -> Result<(Layout, Work), String>,
+) -> Result<Candidate, String> {
+    let library = kernel::load(&built.library)?;
+    let kernel = |subject: &Subject| -> Result<Box<dyn Evaluate>, String> {
+        let (layout, work) = describe(subject)?;
+        let prepare = prepare.map(|it| format!("{}_{it}", subject.model.name()));
+        let layout = shifted(layout, subject);
+        let kernel = Kernel::new(library, subject, prepare.as_deref(), layout, work)?;
+        Ok(Box::new(kernel))
+    };
     Ok(Candidate {
         name,
-        built: rustc(flags),
-        kernels: kernels.collect::<Result<_, _>>()?,
+        built: built_with,
+        compiled: built.seconds,
+        kernels: SUBJECTS.iter().map(kernel).collect::<Result<_, _>>()?,
     })
 }
 
@@ -212,38 +227,4 @@ fn shifted(layout: Layout, subject: &Subject) -> Layout {
         all
     };
     outputs.map(shift).collect()
-}
-
-/// cargo with exactly these flags of rustc.
-pub(crate) fn cargo(folder: &Path, flags: &str, target: &Path) -> Command {
-    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo
-        .current_dir(folder)
-        .env_remove("CARGO_ENCODED_RUSTFLAGS")
-        .env("RUSTFLAGS", flags)
-        .args(["build", "--quiet", "--release", "--target-dir"])
-        .arg(target);
-    cargo
-}
-
-fn target(out: &Path, flags: &str) -> PathBuf {
-    out.join(if flags.is_empty() {
-        "baseline"
-    } else {
-        "native"
-    })
-}
-
-fn built(target: &Path, name: &str) -> PathBuf {
-    let (prefix, suffix) = (env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX);
-    target.join(format!("release/{prefix}{name}{suffix}"))
-}
-
-fn rustc(flags: &str) -> String {
-    let flags = if flags.is_empty() {
-        "baseline target"
-    } else {
-        flags
-    };
-    format!("rustc -O, thin LTO, {flags}")
 }

@@ -6,6 +6,7 @@
 
 use std::ffi::c_int;
 use std::path::Path;
+use std::time::Instant;
 
 use libloading::Library;
 
@@ -28,6 +29,23 @@ pub(crate) struct Work {
 
 /// For each output, where its stored values stand in the dense matrix, row by row.
 pub(crate) type Layout = Vec<Vec<usize>>;
+
+/// Passes over the points in one turn.
+pub(crate) const PASSES: u32 = 3;
+
+/// A way to compute a subject.
+pub(crate) trait Evaluate {
+    /// All outputs at every point, dense and row by row.
+    fn values(&mut self, points: &Points) -> Result<Vec<Vec<f64>>, String>;
+
+    /// Seconds of an evaluation in this round.
+    fn turn(&mut self, points: &Points, round: u32) -> Result<f64, String>;
+
+    /// Seconds that it took until it had run for the first time, where it is compiled then.
+    fn first(&self) -> f64 {
+        0.0
+    }
+}
 
 /// A function with its arguments in place.
 pub(crate) struct Kernel {
@@ -100,27 +118,11 @@ impl Kernel {
 
     /// Moves the outputs: how they lie to cache lines and pages changes a time by up to a tenth, and a
     /// candidate shall be neither lucky nor unlucky for all rounds.
-    pub(crate) fn move_outputs(&mut self, round: u32) {
+    fn move_outputs(&mut self, round: u32) {
         self.place = round as usize * 13 % PLACES;
         for (result, output) in self.results.iter_mut().zip(&mut self.outputs) {
             *result = output[self.place..].as_mut_ptr();
         }
-    }
-
-    /// Evaluates at every point.
-    pub(crate) fn sweep(&mut self, points: &Points) {
-        for (state, input) in points.iter() {
-            self.call(state, input);
-        }
-    }
-
-    /// All outputs at every point, dense and row by row.
-    pub(crate) fn values(&mut self, points: &Points) -> Vec<Vec<f64>> {
-        let values = points.iter().map(|(state, input)| {
-            self.call(state, input);
-            self.gather()
-        });
-        values.collect()
     }
 
     #[inline]
@@ -148,5 +150,27 @@ impl Kernel {
             }
         }
         dense
+    }
+}
+
+impl Evaluate for Kernel {
+    fn values(&mut self, points: &Points) -> Result<Vec<Vec<f64>>, String> {
+        let values = points.iter().map(|(state, input)| {
+            self.call(state, input);
+            self.gather()
+        });
+        Ok(values.collect())
+    }
+
+    fn turn(&mut self, points: &Points, round: u32) -> Result<f64, String> {
+        self.move_outputs(round);
+        let start = Instant::now();
+        for _ in 0..PASSES {
+            for (state, input) in points.iter() {
+                self.call(state, input);
+            }
+        }
+        let evaluations = PASSES as usize * points.len();
+        Ok(start.elapsed().as_secs_f64() / evaluations as f64)
     }
 }

@@ -2,13 +2,13 @@
 
 use std::env;
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 use serde::Serialize;
 
 use crate::candidates::Peers;
 use crate::commands;
+use crate::setting::Setting;
 
 /// The machine and its tools.
 #[derive(Serialize)]
@@ -19,36 +19,54 @@ pub(crate) struct Machine {
     pub(crate) gcc: String,
     /// sin, cos and exp of all candidates but the product's own.
     pub(crate) libc: String,
-    pub(crate) casadi: String,
-    pub(crate) wrenfold: String,
-    pub(crate) scipy: String,
-    pub(crate) ode_solvers: String,
-    pub(crate) diffsol: String,
+    /// Packages of the peers and their versions.
+    pub(crate) peers: Vec<(&'static str, String)>,
 }
+
+/// Packages of Python, and what they are called.
+const PACKAGES: [(&str, &str); 8] = [
+    ("casadi", "CasADi"),
+    ("wrenfold", "wrenfold"),
+    ("symforce", "SymForce"),
+    ("numba", "numba"),
+    ("jax", "JAX"),
+    ("diffrax", "diffrax"),
+    ("numpy", "NumPy"),
+    ("scipy", "SciPy"),
+];
+const CRATES: [&str; 2] = ["ode_solvers", "diffsol"];
 
 impl Machine {
     /// Names and values, in order.
-    pub(crate) fn lines(&self) -> [(&'static str, &str); 10] {
-        [
+    pub(crate) fn lines(&self) -> Vec<(&'static str, &str)> {
+        let mut lines: Vec<(&str, &str)> = vec![
             ("CPU", &self.cpu),
             ("system", &self.system),
             ("rustc", &self.rustc),
-            ("gcc", &self.gcc),
+            ("gcc, g++", &self.gcc),
             ("libc", &self.libc),
-            ("CasADi", &self.casadi),
-            ("wrenfold", &self.wrenfold),
-            ("SciPy", &self.scipy),
-            ("ode_solvers", &self.ode_solvers),
-            ("diffsol", &self.diffsol),
-        ]
+        ];
+        lines.extend(
+            self.peers
+                .iter()
+                .map(|(name, version)| (*name, version.as_str())),
+        );
+        lines
     }
 }
 
 /// Asks the system and the tools.
-pub(crate) fn describe(root: &Path, peers: &Peers) -> Result<Machine, String> {
-    let said = |peer: &serde_json::Value, key: &str| peer[key].as_str().unwrap_or("?").to_owned();
-    let lock = root.join("crates/ahv-bench/peers/solver-crates/Cargo.lock");
-    let lock = commands::read(&lock)?;
+pub(crate) fn describe(setting: &Setting, peers: &Peers) -> Result<Machine, String> {
+    let said = &peers.casadi["versions"];
+    let packages = PACKAGES.into_iter().filter_map(|(package, name)| {
+        let used = setting.peers || package == "casadi";
+        Some((name, said[package].as_str().filter(|_| used)?.to_owned()))
+    });
+    let mut versions: Vec<_> = packages.collect();
+    if setting.peers {
+        let lock = commands::read(&setting.peer_file("solver-crates/Cargo.lock"))?;
+        versions.extend(CRATES.map(|name| (name, locked(&lock, name))));
+    }
     Ok(Machine {
         cpu: cpu(),
         system: format!("{} {}", env::consts::OS, env::consts::ARCH),
@@ -56,11 +74,7 @@ pub(crate) fn describe(root: &Path, peers: &Peers) -> Result<Machine, String> {
         gcc: first_line("gcc")?,
         // Not there with another libc than glibc.
         libc: first_line("ldd").unwrap_or_else(|_| "unknown".to_owned()),
-        casadi: said(&peers.casadi, "version"),
-        wrenfold: said(&peers.wrenfold, "version"),
-        scipy: said(&peers.casadi, "scipy"),
-        ode_solvers: locked(&lock, "ode_solvers"),
-        diffsol: locked(&lock, "diffsol"),
+        peers: versions,
     })
 }
 

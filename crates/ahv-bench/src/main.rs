@@ -1,57 +1,72 @@
-//! `cargo xtask bench`: what generation takes, how many operations the generated functions have, how long
-//! they take beside CasADi's C and wrenfold's Rust, and how long the steppers take beside other solvers.
+//! `cargo xtask bench`: what generation takes, how many operations the generated functions have, how long they and the
+//! steppers take beside their peers, and how many members a second an ensemble flies.
 
 mod agreement;
+mod arrays;
 mod candidates;
 mod commands;
+mod compilation;
+mod ensembles;
 mod generation;
+mod interpreted;
 mod kernel;
 mod machine;
+mod modes;
+mod moments;
+mod monte_carlo;
 mod operations;
+mod picture;
 mod points;
+mod race;
 mod report;
+mod rk4;
+mod service;
+mod setting;
 mod steppers;
 mod subject;
 mod table;
+mod threads;
 mod timing;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use serde_json::json;
 
+use arrays::Arrays;
+use ensembles::Ensembles;
 use points::Points;
 use report::Report;
-use subject::SUBJECTS;
+use setting::Setting;
+use steppers::{Steppers, Steps};
+use subject::{Model, SUBJECTS};
 
-/// Measure generation, the generated functions and the steppers, beside their peers.
+/// Measure the generated functions and the steppers beside CasADi's C.
 #[derive(Parser)]
 #[command(name = "ahv-bench")]
 struct Args {
-    /// Python that has the packages of peers/requirements.txt
+    /// Python that has CasADi, or with --peers the packages of peers/requirements.txt
     #[arg(long, value_name = "PROGRAM")]
     python: PathBuf,
-
-    /// Program whose `generate --json` is timed, such as xtask
-    #[arg(long, value_name = "PROGRAM")]
-    generate: PathBuf,
 
     /// Folder for what is built and measured
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 
-    /// Rounds in which each candidate has a turn
-    #[arg(long, default_value_t = 1000)]
-    rounds: u32,
+    /// Beside all peers, with the time of this program's `generate --json`, and write docs/benchmarks.md
+    #[arg(long, value_name = "AHV")]
+    peers: Option<PathBuf>,
 
-    /// Rounds in which each stepper and solver has a turn
-    #[arg(long, default_value_t = 15)]
-    solver_rounds: u32,
-
-    /// Number of random points
-    #[arg(long, default_value_t = 1000)]
-    points: usize,
+    /// Rounds in which each candidate has a turn, as a share of the usual number; with less than 1 nothing is documented
+    #[arg(long, default_value_t = 1.0)]
+    effort: f64,
 }
+
+/// Random points of the box of validity.
+const POINTS: usize = 1000;
+/// Rounds of kernels, of steppers and solvers, and of ensembles: with peers and without.
+const ROUNDS: [[f64; 3]; 2] = [[1000.0, 11.0, 11.0], [200.0, 5.0, 5.0]];
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
@@ -64,35 +79,98 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> Result<(), String> {
-    commands::make_folder(&args.out)?;
+    let setting = Setting {
+        root: root().to_owned(),
+        python: args.python.clone(),
+        out: std::path::absolute(&args.out).map_err(commands::problem("find", &args.out))?,
+        peers: args.peers.is_some(),
+    };
+    let report = measure(&setting, args)?;
+    print!("{}", report.text());
+    let json = setting.out.join("bench.json");
+    commands::write(&json, &report.json()?)?;
+    println!("\n{}", json.display());
+    if setting.peers {
+        let documented = args.effort >= 1.0;
+        let folder = if documented { root() } else { &setting.out };
+        let files = [
+            ("docs/benchmarks.md", report.markdown()),
+            (picture::PATH, picture::draw(&report)?),
+        ];
+        for (path, text) in files {
+            let path = folder.join(path);
+            commands::make_folder(path.parent().unwrap_or(folder))?;
+            commands::write(&path, &text)?;
+            println!("{}", path.display());
+        }
+    }
+    Ok(())
+}
+
+fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
+    let usual = if setting.peers { ROUNDS[0] } else { ROUNDS[1] };
+    let [kernels, solvers, races] = usual.map(|it| (it * args.effort).ceil() as u32);
+    commands::make_folder(&setting.out)?;
     eprintln!("building the candidates");
-    let (peers, mut candidates) = candidates::build(root(), &args.python, &args.out)?;
+    let peers = candidates::derive(setting)?;
     let points: Vec<Points> = SUBJECTS
         .iter()
-        .map(|subject| Points::of(subject.model, args.points))
+        .map(|subject| Points::of(subject.model, POINTS))
         .collect();
+    let arrays = setting.peers.then(|| Arrays::start(setting, &problem()));
+    let arrays = arrays.transpose()?;
+    let mut candidates = candidates::build(setting, &peers, arrays.as_ref())?;
     let agreement = agreement::check(&mut candidates, &points)?;
+    let steps = setting.c(&setting.out.join("casadi"), "steps")?;
+    let steps = Steps::new(&steps.library, &peers.casadi)?;
+    let ensembles = Ensembles::build(setting)?;
+
     eprintln!("timing the candidates");
-    let timings = timing::measure(&mut candidates, &points, args.rounds);
-    let steppers = steppers::measure(root(), &args.python, &args.out, &peers, args.solver_rounds)?;
-    eprintln!("timing generation");
-    let report = Report {
-        machine: machine::describe(root(), &peers)?,
-        generation: generation::measure(&args.generate, &args.out)?,
-        operations: operations::compare(root(), &peers)?,
+    let timings = timing::measure(&mut candidates, &points, kernels)?;
+    let steppers = Steppers {
+        steps: steppers::steps(&steps, solvers)?,
+        precision: setting
+            .peers
+            .then(|| steppers::precision(setting, &steps, solvers))
+            .transpose()?,
+    };
+    let trajectories = rk4::measure(&steps, arrays.as_ref(), races)?;
+    let monte_carlo = monte_carlo::measure(ensembles, arrays.as_ref(), races)?;
+    let modes = modes::measure(ensembles, arrays.as_ref(), races)?;
+    let groups = [
+        ("RK4 of DCOM", &trajectories.finishes),
+        ("Monte Carlo of SDCOM", &monte_carlo.finishes),
+        ("section 5.1", &modes.finishes),
+    ];
+    let compilation = compilation::all(&candidates, &ensembles, &groups);
+    let generate = |program: &PathBuf| generation::measure(program, &setting.out);
+    Ok(Report {
+        machine: machine::describe(setting, &peers)?,
+        compilation: setting.peers.then_some(compilation),
+        generation: args.peers.as_ref().map(generate).transpose()?,
+        operations: operations::compare(&setting.root, &peers)?,
         agreement,
-        points: args.points,
-        rounds: args.rounds,
+        points: POINTS,
+        rounds: kernels,
         timings,
         steppers,
-    };
-    print!("{}", report.text());
-    let json = args.out.join("bench.json");
-    let markdown = root().join("docs/benchmarks.md");
-    commands::write(&json, &report.json()?)?;
-    commands::write(&markdown, &report.markdown())?;
-    println!("\n{}\n{}", json.display(), markdown.display());
-    Ok(())
+        trajectories,
+        monte_carlo,
+        modes,
+    })
+}
+
+/// What the peers in Python are told.
+fn problem() -> serde_json::Value {
+    let of = |model: Model| (Points::of(model, POINTS).json(), model.parameters().1);
+    let [(dcom, dcom_parameters), (sdcom, sdcom_parameters)] = [of(Model::Dcom), of(Model::Sdcom)];
+    json!({
+        "points": {"dcom": dcom, "sdcom": sdcom},
+        "parameters": {"dcom": dcom_parameters, "sdcom": sdcom_parameters},
+        "rk4": rk4::problem(),
+        "monte_carlo": monte_carlo::problem(),
+        "modes": modes::problem(),
+    })
 }
 
 /// The folder of the repository.

@@ -4,6 +4,7 @@ use ahv_core::{Bounds, Vector};
 use ahv_models::{dcom, sdcom};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use serde_json::{Value, json};
 
 use crate::subject::Model;
 
@@ -41,6 +42,12 @@ impl Points {
         self.states
             .chunks_exact(self.lengths.0)
             .zip(self.inputs.chunks_exact(self.lengths.1))
+    }
+
+    /// For a peer.
+    pub(crate) fn json(&self) -> Value {
+        let (states, inputs): (Vec<_>, Vec<_>) = self.iter().unzip();
+        json!({"states": states, "inputs": inputs})
     }
 
     /// Number of points.

@@ -6,9 +6,14 @@ use serde::Serialize;
 
 use crate::agreement::Agreement;
 use crate::candidates::PRODUCT;
+use crate::compilation::{self, Compilation};
 use crate::generation::Generation;
 use crate::machine::Machine;
+use crate::modes::Modes;
+use crate::monte_carlo::MonteCarlo;
 use crate::operations::Operations;
+use crate::picture;
+use crate::rk4::Trajectories;
 use crate::steppers::Steppers;
 use crate::subject::SUBJECTS;
 use crate::table::Table;
@@ -21,13 +26,19 @@ const GENERATION_GOALS: (f64, f64) = (3.0, 0.05);
 #[derive(Serialize)]
 pub(crate) struct Report {
     pub(crate) machine: Machine,
-    pub(crate) generation: Generation,
+    /// With peers alone.
+    pub(crate) generation: Option<Generation>,
+    /// With peers alone: without them what is there already is not compiled again.
+    pub(crate) compilation: Option<Vec<Compilation>>,
     pub(crate) operations: Vec<Operations>,
     pub(crate) agreement: Vec<Agreement>,
     pub(crate) points: usize,
     pub(crate) rounds: u32,
     pub(crate) timings: Vec<Timing>,
     pub(crate) steppers: Steppers,
+    pub(crate) trajectories: Trajectories,
+    pub(crate) monte_carlo: MonteCarlo,
+    pub(crate) modes: Modes,
 }
 
 impl Report {
@@ -55,13 +66,14 @@ impl Report {
     /// For the documentation: the same on every run but for the figures.
     pub(crate) fn markdown(&self) -> String {
         let mut text = String::from(
-            "# Benchmarks\n\nWritten by `cargo xtask bench`, which measures everything below again. \
+            "# Benchmarks\n\nWritten by `cargo xtask bench --peers`, which measures everything below again. \
              Do not edit.\n\nTimes and their ratios vary by machine, compilers and libc, and a little from \
              run to run; counts of operations do not.\n\n## Machine\n\n",
         );
         for (name, value) in self.machine.lines() {
             let _ = writeln!(text, "* {name}: {value}");
         }
+        let _ = writeln!(text, "\n![{}]({})", picture::CAPTION, picture::LINK);
         for table in self.tables() {
             let _ = writeln!(text, "\n## {}\n", table.title);
             if !table.note.is_empty() {
@@ -74,9 +86,16 @@ impl Report {
     }
 
     fn tables(&self) -> Vec<Table> {
-        let mut tables = vec![self.times()];
+        let mut tables = vec![
+            self.times(),
+            self.trajectories.table(),
+            self.monte_carlo.table(),
+            self.modes.table(),
+        ];
         tables.extend(self.steppers.tables());
-        tables.extend([self.counts(), self.generation()]);
+        tables.extend(self.compilation.iter().map(|it| compilation::table(it)));
+        tables.push(self.counts());
+        tables.extend(self.generation.as_ref().map(generation));
         tables
     }
 
@@ -125,10 +144,12 @@ impl Report {
                 "Scalar f64 at {} random points of the box of validity, one call a point; state and input are \
                  arguments of every call, coefficients are run-time parameters for everyone. `ahv` is the \
                  default mode: baseline target, no FMA, elementary functions of `ahv-core`; gcc contracts to FMA \
-                 where the machine has it, and CasADi and wrenfold use the elementary functions of libc. \
-                 Every candidate lies in a shared library behind CasADi's C interface; {} rounds in which \
-                 each has its turn, ratios to CasADi within each round. CasADi's C (SX, `cse`) stores the \
-                 non-zeros of Jacobians; ahv and wrenfold store dense ones.",
+                 where the machine has it, and CasADi, wrenfold, SymForce and numba use the elementary functions of libc. \
+                 CasADi, ahv, wrenfold and SymForce (its statements, without Eigen) lie in shared libraries behind \
+                 CasADi's C interface; numba and JAX run in Python and loop over the points themselves, after a \
+                 pass that does not count; JAX derives its Jacobians by `jacfwd`. {} rounds in which each has \
+                 its turn, ratios to CasADi within each round. CasADi's C (SX, `cse`) stores the non-zeros of \
+                 Jacobians; all others store dense ones.",
                 self.points, self.rounds
             ),
             columns: vec![
@@ -177,36 +198,36 @@ note: "As the headers of the generated functions say; CasADi's are the instructi
             rows: self.operations.iter().map(row).collect(),
         }
     }
+}
 
-    fn generation(&self) -> Table {
-        let Generation {
-            total,
-            derive,
-            emit,
-            ..
-        } = &self.generation;
-        let row = |name: &str, spread: &Spread, goal: Option<f64>| {
-            vec![
-                name.to_owned(),
-                format!("{:.3}", spread.median),
-                format!("{:.3}", spread.min),
-                format!("{:.3}–{:.3}", spread.lower_quartile, spread.upper_quartile),
-                goal.map_or_else(String::new, |goal| against(spread.median, goal, " s")),
-            ]
-        };
-        Table {
-            title: "Generation".to_owned(),
-            note: format!(
-                "`ahv generate` (release) on all tables into an empty folder, after set-up; {} runs.",
-                self.generation.runs
-            ),
-            columns: vec!["part", "s", "min", "quartiles", "goal"],
-            rows: vec![
-                row("in all", total, Some(GENERATION_GOALS.0)),
-                row("derive", derive, None),
-                row("emit", emit, Some(GENERATION_GOALS.1)),
-            ],
-        }
+fn generation(found: &Generation) -> Table {
+    let Generation {
+        total,
+        derive,
+        emit,
+        ..
+    } = found;
+    let row = |name: &str, spread: &Spread, goal: Option<f64>| {
+        vec![
+            name.to_owned(),
+            format!("{:.3}", spread.median),
+            format!("{:.3}", spread.min),
+            format!("{:.3}–{:.3}", spread.lower_quartile, spread.upper_quartile),
+            goal.map_or_else(String::new, |goal| against(spread.median, goal, " s")),
+        ]
+    };
+    Table {
+        title: "Generation".to_owned(),
+        note: format!(
+            "`ahv generate` (release) on all tables into an empty folder, after set-up; {} runs.",
+            found.runs
+        ),
+        columns: vec!["part", "s", "min", "quartiles", "goal"],
+        rows: vec![
+            row("in all", total, Some(GENERATION_GOALS.0)),
+            row("derive", derive, None),
+            row("emit", emit, Some(GENERATION_GOALS.1)),
+        ],
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::race::Finish;
+
 /// A heading, what is to be said about the figures, the names of the columns, and the rows.
 pub(crate) struct Table {
     pub(crate) title: String,
@@ -11,6 +13,41 @@ pub(crate) struct Table {
 }
 
 impl Table {
+    /// Rates in millions a second, and how many times faster than the first on as many threads.
+    pub(crate) fn of_rates(title: String, note: String, finishes: &[Finish]) -> Self {
+        let row = |it: &Finish| {
+            let [rates, faster] = [it.seconds.rates(1e-6), it.ratio.rates(1.0)];
+            let cells = |[lower, median, upper]: [f64; 3], decimals: usize| {
+                [
+                    format!("{median:.decimals$}"),
+                    format!("{lower:.decimals$}–{upper:.decimals$}"),
+                ]
+            };
+            let mut row = vec![
+                it.threads.to_string(),
+                it.candidate.to_owned(),
+                it.how.to_owned(),
+            ];
+            row.extend(cells(rates, 1));
+            row.extend(cells(faster, 2));
+            row
+        };
+        Self {
+            title,
+            note,
+            columns: vec![
+                "threads",
+                "candidate",
+                "how",
+                "10⁶/s",
+                "quartiles",
+                "faster",
+                "quartiles",
+            ],
+            rows: finishes.iter().map(row).collect(),
+        }
+    }
+
     /// For a terminal.
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();

@@ -1,17 +1,13 @@
-//! Interleaved rounds: in each, every candidate has a turn at every subject.
-
-use std::time::Instant;
+//! Interleaved rounds: in each, every candidate has a turn.
 
 use serde::Serialize;
 
-use crate::candidates::{Candidate, REFERENCE};
+use crate::candidates::Candidate;
 use crate::points::Points;
 use crate::subject::SUBJECTS;
 
-/// Rounds before those that count.
+/// Rounds of kernels before those that count.
 const WARM_UP: u32 = 20;
-/// Passes over the points in one turn.
-const PASSES: usize = 3;
 
 /// Order statistics of many measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -38,6 +34,52 @@ impl Spread {
             upper_quartile: at(0.75),
         }
     }
+
+    /// Lower quartile, median and upper quartile of `scale` over the values, which are positive.
+    pub(crate) fn rates(&self, scale: f64) -> [f64; 3] {
+        [self.upper_quartile, self.median, self.lower_quartile].map(|it| scale / it)
+    }
+}
+
+/// What the turns of a candidate took.
+#[derive(Clone, Copy, Serialize)]
+pub(crate) struct Measured {
+    /// What a turn says of itself.
+    pub(crate) time: Spread,
+    /// Over that of the first candidate in the same round.
+    pub(crate) ratio: Spread,
+}
+
+/// Gives each of `count` candidates its turn in each round; `turn(candidate, round)` tells its time.
+///
+/// # Errors
+/// The first error of a turn.
+pub(crate) fn interleave(
+    count: usize,
+    warm_up: u32,
+    rounds: u32,
+    mut turn: impl FnMut(usize, u32) -> Result<f64, String>,
+) -> Result<Vec<Measured>, String> {
+    let mut times = vec![Vec::with_capacity(rounds as usize); count];
+    for round in 0..warm_up + rounds {
+        for place in 0..count {
+            // Another one begins each round, so that none always follows the same one.
+            let index = (place + round as usize) % count;
+            let time = turn(index, round)?;
+            if round >= warm_up {
+                times[index].push(time);
+            }
+        }
+    }
+    let base = times.first().cloned().unwrap_or_default();
+    let measured = times.into_iter().map(|times| {
+        let ratios = times.iter().zip(&base).map(|(own, base)| own / base);
+        Measured {
+            ratio: Spread::of(ratios.collect()),
+            time: Spread::of(times),
+        }
+    });
+    Ok(measured.collect())
 }
 
 /// A candidate's times for one subject.
@@ -53,55 +95,36 @@ pub(crate) struct Timing {
 }
 
 /// Times all candidates, by subject and then in the order of the candidates.
-pub(crate) fn measure(candidates: &mut [Candidate], points: &[Points], rounds: u32) -> Vec<Timing> {
-    let empty = vec![Vec::with_capacity(rounds as usize); candidates.len()];
-    let mut times = vec![empty; SUBJECTS.len()];
-    for round in 0..WARM_UP + rounds {
-        for (subject, points) in points.iter().enumerate() {
-            for turn in 0..candidates.len() {
-                // Another one begins each round, so that none always follows the same one.
-                let index = (turn + round as usize) % candidates.len();
-                candidates[index].kernels[subject].move_outputs(round);
-                let time = turn_of(&mut candidates[index], subject, points);
-                if round >= WARM_UP {
-                    times[subject][index].push(time);
-                }
-            }
-        }
-    }
+///
+/// # Errors
+/// A peer that does not answer.
+pub(crate) fn measure(
+    candidates: &mut [Candidate],
+    points: &[Points],
+    rounds: u32,
+) -> Result<Vec<Timing>, String> {
     let mut timings = Vec::new();
-    for (subject, times) in SUBJECTS.iter().zip(times) {
-        let reference = candidates.iter().position(|it| it.name == REFERENCE);
-        let reference = reference
-            .map(|index| times[index].clone())
-            .unwrap_or_default();
-        for (candidate, times) in candidates.iter().zip(times) {
-            let ratios = times.iter().zip(&reference).map(|(time, base)| time / base);
+    for (index, (subject, points)) in SUBJECTS.iter().zip(points).enumerate() {
+        let measured = interleave(candidates.len(), WARM_UP, rounds, |candidate, round| {
+            let seconds = candidates[candidate].kernels[index].turn(points, round)?;
+            Ok(seconds * 1e9)
+        })?;
+        for (candidate, measured) in candidates.iter().zip(measured) {
             timings.push(Timing {
                 function: subject.symbol,
                 candidate: candidate.name,
                 built: candidate.built.clone(),
-                ratio: Spread::of(ratios.collect()),
-                nanoseconds: Spread::of(times),
+                nanoseconds: measured.time,
+                ratio: measured.ratio,
             });
         }
     }
-    timings
-}
-
-/// Nanoseconds an evaluation.
-fn turn_of(candidate: &mut Candidate, subject: usize, points: &Points) -> f64 {
-    let kernel = &mut candidate.kernels[subject];
-    let start = Instant::now();
-    for _ in 0..PASSES {
-        kernel.sweep(points);
-    }
-    start.elapsed().as_secs_f64() * 1e9 / (PASSES * points.len()) as f64
+    Ok(timings)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Spread;
+    use super::{Spread, interleave};
 
     #[test]
     fn spread_is_by_rank() {
@@ -113,5 +136,16 @@ mod tests {
             upper_quartile: 4.0,
         };
         assert_eq!(spread, expected);
+    }
+
+    #[test]
+    fn ratios_are_taken_within_a_round() -> Result<(), String> {
+        // The machine gets slower, the second stays twice as slow as the first.
+        let time = |index: usize, round: u32| f64::from(round + 1) * [1.0, 2.0][index];
+        let measured = interleave(2, 1, 3, |index, round| Ok(time(index, round)))?;
+        assert_eq!(measured[0].time.min, 2.0);
+        assert_eq!(measured[1].ratio.min, 2.0);
+        assert_eq!(measured[1].ratio.upper_quartile, 2.0);
+        Ok(())
     }
 }

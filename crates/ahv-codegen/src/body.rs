@@ -1,12 +1,15 @@
 //! The statements of a function: which values get a name, in which order they stand.
 
+mod sin_cos;
+
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-use crate::dag::{Call, Dag, Id, Kind, Node};
+use crate::dag::{Dag, Id, Kind, Node};
 use crate::format::{ADDENDS, SECTION, TRAILING};
 use crate::ir;
 use crate::names::describe;
-use crate::print::{Cost, definition, reference};
+use crate::prepared::Prepared;
+use crate::print::{Cost, definition};
 
 /// A statement of a function body.
 #[derive(Debug, PartialEq, Eq)]
@@ -66,75 +69,6 @@ impl Value {
     }
 }
 
-/// A value of `Prepared`: it depends on parameters alone.
-#[derive(Debug)]
-pub(crate) struct Field {
-    pub(crate) id: Id,
-    pub(crate) name: String,
-}
-
-/// The fields of `Prepared`, gathered over all functions of a model.
-#[derive(Default)]
-pub(crate) struct Prepared {
-    pub(crate) fields: Vec<Field>,
-    names: HashMap<Id, String>,
-}
-
-impl Prepared {
-    /// Gathers what the functions of a model need of its parameters.
-    pub(crate) fn gather(dag: &mut Dag, model: &ir::Model, roots: &[(String, Vec<Id>)]) -> Self {
-        let mut found = Self::default();
-        let mut seen = HashSet::new();
-        for (owner, ids) in roots {
-            for &id in ids {
-                found.visit(dag, model, id, owner, &mut seen);
-            }
-        }
-        found
-    }
-
-    /// The field that holds a node.
-    pub(crate) fn field(&self, id: Id) -> Option<&str> {
-        self.names.get(&id).map(String::as_str)
-    }
-
-    fn visit(
-        &mut self,
-        dag: &mut Dag,
-        model: &ir::Model,
-        id: Id,
-        owner: &str,
-        seen: &mut HashSet<Id>,
-    ) {
-        if !seen.insert(id) || matches!(dag.node(id), Node::Number(_)) {
-            return;
-        }
-        if dag.is_parametric(id) {
-            let name = self.unique_name(dag, model, id, owner);
-            self.names.insert(id, name.clone());
-            self.fields.push(Field { id, name });
-            return;
-        }
-        let owner = dag
-            .name(id)
-            .map_or(owner, |position| &model.quantities[position].name);
-        for operand in dag.operands(id) {
-            self.visit(dag, model, operand, owner, seen);
-        }
-    }
-
-    fn unique_name(&self, dag: &Dag, model: &ir::Model, id: Id, owner: &str) -> String {
-        let taken = |name: &str| self.fields.iter().any(|f| f.name == name);
-        match describe(dag, model, id) {
-            Some(name) if !taken(&name) => name,
-            _ => (1..)
-                .map(|k| format!("{owner}_constant_{k}"))
-                .find(|name| !taken(name))
-                .unwrap_or_default(),
-        }
-    }
-}
-
 /// What is known while a body is written.
 pub(crate) struct Scope<'a> {
     pub(crate) dag: &'a mut Dag,
@@ -183,7 +117,7 @@ impl<'a> Scope<'a> {
         if let Some(name) = self.bound.get(&id) {
             return Some(name.clone());
         }
-        let field = self.prepared?.names.get(&id)?;
+        let field = self.prepared?.field(id)?;
         self.used.insert(Kind::Parameter);
         Some(format!("p.{field}"))
     }
@@ -224,13 +158,15 @@ impl<'a> Scope<'a> {
     fn is_frontier(&self, id: Id) -> bool {
         match self.dag.node(id) {
             Node::Number(_) | Node::Leaf(..) => true,
-            _ => self.prepared.is_some() && self.dag.is_parametric(id),
+            _ => self
+                .prepared
+                .is_some_and(|prepared| prepared.field(id).is_some()),
         }
     }
 
     fn count(&mut self, id: Id, counted: &mut HashSet<Id>) {
         *self.uses.entry(id).or_default() += 1;
-        if self.is_frontier(id) || !counted.insert(id) {
+        if self.is_frontier(id) || !(counted.insert(id) || self.dag.is_written_anew(id)) {
             return;
         }
         for operand in self.dag.operands(id) {
@@ -257,6 +193,9 @@ impl<'a> Scope<'a> {
         for operand in self.dag.operands(id) {
             self.visit(operand);
         }
+        if self.dag.is_written_anew(id) {
+            return;
+        }
         let shared = self.uses.get(&id).is_some_and(|&uses| uses > 1);
         let costly = matches!(self.dag.node(id), Node::Call(..) | Node::Power(..));
         if self.dag.name(id).is_some() || shared || costly {
@@ -268,24 +207,8 @@ impl<'a> Scope<'a> {
         if self.bound.contains_key(&id) {
             return;
         }
-        if let Node::Call(call @ (Call::Sin | Call::Cos), argument) = *self.dag.node(id) {
-            let other = if call == Call::Sin {
-                Call::Cos
-            } else {
-                Call::Sin
-            };
-            if let Some(twin) = self
-                .dag
-                .find_call(other, argument)
-                .filter(|t| self.uses.contains_key(t))
-            {
-                let (sin, cos) = if call == Call::Sin {
-                    (id, twin)
-                } else {
-                    (twin, id)
-                };
-                return self.bind_pair(sin, cos, argument);
-            }
+        if let Some((sin, cos, argument)) = self.sin_cos(id) {
+            return self.bind_pair(sin, cos, argument);
         }
         let value = definition(self, id);
         let unit = self
@@ -297,21 +220,6 @@ impl<'a> Scope<'a> {
             name,
             value,
             unit: unit.unwrap_or_default(),
-        });
-    }
-
-    fn bind_pair(&mut self, sin: Id, cos: Id, argument: Id) {
-        let argument = reference(self, argument);
-        self.cost.sin_cos += 1;
-        let (sin, cos) = (self.take_name(sin), self.take_name(cos));
-        self.statements.push(Statement::Let {
-            name: format!("({sin}, {cos})"),
-            value: Value::Plain(if argument.contains(' ') {
-                format!("({argument}).sin_cos()")
-            } else {
-                format!("{argument}.sin_cos()")
-            }),
-            unit: String::new(),
         });
     }
 
@@ -329,3 +237,6 @@ impl<'a> Scope<'a> {
         name
     }
 }
+
+#[cfg(test)]
+mod tests;

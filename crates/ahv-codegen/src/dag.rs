@@ -1,13 +1,19 @@
-//! Expressions of a model as one graph, each value once, sums and products in a normal form.
+//! Expressions of a model as one graph, sums and products in a normal form.
 //!
 //! The normal form is n-ary: a sum of numeric multiples, a product of powers. A division is a product with a
-//! reciprocal. What depends on parameters alone is kept together inside a product or sum, so that it can be
-//! computed once; a factor that several addends share is taken out of the sum. Named quantities stay whole.
+//! reciprocal. Named quantities stay whole. The rules that rewrite beyond that form are [`Pass`]es, each in a module
+//! of its own.
+
+mod estrin;
+mod named_products;
+mod powers;
+mod regrouping;
 
 use std::collections::HashMap;
 
 use crate::EmitError;
 use crate::ir;
+use crate::passes::{Pass, Passes};
 
 /// A node of the graph.
 pub(crate) type Id = usize;
@@ -36,7 +42,7 @@ pub(crate) enum Node {
     Number(f64),
     Leaf(Kind, String),
     /// Sum of multiples; the constant part is a multiple of the number one.
-    Sum(Vec<(f64, Id)>),
+    Sum(Vec<Term>),
     /// Number times factors, each of them neither a number nor a nameless product.
     Product(f64, Vec<Id>),
     /// Whole power; the exponent is neither 0 nor 1.
@@ -44,7 +50,7 @@ pub(crate) enum Node {
     Call(Call, Id),
 }
 
-#[derive(PartialEq, Eq, Hash)]
+#[derive(Clone, PartialEq, Eq, Hash)]
 enum Key {
     Number(u64),
     Leaf(Kind, String),
@@ -56,28 +62,36 @@ enum Key {
 
 /// A power that stands as a factor.
 type Factor = (Id, i32);
+/// A numeric multiple that stands as an addend.
+type Term = (f64, Id);
 
+#[derive(Clone)]
 pub(crate) struct Dag {
     nodes: Vec<Node>,
     index: HashMap<Key, Id>,
     /// The quantity that a node is, by position in the model.
     names: Vec<Option<usize>>,
     parametric: Vec<bool>,
-    /// Named products, to be found again inside larger ones.
-    named_products: Vec<Id>,
+    /// Named products with their factors, by the first of these, to be found again inside larger ones.
+    named_products: HashMap<Factor, Vec<(Id, Vec<Factor>)>>,
+    /// What each power is the product of.
+    steps: HashMap<Id, Vec<Id>>,
+    passes: Passes,
     symbols: HashMap<String, Id>,
     one: Id,
 }
 
 impl Dag {
     /// The graph of all quantities of a model.
-    pub(crate) fn new(model: &ir::Model) -> Result<Self, EmitError> {
+    pub(crate) fn new(model: &ir::Model, passes: &Passes) -> Result<Self, EmitError> {
         let mut dag = Self {
             nodes: Vec::new(),
             index: HashMap::new(),
             names: Vec::new(),
             parametric: Vec::new(),
-            named_products: Vec::new(),
+            named_products: HashMap::new(),
+            steps: HashMap::new(),
+            passes: passes.clone(),
             symbols: HashMap::new(),
             one: 0,
         };
@@ -87,13 +101,19 @@ impl Dag {
             let nameable = !matches!(dag.nodes[id], Node::Number(_) | Node::Leaf(..));
             if nameable && dag.names[id].is_none() {
                 dag.names[id] = Some(position);
-                if matches!(dag.nodes[id], Node::Product(..)) {
-                    dag.named_products.push(id);
-                }
+                dag.note_named_product(id);
             }
             dag.symbols.insert(quantity.name.clone(), id);
         }
         Ok(dag)
+    }
+
+    /// The same graph where other passes write the code; those that build the graph are taken already.
+    pub(crate) fn written_with(&self, passes: &Passes) -> Self {
+        Self {
+            passes: passes.clone(),
+            ..self.clone()
+        }
     }
 
     pub(crate) fn node(&self, id: Id) -> &Node {
@@ -110,6 +130,11 @@ impl Dag {
         self.parametric[id]
     }
 
+    /// Whether a pass is taken.
+    pub(crate) fn has(&self, pass: Pass) -> bool {
+        self.passes.has(pass)
+    }
+
     pub(crate) fn is_one(&self, id: Id) -> bool {
         id == self.one
     }
@@ -117,16 +142,6 @@ impl Dag {
     /// The node of a call on an argument, if the graph has it.
     pub(crate) fn find_call(&self, call: Call, argument: Id) -> Option<Id> {
         self.index.get(&Key::Call(call, argument)).copied()
-    }
-
-    /// The lower powers that a whole power is computed from.
-    pub(crate) fn split_power(&mut self, base: Id, exponent: i32) -> (Id, Id) {
-        let half = if exponent % 2 == 0 {
-            exponent / 2
-        } else {
-            exponent - exponent.signum()
-        };
-        (self.power(base, half), self.power(base, exponent - half))
     }
 
     /// Operands of a node, in the order in which they are written.
@@ -140,16 +155,17 @@ impl Dag {
                 .collect(),
             Node::Product(_, factors) => factors,
             Node::Power(base, -1) => vec![base],
-            Node::Power(base, exponent) => {
-                let (low, high) = self.split_power(base, exponent);
-                if low == high {
-                    vec![low]
-                } else {
-                    vec![low, high]
-                }
-            }
+            Node::Power(..) => self.steps_of_power(id),
             Node::Call(_, argument) => vec![argument],
         }
+    }
+
+    /// Adds the entries of a function to the graph.
+    pub(crate) fn roots(&mut self, function: &ir::Function) -> Result<Vec<Id>, EmitError> {
+        let entries = function.outputs.iter().flat_map(|output| &output.entries);
+        entries
+            .map(|entry| self.build(&entry.expr, &function.name))
+            .collect()
     }
 
     /// Adds an expression of `owner` to the graph.
@@ -216,14 +232,20 @@ impl Dag {
             "t" => Kind::Argument,
             _ => return None,
         };
-        Some(self.intern(
+        let leaf = self.intern(
             Key::Leaf(kind, field.to_owned()),
             Node::Leaf(kind, field.to_owned()),
-        ))
+        );
+        self.symbols.insert(name.to_owned(), leaf);
+        Some(leaf)
     }
 
     fn intern(&mut self, key: Key, node: Node) -> Id {
-        if let Some(&id) = self.index.get(&key) {
+        // A number and a leaf are names, not values.
+        let is_name = matches!(node, Node::Number(_) | Node::Leaf(..));
+        if let Some(&id) = self.index.get(&key)
+            && (is_name || self.has(Pass::HashConsing))
+        {
             return id;
         }
         let parametric = match &node {
@@ -249,30 +271,6 @@ impl Dag {
         self.intern(Key::Call(call, argument), Node::Call(call, argument))
     }
 
-    fn power(&mut self, base: Id, exponent: i32) -> Id {
-        if exponent == 0 {
-            return self.one;
-        }
-        if exponent == 1 {
-            return base;
-        }
-        if self.names[base].is_none() {
-            match self.nodes[base].clone() {
-                Node::Number(value) => return self.number(value.powi(exponent)),
-                Node::Power(inner, k) => return self.power(inner, k * exponent),
-                Node::Product(coefficient, factors) => {
-                    let powers: Vec<Id> = factors
-                        .into_iter()
-                        .map(|f| self.power(f, exponent))
-                        .collect();
-                    return self.product(coefficient.powi(exponent), &powers);
-                }
-                _ => {}
-            }
-        }
-        self.intern(Key::Power(base, exponent), Node::Power(base, exponent))
-    }
-
     /// The numeric multiple and the powers that a factor consists of; named quantities stay whole.
     fn factors_of(&self, id: Id, exponent: i32, found: &mut Vec<Factor>) -> f64 {
         if self.names[id].is_none() {
@@ -294,7 +292,8 @@ impl Dag {
         1.0
     }
 
-    fn product(&mut self, coefficient: f64, ids: &[Id]) -> Id {
+    /// A number times some nodes.
+    pub(crate) fn product(&mut self, coefficient: f64, ids: &[Id]) -> Id {
         let mut factors = Vec::new();
         let coefficient = ids.iter().fold(coefficient, |c, &id| {
             c * self.factors_of(id, 1, &mut factors)
@@ -303,52 +302,9 @@ impl Dag {
         if coefficient == 0.0 {
             return self.number(0.0);
         }
-        self.reuse_named(&mut factors);
-        self.product_of(coefficient, factors)
-    }
-
-    /// Replaces factors by a named product that they make up.
-    fn reuse_named(&self, factors: &mut Vec<Factor>) {
-        for &named in self.named_products.iter().rev() {
-            let Node::Product(coefficient, ids) = &self.nodes[named] else {
-                continue;
-            };
-            let mut inner = Vec::new();
-            let number = ids.iter().fold(*coefficient, |c, &id| {
-                c * self.factors_of(id, 1, &mut inner)
-            });
-            let contained = inner.len() > 1 && inner.iter().all(|part| factors.contains(part));
-            if number == 1.0 && contained {
-                let first = factors
-                    .iter()
-                    .position(|part| inner.contains(part))
-                    .unwrap_or(0);
-                factors.insert(first, (named, 1));
-                factors.retain(|part| !inner.contains(part));
-            }
-        }
-    }
-
-    fn product_of(&mut self, coefficient: f64, factors: Vec<Factor>) -> Id {
-        let (fixed, free): (Vec<Factor>, Vec<Factor>) =
-            factors.iter().partition(|(id, _)| self.parametric[*id]);
-        if free.is_empty() || fixed.is_empty() {
-            return self.flat_product(coefficient, &factors);
-        }
-        // A sign costs nothing where it stands; any other number joins the parameters.
-        let (sign, rest) = if coefficient.abs() == 1.0 {
-            (coefficient, 1.0)
-        } else {
-            (1.0, coefficient)
-        };
-        let constant = self.flat_product(rest, &fixed);
-        let first = factors.iter().position(|f| fixed.contains(f)).unwrap_or(0);
-        let mut ids = Vec::with_capacity(free.len() + 1);
-        for &(base, exponent) in &free {
-            ids.push(self.power(base, exponent));
-        }
-        ids.insert(first.min(ids.len()), constant);
-        self.intern_product(sign, ids)
+        self.reuse_named_products(&mut factors);
+        self.join_parameter_factors(coefficient, &factors)
+            .unwrap_or_else(|| self.flat_product(coefficient, &factors))
     }
 
     fn flat_product(&mut self, coefficient: f64, factors: &[Factor]) -> Id {
@@ -372,26 +328,31 @@ impl Dag {
         )
     }
 
-    fn sum(&mut self, terms: Vec<(f64, Id)>) -> Id {
+    fn sum(&mut self, terms: Vec<Term>) -> Id {
+        let flat = self.flattened(terms);
+        self.estrin(&flat)
+            .unwrap_or_else(|| self.regrouped_sum(flat))
+    }
+
+    /// A sum by the rules of regrouping alone.
+    fn regrouped_sum(&mut self, terms: Vec<Term>) -> Id {
+        let flat = self.flattened(terms);
+        self.take_common_factor(&flat)
+            .or_else(|| self.join_parameter_addends(&flat))
+            .unwrap_or_else(|| self.flat_sum(flat))
+    }
+
+    /// The addends of the sums among the terms, equal ones together.
+    fn flattened(&mut self, terms: Vec<Term>) -> Vec<Term> {
         let mut flat = Vec::new();
         for (coefficient, id) in terms {
             self.add_term(coefficient, id, &mut flat);
         }
         flat.retain(|&(coefficient, _)| coefficient != 0.0);
-        if let Some(id) = self.take_common_factor(&flat) {
-            return id;
-        }
-        let (fixed, free): (Vec<_>, Vec<_>) = flat.iter().partition(|(_, id)| self.parametric[*id]);
-        if fixed.len() > 1 && !free.is_empty() {
-            let constant = self.flat_sum(fixed);
-            let mut terms = free;
-            terms.push((1.0, constant));
-            return self.flat_sum(terms);
-        }
-        self.flat_sum(flat)
+        flat
     }
 
-    fn add_term(&mut self, coefficient: f64, id: Id, flat: &mut Vec<(f64, Id)>) {
+    fn add_term(&mut self, coefficient: f64, id: Id, flat: &mut Vec<Term>) {
         if self.names[id].is_none() {
             match self.nodes[id].clone() {
                 Node::Sum(inner) => {
@@ -416,7 +377,7 @@ impl Dag {
         }
     }
 
-    fn flat_sum(&mut self, terms: Vec<(f64, Id)>) -> Id {
+    fn flat_sum(&mut self, terms: Vec<Term>) -> Id {
         match terms.as_slice() {
             [] => self.number(0.0),
             &[(1.0, id)] => id,
@@ -427,54 +388,6 @@ impl Dag {
                 self.intern(Key::Sum(key), Node::Sum(terms))
             }
         }
-    }
-
-    /// Takes the factor that most addends share out of a sum. States and inputs stay: a polynomial is
-    /// read, and its powers shared, as it stands in the table.
-    fn take_common_factor(&mut self, terms: &[(f64, Id)]) -> Option<Id> {
-        let mut parts: Vec<Vec<Factor>> = Vec::new();
-        for &(_, id) in terms {
-            let mut factors = Vec::new();
-            self.factors_of(id, 1, &mut factors);
-            parts.push(factors);
-        }
-        let shared = |factor: &Factor| parts.iter().filter(|p| p.contains(factor)).count();
-        let plain = |&(id, exponent): &Factor| {
-            exponent > 0
-                && matches!(
-                    self.nodes[id],
-                    Node::Leaf(Kind::State | Kind::Input | Kind::Noise, _)
-                )
-        };
-        let mut best: Option<(Factor, usize)> = None;
-        for factor in parts
-            .iter()
-            .flatten()
-            .filter(|f| !plain(f) && f.0 != self.one)
-        {
-            let count = shared(factor);
-            if count > 1 && best.is_none_or(|(_, most)| count > most) {
-                best = Some((*factor, count));
-            }
-        }
-        let (factor, _) = best?;
-        let (mut inside, mut outside) = (Vec::new(), Vec::new());
-        for (&(coefficient, id), factors) in terms.iter().zip(&parts) {
-            if factors.contains(&factor) {
-                let inverse = self.power(factor.0, -factor.1);
-                inside.push((coefficient, self.product(1.0, &[id, inverse])));
-            } else {
-                outside.push((coefficient, id));
-            }
-        }
-        let inner = self.sum(inside);
-        let taken = self.power(factor.0, factor.1);
-        outside.insert(0, (1.0, self.product(1.0, &[taken, inner])));
-        Some(if outside.len() == 1 {
-            outside[0].1
-        } else {
-            self.sum(outside)
-        })
     }
 }
 

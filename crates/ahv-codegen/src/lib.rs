@@ -6,18 +6,26 @@
 
 mod body;
 mod dag;
+mod decay;
 mod docs;
+mod effect;
 mod emit;
 mod evaluate;
 mod format;
 mod home;
 pub mod ir;
+mod items;
 mod manifest;
 mod model;
 mod names;
+mod parallel;
+mod passes;
+mod prepared;
 mod print;
 mod shape;
 mod table;
+#[cfg(test)]
+mod testing;
 mod values;
 mod wording;
 
@@ -25,6 +33,7 @@ use std::collections::BTreeMap;
 
 pub use emit::{AUDIT, Core, Options, emit};
 pub use manifest::{Manifest, sha256};
+pub use passes::{Pass, Passes, UnknownPass};
 pub use table::{Part, Table, TableError};
 
 /// Files by their path relative to the folder of the generated package, with `/` between its parts.

@@ -4,13 +4,17 @@ use askama::Template;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::EmitError;
-use crate::body::{Prepared, Scope, Statement};
+use crate::body::{Scope, Statement};
 use crate::dag::{Dag, Id, Kind, Node};
+use crate::decay;
 use crate::emit::render;
 use crate::home;
 use crate::ir::{self, Variable, capitalised, described};
+use crate::items::{FunctionText, Item, scatter};
+use crate::passes::Passes;
+use crate::prepared::Prepared;
 use crate::print::reference;
-use crate::shape::{PatternText, Shape, Zeros};
+use crate::shape::{Shape, Zeros};
 use crate::wording::{
     arguments, formula, parameter_doc, return_last, summary, tuple, values_name, vector_impl,
     wrapped,
@@ -101,36 +105,11 @@ struct FunctionsTemplate {
     items: Vec<Item>,
 }
 
-/// What stands in a file of functions.
-enum Item {
-    Pattern(PatternText),
-    Function(FunctionText),
-}
-
-struct FunctionText {
-    name: String,
-    docs: Vec<String>,
-    arguments: Vec<String>,
-    result: String,
-    /// What the dense form takes from the compressed one.
-    source: Option<String>,
-    statements: Vec<Statement>,
-    zeros: Zeros,
-    outputs: Vec<(String, String)>,
-}
-
 impl FunctionsTemplate {
     fn has_patterns(&self) -> bool {
         self.items
             .iter()
             .any(|item| matches!(item, Item::Pattern(_)))
-    }
-}
-
-impl FunctionText {
-    /// Whether a blank line sets the result off from what it is made of.
-    fn sets_result_off(&self) -> bool {
-        matches!(self.statements.last(), Some(Statement::Let { .. }))
     }
 }
 
@@ -142,6 +121,8 @@ pub(crate) struct ModelEmitter<'a> {
     dag: Dag,
     prepared: Prepared,
     roots: Vec<Vec<Id>>,
+    /// States whose rate is minus a parameter times themselves, each with that parameter.
+    decays: Vec<(String, Id)>,
     /// The parameters as a basis.
     parameters: Vec<Variable>,
     /// Operations of each function.
@@ -154,15 +135,12 @@ impl<'a> ModelEmitter<'a> {
         model: &'a ir::Model,
         home: &'a str,
         document: &'a ir::Document,
+        passes: &Passes,
     ) -> Result<Self, EmitError> {
-        let mut dag = Dag::new(model)?;
+        let mut dag = Dag::new(model, passes)?;
         let mut roots = Vec::new();
         for function in &model.functions {
-            let entries = function.outputs.iter().flat_map(|output| &output.entries);
-            let ids: Result<Vec<Id>, EmitError> = entries
-                .map(|entry| dag.build(&entry.expr, &function.name))
-                .collect();
-            roots.push(ids?);
+            roots.push(dag.roots(function)?);
         }
         let named: Vec<(String, Vec<Id>)> = model
             .functions
@@ -170,7 +148,8 @@ impl<'a> ModelEmitter<'a> {
             .zip(&roots)
             .map(|(function, ids)| (function.name.clone(), ids.clone()))
             .collect();
-        let prepared = Prepared::gather(&mut dag, model, &named);
+        let decays = decay::rates(model, &mut dag, &roots);
+        let prepared = Prepared::gather(&mut dag, model, &named, &decays);
         let parameters = document.parameters.iter().map(|p| Variable {
             name: p.name.clone(),
             symbol: p.symbol.clone(),
@@ -185,6 +164,7 @@ impl<'a> ModelEmitter<'a> {
             dag,
             prepared,
             roots,
+            decays,
             parameters: parameters.collect(),
             costs: BTreeMap::new(),
         })
@@ -267,26 +247,12 @@ impl<'a> ModelEmitter<'a> {
         }))
     }
 
-    /// States whose rate is minus a parameter times themselves, each with the field that holds the parameter.
+    /// States that decay by themselves, each with the field that holds its rate.
     fn coloured(&self) -> Vec<(String, String)> {
-        let mut found = Vec::new();
-        let functions = self.model.functions.iter().zip(&self.roots);
-        for (function, roots) in functions.filter(|(function, _)| function.name == "drift") {
-            let entries = function.outputs.iter().flat_map(|output| &output.entries);
-            for (entry, root) in entries.zip(roots) {
-                let Node::Product(-1.0, factors) = self.dag.node(*root) else {
-                    continue;
-                };
-                let is_own = |&id: &Id| matches!(self.dag.node(id), Node::Leaf(Kind::State, name) if *name == entry.at[0]);
-                if let [a, b] = factors.as_slice()
-                    && is_own(a) != is_own(b)
-                    && let Some(rate) = self.prepared.field(if is_own(a) { *b } else { *a })
-                {
-                    found.push((entry.at[0].clone(), rate.to_owned()));
-                }
-            }
-        }
-        found
+        let field = |(state, rate): &(String, Id)| {
+            Some((state.clone(), self.prepared.field(*rate)?.to_owned()))
+        };
+        self.decays.iter().filter_map(field).collect()
     }
 
     fn prepare(&mut self) -> String {
@@ -329,6 +295,8 @@ impl<'a> ModelEmitter<'a> {
 
     fn functions(&mut self, group: &str) -> Result<String, EmitError> {
         let mut items = Vec::new();
+        // Functions of one group share the patterns of their results.
+        let mut patterns = BTreeSet::new();
         let mut imports = vec!["Input", "Prepared", "State"];
         for position in 0..self.model.functions.len() {
             let function = &self.model.functions[position];
@@ -347,11 +315,14 @@ impl<'a> ModelEmitter<'a> {
             }
             let ids = self.roots[position].clone();
             if function.compressed {
-                items.extend(
-                    shapes
-                        .iter()
-                        .filter_map(|shape| shape.pattern().map(Item::Pattern)),
-                );
+                for shape in &shapes {
+                    if let Some(pattern) = shape.pattern()
+                        && patterns.insert(pattern.name.clone())
+                    {
+                        items.push(Item::Pattern(pattern));
+                        items.extend(scatter(shape).map(Item::Function));
+                    }
+                }
                 items.push(Item::Function(self.function(function, &ids, &shapes, true)));
                 items.push(Item::Function(self.dense(function, &shapes)));
             } else {
@@ -424,7 +395,7 @@ impl<'a> ModelEmitter<'a> {
                 .take(output.entries.len())
                 .map(|&id| reference(&mut scope, id))
                 .collect();
-            if compressed {
+            if compressed && shape.pattern().is_some() {
                 results.push(format!("[R; {}]", values.len()));
                 outputs.push((output.name.clone(), format!("[{}]", values.join(", "))));
             } else {
@@ -476,7 +447,7 @@ impl<'a> ModelEmitter<'a> {
         let dense: Vec<String> = shapes
             .iter()
             .zip(&values)
-            .map(|(shape, values)| shape.scattered(values))
+            .map(|(shape, values)| shape.scattered(values).unwrap_or_else(|| values.clone()))
             .collect();
         FunctionText {
             name: function.name.clone(),

@@ -15,17 +15,25 @@ pub(crate) struct Cost {
 }
 
 impl Cost {
-    /// One line: `71 operations: 30 additions, 35 multiplications, 1 division, …`.
-    pub(crate) fn describe(&self) -> String {
-        let parts = [
+    /// All operations, each counted as one.
+    pub(crate) fn total(&self) -> usize {
+        self.counted().iter().map(|(count, _)| count).sum()
+    }
+
+    fn counted(&self) -> [(usize, &'static str); 6] {
+        [
             (self.additions, "addition"),
             (self.multiplications, "multiplication"),
             (self.divisions, "division"),
             (self.sin_cos, "sin_cos"),
             (self.exp, "exp"),
             (self.sqrt, "sqrt"),
-        ];
-        let total: usize = parts.iter().map(|(count, _)| count).sum();
+        ]
+    }
+
+    /// One line: `71 operations: 30 additions, 35 multiplications, 1 division, …`.
+    pub(crate) fn describe(&self) -> String {
+        let (parts, total) = (self.counted(), self.total());
         let listed: Vec<String> = parts
             .iter()
             .filter(|(count, _)| *count > 0)
@@ -48,8 +56,8 @@ impl Cost {
 
 /// A sum of this many addends is written one a line, so that a new one is one line of a diff.
 const LISTED: usize = 3;
-/// Longer addends are left to the formatter: with a name before it, one must stay on its line.
-const WIDEST: usize = 76;
+/// Longer addends are left to the formatter: one must stay on its line, indented.
+const WIDEST: usize = 108;
 
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Binding {
@@ -129,11 +137,11 @@ fn spell(scope: &mut Scope<'_>, id: Id) -> (String, Binding) {
             scope.cost.divisions += 1;
             (format!("{}.recip()", atom(scope, base)), Binding::Atom)
         }
-        Node::Power(base, exponent) => {
-            scope.cost.multiplications += 1;
-            let (low, high) = scope.dag.split_power(base, exponent);
-            let (low, high) = (atom(scope, low), atom(scope, high));
-            (format!("{high} * {low}"), Binding::Product)
+        Node::Power(..) => {
+            let steps = scope.dag.steps_of_power(id);
+            scope.cost.multiplications += steps.len() - 1;
+            let steps: Vec<String> = steps.into_iter().map(|step| atom(scope, step)).collect();
+            (steps.join(" * "), Binding::Product)
         }
         Node::Call(call, argument) => {
             let function = match call {
@@ -199,16 +207,32 @@ fn spell_sum(
 }
 
 fn spell_product(scope: &mut Scope<'_>, coefficient: f64, factors: &[Id]) -> (String, Binding) {
-    let mut parts: Vec<String> = factors
-        .iter()
-        .map(|&f| enclosed(scope, f, Binding::Product))
+    // A reciprocal that is not shared is a division where it stands, unless there is nothing else to divide.
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    for &id in factors {
+        let is_open = scope.known(id).is_none() && scope.dag.is_written_anew(id);
+        match *scope.dag.node(id) {
+            Node::Power(base, -1) if is_open => below.push((id, base)),
+            _ => above.push(id),
+        }
+    }
+    if above.is_empty() && coefficient.abs() == 1.0 {
+        above.push(below.remove(0).0);
+    }
+    let mut parts: Vec<String> = above
+        .into_iter()
+        .map(|f| enclosed(scope, f, Binding::Product))
         .collect();
-    scope.cost.multiplications += parts.len() - 1;
     if coefficient.abs() != 1.0 {
-        scope.cost.multiplications += 1;
         parts.insert(0, literal(coefficient));
     } else if coefficient < 0.0 {
         parts[0].insert(0, '-');
     }
-    (parts.join(" * "), Binding::Product)
+    scope.cost.multiplications += parts.len() - 1;
+    scope.cost.divisions += below.len();
+    let mut text = parts.join(" * ");
+    for (_, base) in below {
+        text += &format!(" / {}", atom(scope, base));
+    }
+    (text, Binding::Product)
 }

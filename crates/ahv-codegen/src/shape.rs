@@ -179,29 +179,36 @@ impl<'a> Shape<'a> {
             .map(|position| values[position].clone())
     }
 
-    /// The dense form as an expression of the compressed one.
-    pub(crate) fn scattered(&self, values: &str) -> String {
+    /// Number of entries of the compressed form.
+    pub(crate) fn entries(&self) -> usize {
+        self.output.entries.len()
+    }
+
+    /// The name of the function from the compressed to the dense form, where there is one. A literal is several times
+    /// as quick as a walk along the pattern; but where every new coefficient is a new entry, it would be rewritten each time.
+    pub(crate) fn scatter(&self) -> Option<String> {
+        let is_small = self.bases.len() == 2 && self.bases.iter().all(|b| b.name != "parameter");
+        is_small.then(|| Some(format!("dense_{}", words(self.alias()?))))?
+    }
+
+    /// The dense form as an expression of the compressed one; none for what has no compressed form.
+    pub(crate) fn scattered(&self, values: &str) -> Option<String> {
+        if let Some(function) = self.scatter() {
+            return Some(format!("{function}(&{values})"));
+        }
         let method = if self.output.symmetric {
             "symmetric"
         } else {
             "dense"
         };
-        let pattern = self
-            .pattern()
-            .map_or_else(String::new, |pattern| pattern.name);
-        format!("{pattern}.{method}(&{values})")
+        let pattern = self.pattern()?.name;
+        Some(format!("{pattern}.{method}(&{values})"))
     }
 
     /// The pattern of the compressed form, one entry a line: its name, its indices, its shape.
     pub(crate) fn pattern(&self) -> Option<PatternText> {
         let alias = self.alias()?;
-        let mut name = String::new();
-        for letter in alias.chars() {
-            if letter.is_uppercase() && !name.is_empty() {
-                name.push('_');
-            }
-            name.extend(letter.to_uppercase());
-        }
+        let name = words(alias).to_uppercase();
         let entries = self.output.entries.iter().map(|entry| {
             let indices = entry.at.iter().zip(&self.bases);
             let indices = indices.map(|(name, basis)| format!("{}.{name}", basis.vector));
@@ -235,6 +242,18 @@ fn no_form(model: &ir::Model, output: &Output) -> EmitError {
         "model `{}` has an output over {:?}, which the emitter has no form for",
         model.name, output.basis
     ))
+}
+
+/// The name of a type in lower case, its words apart.
+fn words(name: &str) -> String {
+    let mut words = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !words.is_empty() {
+            words.push('_');
+        }
+        words.extend(letter.to_lowercase());
+    }
+    words
 }
 
 fn field(name: &str, value: String) -> String {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ahv_codegen::{Options, Part, Table, emit};
+use ahv_codegen::{Manifest, Options, Part, Pass, Passes, Table, Tree, emit};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -57,6 +57,94 @@ fn no_line_is_too_long_to_review_and_files_say_where_they_come_from() {
         }
     }
     assert!(wide.is_empty(), "too long:\n{}", wide.join("\n"));
+}
+
+/// The operations of a function as its documentation in the code says.
+fn operations_in_code(tree: &Tree, model: &str, function: &str) -> Option<usize> {
+    let of_model = |path: &str| path.starts_with(&format!("src/{model}/"));
+    let text = tree
+        .iter()
+        .filter(|(path, _)| of_model(path))
+        .find_map(|(_, text)| {
+            let start = |name: &str| text.find(&format!("pub fn {name}<R: Real>("));
+            let start = start(&format!("{function}_values")).or_else(|| start(function))?;
+            text[..start].rsplit_once("/// ").map(|(_, line)| line)
+        })?;
+    match text.split_once(" operation")?.0 {
+        "No" => Some(0),
+        count => count.parse().ok(),
+    }
+}
+
+#[test]
+fn the_page_of_the_passes_counts_what_the_code_does() {
+    let tree = emit(&TABLES.map(table), &irs(), &Options::default()).unwrap();
+    let page = &tree["docs/passes.md"];
+    for pass in Pass::ALL {
+        assert!(page.contains(&format!("| `{}` | {} |", pass.name(), pass.about())));
+    }
+    let (mut model, mut compared) = ("", 0);
+    for line in page.lines() {
+        if let Some(name) = line.strip_prefix("## ") {
+            model = name;
+        }
+        let Some((function, counts)) = line
+            .strip_prefix("| `")
+            .and_then(|rest| rest.split_once("` | "))
+        else {
+            continue;
+        };
+        if model.is_empty() || function == "prepare" {
+            continue;
+        }
+        let all = counts
+            .split(' ')
+            .next()
+            .and_then(|count| count.parse().ok());
+        assert_eq!(
+            all,
+            operations_in_code(&tree, model, function),
+            "{model}::{function}"
+        );
+        compared += 1;
+    }
+    assert!(compared > 25, "only {compared} functions");
+}
+
+#[test]
+fn a_package_without_passes_says_so_and_is_not_the_one_that_is_kept() {
+    let options = Options {
+        passes: Passes::without(&[Pass::SinCos, Pass::Hoisting]),
+        ..Options::default()
+    };
+    let tree = emit(&TABLES.map(table), &irs(), &options).unwrap();
+    let manifest = Manifest::parse(&tree["manifest.json"]).unwrap();
+    assert_eq!(manifest.without_passes, ["hoisting", "sin-cos"]);
+    assert!(!tree["src/dcom/drift.rs"].contains("sin_cos()"));
+    assert!(tree["src/dcom/drift.rs"].contains("x.alpha.sin()"));
+    // The steppers need the decay of the coloured noise in any case.
+    assert!(tree["src/sdcom/mod.rs"].contains("ColouredNoise for Model<R>"));
+    let kept = emit(&TABLES.map(table), &irs(), &Options::default()).unwrap();
+    assert!(!kept["manifest.json"].contains("without_passes"));
+    // What the passes do is the same page for every package.
+    assert!(tree["docs/passes.md"] == kept["docs/passes.md"]);
+}
+
+#[test]
+fn jacobians_come_with_the_drift_in_compressed_form() {
+    let tree = emit(&[table("com")], &irs(), &Options::default()).unwrap();
+    let code = &tree["src/com_rigid/jacobians.rs"];
+    let head = code
+        .split_once("pub fn drift_and_jacobians_values<R: Real>(")
+        .unwrap()
+        .1;
+    let result = head.split_once("-> ").unwrap().1;
+    assert!(
+        result.starts_with("(State<R>, [R; 18], [R; 8]) {"),
+        "{result}"
+    );
+    // Both functions share the patterns of their results.
+    assert_eq!(code.matches("pub const STATE_JACOBIAN_PATTERN").count(), 1);
 }
 
 /// The first line in which two texts differ.

@@ -96,39 +96,71 @@ def split(value: mp.mpf, bits: list[int]) -> list[float]:
     return [*parts, float(value)]
 
 
+def sine_tail(z: mp.mpf) -> mp.mpf:
+    """(sin x - x)/x^3 for z = x^2."""
+    return sum((-1) ** (k + 1) * z**k / mp.factorial(2 * k + 3) for k in range(25))
+
+
+def sine_weight(z: mp.mpf) -> mp.mpf:
+    """Error of the tail to relative error of sin x."""
+    return z / (mp.sin(mp.sqrt(z)) / mp.sqrt(z)) if z else mp.mpf(1e-10)
+
+
+def cosine_tail(z: mp.mpf) -> mp.mpf:
+    """(cos x - 1 + x^2/2)/x^4 for z = x^2."""
+    return sum((-1) ** k * z**k / mp.factorial(2 * k + 4) for k in range(25))
+
+
+def cosine_weight(z: mp.mpf) -> mp.mpf:
+    """Error of the tail to relative error of cos x."""
+    return z * z / mp.cos(mp.sqrt(z))
+
+
+def exponential_tail(r: mp.mpf) -> mp.mpf:
+    """(e^r - 1 - r)/r^2."""
+    return sum(r**k / mp.factorial(k + 2) for k in range(40))
+
+
+def exponential_weight(r: mp.mpf) -> mp.mpf:
+    """Error of the tail to relative error of e^r."""
+    return max(r * r, mp.mpf(1e-6)) / mp.exp(r)
+
 
 def main() -> None:
     edge = float((mp.pi / 4) ** 2) * 1.0001
-    sin = fit(
-        lambda z: sum((-1) ** (k + 1) * z**k / mp.factorial(2 * k + 3) for k in range(25)),
-        lambda z: z / (mp.sin(mp.sqrt(z)) / mp.sqrt(z)) if z else mp.mpf(1e-10),
-        1e-9,
-        edge,
-        5,
-        2,
-    )
-    show("SIN", *sin)
-    cos = fit(
-        lambda z: sum((-1) ** k * z**k / mp.factorial(2 * k + 4) for k in range(25)),
-        lambda z: z * z / mp.cos(mp.sqrt(z)),
-        1e-9,
-        edge,
-        5,
-        2,
-    )
-    show("COS", *cos)
     half = float(mp.log(2) / 2) * 1.0001
-    exp = fit(
-        lambda r: sum(r**k / mp.factorial(k + 2) for k in range(40)),
-        lambda r: max(r * r, mp.mpf(1e-6)) / mp.exp(r),
-        -half,
-        half,
-        9,
-        0,
-    )
-    show("EXP", *exp)
+    show("SIN", *fit(sine_tail, sine_weight, 1e-9, edge, 5, 2))
+    show("COS", *fit(cosine_tail, cosine_weight, 1e-9, edge, 5, 2))
+    show("EXP", *fit(exponential_tail, exponential_weight, -half, half, 9, 0))
     print("const PI_2:", split(mp.pi / 2, [33, 33]))
     print("const LN_2:", split(mp.log(2), [33]))
+
+    # Single precision; the doubles are written as f32 constants.
+    show("SIN of f32", *fit(sine_tail, sine_weight, 1e-9, edge, 2, 0))
+    show("COS of f32", *fit(cosine_tail, cosine_weight, 1e-9, edge, 2, 0))
+    show("EXP of f32", *fit(exponential_tail, exponential_weight, -half, half, 4, 0))
+    print("const LN_2 of f32:", split(mp.log(2), [12]))
+
+    # Normal numbers: sine and cosine of half a turn, logarithm by (1 + s)/(1 - s).
+    quarter = float((mp.pi / 2) ** 2) * 1.0001
+
+    def sine(z: mp.mpf) -> mp.mpf:
+        return sum((-1) ** k * z**k / mp.factorial(2 * k + 1) for k in range(30))
+
+    def cosine(z: mp.mpf) -> mp.mpf:
+        return sum((-1) ** k * z**k / mp.factorial(2 * k) for k in range(30))
+
+    def one(_: mp.mpf) -> mp.mpf:
+        return mp.mpf(1)
+
+    def logarithm(z: mp.mpf) -> mp.mpf:
+        return sum(z**k / (2 * k + 3) for k in range(60))
+
+    edge = float(((mp.sqrt(2) - 1) / (mp.sqrt(2) + 1)) ** 2) * 1.0001
+    for name, degrees in (("f64", (6, 7, 4)), ("f32", (4, 4, 2))):
+        show(f"SINE, {name}", *fit(sine, one, 1e-9, quarter, degrees[0], 0))
+        show(f"COSINE, {name}", *fit(cosine, one, 1e-9, quarter, degrees[1], 0))
+        show(f"LOGARITHM, {name}", *fit(logarithm, lambda z: z, 1e-9, edge, degrees[2], 0))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 //! Traits that the flight models, the steppers and the analyses share.
 //!
 //! * [`Real`]: the scalar, with elementary functions that give the same bits on every machine.
+//! * [`Lanes`]: several numbers side by side as one scalar; [`Straight`]: a scalar without branches, for loops over members;
+//!   by the feature `std`, `Fused`: a scalar that multiplies and adds in one rounding.
 //! * [`Vector`]: a vector whose components have names and units (a state, an input, a row of a Jacobian).
 //! * [`Model`], [`DifferentiableModel`], [`StochasticModel`]: what a generated model can do.
 //! * [`ItoCorrected`], [`DifferentiableNoise`], [`AdditiveNoise`], [`CommutativeNoise`], [`ColouredNoise`]: what schemes
@@ -13,17 +15,27 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "std")]
+extern crate std;
+
 mod bounds;
 mod elementary;
+#[cfg(feature = "std")]
+mod fused;
+mod lanes;
 mod model;
 mod nalgebra;
 mod noise;
 mod pattern;
 mod provenance;
 mod real;
+mod straight;
 mod vector;
 
 pub use bounds::{Bounds, Outside, first_outside};
+#[cfg(feature = "std")]
+pub use fused::{Fused, MulAdd};
+pub use lanes::{Lane, Lanes};
 pub use model::{
     AdditiveNoise, ColouredNoise, CommutativeNoise, DifferentiableModel, DifferentiableNoise,
     ItoCorrected, Model, StochasticModel,
@@ -32,4 +44,5 @@ pub use noise::NoiseClass;
 pub use pattern::Pattern;
 pub use provenance::{Provenance, Status};
 pub use real::Real;
+pub use straight::Straight;
 pub use vector::Vector;

@@ -51,6 +51,17 @@ pub trait StochasticModel: Model {
     /// G(x, u) dW, in the units of the state. Itô: x is the state before the increment.
     fn noise_increment(&self, x: &Self::State, u: &Self::Input, dw: &Self::Noise) -> Self::State;
 
+    /// f(x, u) and G(x, u) dW, for less than one after the other where the model has a way.
+    #[inline(always)]
+    fn drift_and_noise_increment(
+        &self,
+        x: &Self::State,
+        u: &Self::Input,
+        dw: &Self::Noise,
+    ) -> (Self::State, Self::State) {
+        (self.drift(x, u), self.noise_increment(x, u, dw))
+    }
+
     /// How column `channel` of G depends on the state. Without an implementation of its own a model makes no
     /// promise: every column is general.
     #[inline]

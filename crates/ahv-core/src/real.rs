@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::elementary;
+use crate::elementary::{double, single};
 
 /// A real number, or several that are computed side by side.
 ///
@@ -18,6 +18,8 @@ pub trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
+    + Send
+    + Sync
     + 'static
 {
     /// 0
@@ -66,52 +68,52 @@ impl Real for f64 {
     const TWO: Self = 2.0;
     const HALF: Self = 0.5;
 
-    #[inline]
+    #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value
     }
 
-    #[inline]
+    #[inline(always)]
     fn to_f64(self) -> f64 {
         self
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        elementary::sin_cos(self)
+        double::sin_cos(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin(self) -> Self {
-        elementary::sin_cos(self).0
+        double::sin_cos(self).0
     }
 
-    #[inline]
+    #[inline(always)]
     fn cos(self) -> Self {
-        elementary::sin_cos(self).1
+        double::sin_cos(self).1
     }
 
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
-        elementary::exp(self)
+        double::exp(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
-        libm::sqrt(self)
+        root::double(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn recip(self) -> Self {
         1.0 / self
     }
 
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         f64::abs(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn is_finite(self) -> bool {
         f64::is_finite(self)
     }
@@ -123,53 +125,72 @@ impl Real for f32 {
     const TWO: Self = 2.0;
     const HALF: Self = 0.5;
 
-    #[inline]
+    #[inline(always)]
     fn from_f64(value: f64) -> Self {
         value as f32
     }
 
-    #[inline]
+    #[inline(always)]
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        libm::sincosf(self)
+        single::sin_cos(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin(self) -> Self {
-        libm::sinf(self)
+        single::sin_cos(self).0
     }
 
-    #[inline]
+    #[inline(always)]
     fn cos(self) -> Self {
-        libm::cosf(self)
+        single::sin_cos(self).1
     }
 
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
-        libm::expf(self)
+        single::exp(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
-        libm::sqrtf(self)
+        root::single(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn recip(self) -> Self {
         1.0 / self
     }
 
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         f32::abs(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn is_finite(self) -> bool {
         f32::is_finite(self)
+    }
+}
+
+/// Square roots: of `core` there are none, and `libm`'s do not become vector instructions. Both round correctly.
+#[cfg(not(feature = "std"))]
+mod root {
+    pub(super) use libm::{sqrt as double, sqrtf as single};
+}
+
+#[cfg(feature = "std")]
+mod root {
+    #[inline(always)]
+    pub(super) fn double(x: f64) -> f64 {
+        std::primitive::f64::sqrt(x)
+    }
+
+    #[inline(always)]
+    pub(super) fn single(x: f32) -> f32 {
+        std::primitive::f32::sqrt(x)
     }
 }

@@ -79,14 +79,14 @@ macro_rules! impl_vector {
             pub const UNITS: [&'static str; $name::<()>::LEN] = [$($unit),+];
 
             /// The components in order.
-            #[inline]
+            #[inline(always)]
             #[allow(clippy::wrong_self_convention, reason = "T is Copy wherever a vector is used")]
             pub fn to_array(self) -> [T; $name::<()>::LEN] {
                 [$(self.$field),+]
             }
 
             /// A vector from its components in order.
-            #[inline]
+            #[inline(always)]
             pub fn from_array([$($field),+]: [T; $name::<()>::LEN]) -> Self {
                 Self { $($field),+ }
             }
@@ -99,22 +99,29 @@ macro_rules! impl_vector {
             const SI_UNITS: &'static [&'static str] = &[$($si_unit),+];
             const SI_FACTORS: &'static [f64] = &[$($si_factor),+];
 
-            #[inline]
+            #[inline(always)]
             fn splat(value: T) -> Self {
                 Self::from_array([value; $name::<()>::LEN])
             }
 
-            #[inline]
-            fn from_fn(component: impl FnMut(usize) -> T) -> Self {
-                Self::from_array(::core::array::from_fn(component))
+            #[inline(always)]
+            fn from_fn(mut component: impl FnMut(usize) -> T) -> Self {
+                // No array: through one the compiler does not see single numbers.
+                let mut index = 0;
+                let mut next = || {
+                    let value = component(index);
+                    index += 1;
+                    value
+                };
+                Self { $($field: next()),+ }
             }
 
-            #[inline]
+            #[inline(always)]
             fn get(&self, index: usize) -> Option<T> {
                 (*self).to_array().get(index).copied()
             }
 
-            #[inline]
+            #[inline(always)]
             fn set(&mut self, index: usize, value: T) -> Option<()> {
                 let mut components = (*self).to_array();
                 *components.get_mut(index)? = value;
@@ -122,21 +129,17 @@ macro_rules! impl_vector {
                 Some(())
             }
 
-            #[inline]
+            #[inline(always)]
             fn map(self, f: impl FnMut(T) -> T) -> Self {
                 self.map_into(f)
             }
 
-            #[inline]
+            #[inline(always)]
             fn zip_with(self, other: Self, mut f: impl FnMut(T, T) -> T) -> Self {
-                let mut components = self.to_array();
-                for (own, other) in components.iter_mut().zip(other.to_array()) {
-                    *own = f(*own, other);
-                }
-                Self::from_array(components)
+                Self { $($field: f(self.$field, other.$field)),+ }
             }
 
-            #[inline]
+            #[inline(always)]
             fn find(&self, mut test: impl FnMut(T) -> bool) -> Option<(&'static str, T)> {
                 $name::<T>::NAMES
                     .into_iter()
@@ -147,13 +150,31 @@ macro_rules! impl_vector {
 
         impl<T> $name<T> {
             /// Applies `f` to each component; the type of the components may change.
-            #[inline]
-            pub fn map_into<U>(self, f: impl FnMut(T) -> U) -> $name<U> {
-                $name::from_array(self.to_array().map(f))
+            #[inline(always)]
+            pub fn map_into<U>(self, mut f: impl FnMut(T) -> U) -> $name<U> {
+                $name { $($field: f(self.$field)),+ }
+            }
+
+            /// As [`Self::map_into`], by reference: large components are not copied.
+            #[inline(always)]
+            pub fn map_ref<U>(&self, mut f: impl FnMut(&T) -> U) -> $name<U> {
+                $name { $($field: f(&self.$field)),+ }
+            }
+
+            /// Tells `f` of each component and the one of `other` in its place.
+            #[inline(always)]
+            pub fn zip_ref<U>(&self, other: &$name<U>, mut f: impl FnMut(&T, &U)) {
+                $(f(&self.$field, &other.$field);)+
+            }
+
+            /// Applies `f` to each component and the one of `other` in its place.
+            #[inline(always)]
+            pub fn update<U>(&mut self, other: $name<U>, mut f: impl FnMut(&mut T, U)) {
+                $(f(&mut self.$field, other.$field);)+
             }
 
             /// Rows of a vector of vectors, such as a Jacobian.
-            #[inline]
+            #[inline(always)]
             pub fn to_matrix<E, const COLUMNS: usize>(self) -> [[E; COLUMNS]; $name::<()>::LEN]
             where
                 T: Into<[E; COLUMNS]>,
@@ -162,7 +183,7 @@ macro_rules! impl_vector {
             }
 
             /// The vector of vectors with these rows.
-            #[inline]
+            #[inline(always)]
             pub fn from_matrix<E, const COLUMNS: usize>(rows: [[E; COLUMNS]; $name::<()>::LEN]) -> Self
             where
                 T: From<[E; COLUMNS]>,
@@ -172,14 +193,14 @@ macro_rules! impl_vector {
         }
 
         impl<T> From<[T; $name::<()>::LEN]> for $name<T> {
-            #[inline]
+            #[inline(always)]
             fn from(components: [T; $name::<()>::LEN]) -> Self {
                 Self::from_array(components)
             }
         }
 
         impl<T> From<$name<T>> for [T; $name::<()>::LEN] {
-            #[inline]
+            #[inline(always)]
             fn from(vector: $name<T>) -> Self {
                 vector.to_array()
             }

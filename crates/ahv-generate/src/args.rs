@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use ahv_codegen::Core;
+use ahv_codegen::{Core, Pass};
 
 use crate::project::Project;
 
@@ -45,6 +45,10 @@ pub struct Args {
     /// Unit system of the models: ft-slug-s-rad or si [default: that of the tables]
     #[arg(long, value_name = "SYSTEM", value_parser = ["ft-slug-s-rad", "si"])]
     pub units: Option<String>,
+
+    /// Leave a pass of the emitter out, to see what it does; may be repeated. Such a tree fails --check
+    #[arg(long, value_name = "NAME", conflicts_with = "check")]
+    pub without_pass: Vec<Pass>,
 
     /// Print the result as JSON
     #[arg(long)]
@@ -116,7 +120,35 @@ fn quoted(word: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::quoted;
+    use super::{Args, quoted};
+    use clap::Parser as _;
+
+    #[derive(clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn parse(line: &[&str]) -> Result<Args, String> {
+        let line = Line::try_parse_from([&["generate"], line].concat());
+        line.map(|line| line.args)
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_pass_that_there_is_not_is_answered_with_those_there_are() {
+        let message = parse(&["--without-pass", "horner"]).unwrap_err();
+        assert!(
+            message.contains("there is no pass `horner`; there are hash-consing,"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn a_check_is_always_one_of_all_passes() {
+        let message = parse(&["--check", "--without-pass", "estrin"]).unwrap_err();
+        assert!(message.contains("cannot be used with"), "{message}");
+    }
 
     #[test]
     fn a_command_survives_the_shell() {

@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write as _};
 use std::time::Instant;
 
-use ahv_codegen::{Options, Tree};
+use ahv_codegen::{Options, Passes, Tree};
 
 pub use args::Args;
 pub use compare::{Difference, Status};
@@ -146,6 +146,7 @@ fn emit(args: &Args, tables: &Tables, irs: &BTreeMap<String, String>) -> Result<
         package: args.package.clone(),
         core: args.core(),
         units: args.units.clone(),
+        passes: Passes::without(&args.without_pass),
     };
     ahv_codegen::emit(&tables.parsed, irs, &options)
         .map_err(|error| Failure::new(error.to_string()))

@@ -34,7 +34,7 @@ pub struct WienerIntegrals<W> {
 
 impl<W> WienerIntegrals<W> {
     /// The integrals over a step of `dt`, in s, from two independent standard normal numbers a channel.
-    #[inline]
+    #[inline(always)]
     pub fn from_normals<R: Real>(dt: f64, first: W, second: W) -> Self
     where
         W: Vector<R>,
@@ -50,7 +50,7 @@ impl<W> WienerIntegrals<W> {
     }
 
     /// The integrals over this step and the `next` one, of `next_dt`, in s, together.
-    #[inline]
+    #[inline(always)]
     pub fn then<R: Real>(self, next: Self, next_dt: f64) -> Self
     where
         W: Vector<R>,
@@ -69,7 +69,7 @@ impl<W> WienerIntegrals<W> {
     ///
     /// `first` and `second` are independent standard normal numbers, one a channel. The halves have the law of the
     /// process given this step, and [`then`](Self::then) puts them together to this step again, but for rounding.
-    #[inline]
+    #[inline(always)]
     pub fn bisect<R: Real>(self, dt: f64, first: W, second: W) -> (Self, Self)
     where
         W: Vector<R>,
@@ -107,7 +107,7 @@ impl<W> WienerIntegrals<W> {
 /// of Lévy. `normals` are independent standard normal numbers, one a channel.
 ///
 /// For schemes that use ΔW alone; [`WienerIntegrals::bisect`] keeps ΔZ too.
-#[inline]
+#[inline(always)]
 pub fn bisect<R: Real, W: Vector<R>>(dw: W, dt: f64, normals: W) -> (W, W) {
     let spread = R::from_f64(dt).sqrt() * R::HALF;
     (

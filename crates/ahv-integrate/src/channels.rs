@@ -171,7 +171,7 @@ macro_rules! masked {
             type State = M::State;
             type Input = M::Input;
 
-            #[inline]
+            #[inline(always)]
             fn drift(&self, x: &M::State, u: &M::Input) -> M::State {
                 self.model.drift(x, u)
             }
@@ -180,10 +180,21 @@ macro_rules! masked {
         impl<M: $bound> StochasticModel for $name<'_, M> {
             type Noise = M::Noise;
 
-            #[inline]
+            #[inline(always)]
             fn noise_increment(&self, x: &M::State, u: &M::Input, dw: &M::Noise) -> M::State {
                 let dw = dw.zip_with(self.mask, |dw, part| dw * part);
                 self.model.noise_increment(x, u, &dw)
+            }
+
+            #[inline(always)]
+            fn drift_and_noise_increment(
+                &self,
+                x: &M::State,
+                u: &M::Input,
+                dw: &M::Noise,
+            ) -> (M::State, M::State) {
+                let dw = dw.zip_with(self.mask, |dw, part| dw * part);
+                self.model.drift_and_noise_increment(x, u, &dw)
             }
 
             fn noise_class(channel: usize) -> NoiseClass {
@@ -203,7 +214,7 @@ masked!(CommutativeChannels, DifferentiableNoise);
 impl<M: StochasticModel> AdditiveNoise for AdditiveChannels<'_, M> {}
 
 impl<M: StochasticModel> ItoCorrected for AdditiveChannels<'_, M> {
-    #[inline]
+    #[inline(always)]
     fn ito_correction(&self, _: &M::State, _: &M::Input) -> M::State {
         M::State::splat(M::Scalar::ZERO)
     }
@@ -212,7 +223,7 @@ impl<M: StochasticModel> ItoCorrected for AdditiveChannels<'_, M> {
 impl<M: DifferentiableNoise> CommutativeNoise for CommutativeChannels<'_, M> {}
 
 impl<M: DifferentiableNoise> ItoCorrected for CommutativeChannels<'_, M> {
-    #[inline]
+    #[inline(always)]
     fn ito_correction(&self, x: &M::State, u: &M::Input) -> M::State {
         self.model.iterated_increment(x, u, |j, k| {
             if j == k {
@@ -225,7 +236,7 @@ impl<M: DifferentiableNoise> ItoCorrected for CommutativeChannels<'_, M> {
 }
 
 impl<M: DifferentiableNoise> DifferentiableNoise for CommutativeChannels<'_, M> {
-    #[inline]
+    #[inline(always)]
     fn iterated_increment(
         &self,
         x: &M::State,

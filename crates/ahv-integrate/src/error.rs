@@ -62,7 +62,7 @@ impl<R: Real> core::error::Error for StepError<R> {}
 /// # Errors
 ///
 /// [`StepError::StepSize`] unless `dt` is positive and finite.
-#[inline]
+#[inline(always)]
 pub(crate) fn step_size<R: Real>(dt: f64) -> Result<R, StepError<R>> {
     if dt > 0.0 && dt.is_finite() {
         Ok(R::from_f64(dt))
@@ -76,7 +76,7 @@ pub(crate) fn step_size<R: Real>(dt: f64) -> Result<R, StepError<R>> {
 /// # Errors
 ///
 /// [`StepError::NonFinite`], with `x` as it was, if a component of `next` is infinite or NaN.
-#[inline]
+#[inline(always)]
 pub(crate) fn accept<R: Real, X: Vector<R>>(x: &mut X, next: X) -> Result<(), StepError<R>> {
     match next.find(|component| !component.is_finite()) {
         Some((name, value)) => Err(StepError::NonFinite { name, value }),

@@ -29,7 +29,7 @@ impl ItoEulerMaruyama {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: StochasticModel>(
         &self,
         model: &M,
@@ -38,8 +38,7 @@ impl ItoEulerMaruyama {
         dw: &M::Noise,
     ) -> Result<(), StepError<M::Scalar>> {
         let dt: M::Scalar = step_size(self.dt)?;
-        let drift = model.drift(x, u);
-        let noise = model.noise_increment(x, u, dw);
+        let (drift, noise) = model.drift_and_noise_increment(x, u, dw);
         let next = x
             .zip_with(drift, |x, f| x + f * dt)
             .zip_with(noise, |x, g| x + g);

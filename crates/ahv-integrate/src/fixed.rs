@@ -22,7 +22,7 @@ impl Euler {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: Model>(
         &self,
         model: &M,
@@ -52,7 +52,7 @@ impl Heun {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: Model>(
         &self,
         model: &M,
@@ -85,7 +85,7 @@ impl Rk4 {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: Model>(
         &self,
         model: &M,

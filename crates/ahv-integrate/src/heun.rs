@@ -1,6 +1,6 @@
 //! The stochastic Heun method, in the Stratonovich and in the Itô sense.
 
-use ahv_core::{ItoCorrected, Real, StochasticModel, Vector};
+use ahv_core::{ItoCorrected, Model, Real, StochasticModel, Vector};
 
 use crate::StepError;
 use crate::error::{accept, step_size};
@@ -30,7 +30,7 @@ impl StratonovichHeun {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: StochasticModel>(
         &self,
         model: &M,
@@ -38,7 +38,7 @@ impl StratonovichHeun {
         u: &M::Input,
         dw: &M::Noise,
     ) -> Result<(), StepError<M::Scalar>> {
-        heun(self.dt, model, x, u, dw, |x| model.drift(x, u))
+        heun(self.dt, model, x, u, dw)
     }
 }
 
@@ -67,7 +67,7 @@ impl ItoHeun {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: ItoCorrected>(
         &self,
         model: &M,
@@ -75,30 +75,73 @@ impl ItoHeun {
         u: &M::Input,
         dw: &M::Noise,
     ) -> Result<(), StepError<M::Scalar>> {
-        heun(self.dt, model, x, u, dw, |x| {
-            model
-                .drift(x, u)
-                .zip_with(model.ito_correction(x, u), |f, c| f - c)
-        })
+        heun(self.dt, &InStratonovichSense { model }, x, u, dw)
     }
 }
 
-/// One step for the Stratonovich equation of this drift.
-#[inline]
+/// The equations of a model as they read in the Stratonovich sense.
+struct InStratonovichSense<'m, M> {
+    model: &'m M,
+}
+
+impl<M: ItoCorrected> Model for InStratonovichSense<'_, M> {
+    type Scalar = M::Scalar;
+    type State = M::State;
+    type Input = M::Input;
+
+    #[inline(always)]
+    fn drift(&self, x: &M::State, u: &M::Input) -> M::State {
+        let correction = self.model.ito_correction(x, u);
+        self.model.drift(x, u).zip_with(correction, |f, c| f - c)
+    }
+}
+
+impl<M: ItoCorrected> StochasticModel for InStratonovichSense<'_, M> {
+    type Noise = M::Noise;
+
+    #[inline(always)]
+    fn noise_increment(&self, x: &M::State, u: &M::Input, dw: &M::Noise) -> M::State {
+        self.model.noise_increment(x, u, dw)
+    }
+
+    #[inline(always)]
+    fn drift_and_noise_increment(
+        &self,
+        x: &M::State,
+        u: &M::Input,
+        dw: &M::Noise,
+    ) -> (M::State, M::State) {
+        let (drift, noise) = self.model.drift_and_noise_increment(x, u, dw);
+        let correction = self.model.ito_correction(x, u);
+        (drift.zip_with(correction, |f, c| f - c), noise)
+    }
+}
+
+/// One step for an equation in the Stratonovich sense.
+#[inline(always)]
 fn heun<M: StochasticModel>(
     dt: f64,
     model: &M,
     x: &mut M::State,
     u: &M::Input,
     dw: &M::Noise,
-    drift: impl Fn(&M::State) -> M::State,
 ) -> Result<(), StepError<M::Scalar>> {
     let dt: M::Scalar = step_size(dt)?;
-    let half = M::Scalar::HALF;
-    let change =
-        |x: &M::State| drift(x).zip_with(model.noise_increment(x, u, dw), |f, g| f * dt + g);
-    let first = change(x);
-    let second = change(&x.zip_with(first, |x, d| x + d));
-    let mean = first.zip_with(second, |a, b| half * (a + b));
+    let first = change(model, x, u, dw, dt);
+    let second = change(model, &x.zip_with(first, |x, d| x + d), u, dw, dt);
+    let mean = first.zip_with(second, |a, b| M::Scalar::HALF * (a + b));
     accept(x, x.zip_with(mean, |x, d| x + d))
+}
+
+/// f dt + G dW at x. No closure: one that holds a model is too large to be inlined.
+#[inline(always)]
+fn change<M: StochasticModel>(
+    model: &M,
+    x: &M::State,
+    u: &M::Input,
+    dw: &M::Noise,
+    dt: M::Scalar,
+) -> M::State {
+    let (drift, noise) = model.drift_and_noise_increment(x, u, dw);
+    drift.zip_with(noise, |f, g| f * dt + g)
 }

@@ -19,8 +19,8 @@
 //! | [`ItoStrangSplitting`] | coloured noise exact, else the inner scheme's | none | the inner scheme's, to 2 |
 //! | [`LinearTransition`] | linear equations with additive noise | exact in law | exact |
 //!
-//! Noise comes from the caller: [`WienerIntegrals`], [`WeakIncrements`], a [`BrownianPath`] that can be refined, and, by
-//! feature, `WienerSource`, `NormalStream`, `KeyedNormals` (`chacha`) and `RandNormals` (`rand`). A scheme that needs
+//! Noise comes from the caller: [`WienerSource`], [`NormalStream`], [`KeyedNormals`], [`NormalLanes`], a [`BrownianPath`]
+//! that can be refined, and, by the feature `rand`, `RandNormals`; in the shape of [`WienerIntegrals`] and [`WeakIncrements`] too. A scheme that needs
 //! additive or commutative noise asks for it by a trait; [`AdditiveChannels`] and [`CommutativeChannels`] check it at run
 //! time.
 //!
@@ -73,8 +73,7 @@ pub use method::{Attempt, Fixed, Method, Start};
 pub use milstein::ItoMilstein;
 #[cfg(feature = "rand")]
 pub use noise::RandNormals;
-#[cfg(feature = "chacha")]
-pub use noise::{KeyedNormals, NormalStream, WienerSource};
+pub use noise::{KeyedNormals, NormalLanes, NormalStream, Precision, WienerSource};
 pub use ornstein_uhlenbeck::LinearTransition;
 pub use rosenbrock::{Rodas4, RosenbrockTableau};
 pub use splitting::{HeldColoured, ItoStrangSplitting};

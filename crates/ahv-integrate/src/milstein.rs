@@ -38,7 +38,7 @@ impl ItoMilstein {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: CommutativeNoise>(
         &self,
         model: &M,

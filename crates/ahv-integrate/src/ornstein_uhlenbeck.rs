@@ -107,6 +107,17 @@ impl<R: Real, const N: usize> LinearTransition<R, N> {
         })
     }
 
+    /// The transition with another scalar: `f` applied to every entry.
+    #[inline(always)]
+    pub fn map_ref<U: Real>(&self, f: impl Fn(&R) -> U + Copy) -> LinearTransition<U, N> {
+        LinearTransition {
+            transition: mapped(&self.transition, f),
+            forced: mapped(&self.forced, f),
+            covariance: mapped(&self.covariance, f),
+            root: mapped(&self.root, f),
+        }
+    }
+
     /// Φ.
     pub const fn transition(&self) -> &[[R; N]; N] {
         &self.transition
@@ -122,9 +133,16 @@ impl<R: Real, const N: usize> LinearTransition<R, N> {
         &self.covariance
     }
 
+    /// The state after the step without force: `normals` are independent standard normal numbers.
+    #[inline(always)]
+    pub fn free_step(&self, x: &[R; N], normals: &[R; N]) -> [R; N] {
+        let (moved, noise) = (applied(&self.transition, x), applied(&self.root, normals));
+        zip(&moved, &noise, |a, b| a + b)
+    }
+
     /// The state after the step: `force` is c, held, in the units of the state per second, and `normals` are independent
     /// standard normal numbers.
-    #[inline]
+    #[inline(always)]
     pub fn step(&self, x: &[R; N], force: &[R; N], normals: &[R; N]) -> [R; N] {
         let parts = [
             applied(&self.transition, x),
@@ -209,6 +227,7 @@ fn entry<R: Real, const N: usize>(m: &Matrix<R, N>, i: usize, j: usize) -> R {
     line(m, i).get(j).copied().unwrap_or(R::ZERO)
 }
 
+#[inline(always)]
 fn zip<T: Copy, const N: usize>(a: &[T; N], b: &[T; N], f: impl Fn(T, T) -> T) -> [T; N] {
     let mut result = *a;
     for (a, &b) in result.iter_mut().zip(b) {
@@ -238,11 +257,27 @@ fn product<R: Real, const N: usize>(a: &Matrix<R, N>, b: &Matrix<R, N>) -> Matri
     a.map(|row| applied(&columns, &row))
 }
 
-#[inline]
+#[inline(always)]
 fn applied<R: Real, const N: usize>(m: &Matrix<R, N>, x: &[R; N]) -> [R; N] {
-    m.map(|row| {
-        row.iter()
-            .zip(x)
-            .fold(R::ZERO, |total, (&a, &b)| total + a * b)
-    })
+    let mut result = [R::ZERO; N];
+    for (place, row) in result.iter_mut().zip(m) {
+        for (&a, &b) in row.iter().zip(x) {
+            *place = *place + a * b;
+        }
+    }
+    result
+}
+
+#[inline(always)]
+fn mapped<R: Real, U: Real, const N: usize>(
+    m: &Matrix<R, N>,
+    f: impl Fn(&R) -> U,
+) -> Matrix<U, N> {
+    let mut result = [[U::ZERO; N]; N];
+    for (places, row) in result.iter_mut().zip(m) {
+        for (place, entry) in places.iter_mut().zip(row) {
+            *place = f(entry);
+        }
+    }
+    result
 }

@@ -79,6 +79,22 @@ impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
         Ok(Self { half, dt })
     }
 
+    /// The splitting with another scalar: `f` applied to every entry of the transition.
+    #[inline(always)]
+    pub fn map_ref<U: Real>(&self, f: impl Fn(&R) -> U + Copy) -> ItoStrangSplitting<U, N> {
+        ItoStrangSplitting {
+            half: self.half.map_ref(f),
+            dt: self.dt,
+        }
+    }
+
+    /// The same transition; the other states are stepped by `dt`, in s.
+    #[must_use]
+    #[inline(always)]
+    pub const fn with_step(self, dt: f64) -> Self {
+        Self { dt, ..self }
+    }
+
     /// Advances `x` by one step; `u` is held over the step.
     ///
     /// `normals` are independent standard normal numbers for the two half steps of the coloured noise. `others` steps
@@ -88,7 +104,7 @@ impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
     /// # Errors
     ///
     /// [`StepError`], also that of `others`; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: ColouredNoise<Scalar = R>>(
         &self,
         model: &M,
@@ -108,7 +124,7 @@ impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step_heun<M: ColouredNoise<Scalar = R> + ItoCorrected>(
         &self,
         model: &M,
@@ -122,19 +138,22 @@ impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn coloured_half<M: ColouredNoise<Scalar = R>>(
         &self,
         model: &M,
         x: M::State,
         normals: &[R; N],
     ) -> M::State {
-        let before = gathered(model, &x);
-        let after = self.half.step(&before, &[R::ZERO; N], normals);
-        let mut next = x;
-        for (state, value) in coloured(model).zip(after) {
-            // The index is one of the state's own.
-            let _ = next.set(state, value);
+        let after = self.half.free_step(&gathered(model, &x), normals);
+        let (mut next, mut values) = (x, after.iter());
+        for state in 0..M::State::LEN {
+            if model.decay(state).is_some()
+                && let Some(&value) = values.next()
+            {
+                // The index is one of the state's own.
+                let _ = next.set(state, value);
+            }
         }
         next
     }
@@ -147,7 +166,7 @@ pub struct HeldColoured<'m, M> {
 }
 
 impl<M: ColouredNoise> HeldColoured<'_, M> {
-    #[inline]
+    #[inline(always)]
     fn held(&self, rate: M::State) -> M::State {
         M::State::from_fn(|state| match self.model.decay(state) {
             Some(_) => M::Scalar::ZERO,
@@ -161,7 +180,7 @@ impl<M: ColouredNoise> Model for HeldColoured<'_, M> {
     type State = M::State;
     type Input = M::Input;
 
-    #[inline]
+    #[inline(always)]
     fn drift(&self, x: &M::State, u: &M::Input) -> M::State {
         self.held(self.model.drift(x, u))
     }
@@ -170,9 +189,20 @@ impl<M: ColouredNoise> Model for HeldColoured<'_, M> {
 impl<M: ColouredNoise> StochasticModel for HeldColoured<'_, M> {
     type Noise = M::Noise;
 
-    #[inline]
+    #[inline(always)]
     fn noise_increment(&self, x: &M::State, u: &M::Input, dw: &M::Noise) -> M::State {
         self.held(self.model.noise_increment(x, u, dw))
+    }
+
+    #[inline(always)]
+    fn drift_and_noise_increment(
+        &self,
+        x: &M::State,
+        u: &M::Input,
+        dw: &M::Noise,
+    ) -> (M::State, M::State) {
+        let (drift, noise) = self.model.drift_and_noise_increment(x, u, dw);
+        (self.held(drift), self.held(noise))
     }
 
     fn noise_class(channel: usize) -> NoiseClass {
@@ -186,7 +216,7 @@ impl<M: ColouredNoise> StochasticModel for HeldColoured<'_, M> {
 
 impl<M: ColouredNoise + ItoCorrected> ItoCorrected for HeldColoured<'_, M> {
     /// That of the model: the columns of coloured noise are constant and add nothing to it.
-    #[inline]
+    #[inline(always)]
     fn ito_correction(&self, x: &M::State, u: &M::Input) -> M::State {
         self.held(self.model.ito_correction(x, u))
     }
@@ -198,14 +228,18 @@ fn coloured<M: ColouredNoise>(model: &M) -> impl Iterator<Item = usize> + '_ {
 }
 
 /// The components of coloured noise.
-#[inline]
+#[inline(always)]
 fn gathered<M: ColouredNoise, const N: usize>(model: &M, x: &M::State) -> [M::Scalar; N] {
-    let mut states = coloured(model);
-    from_fn(|_| {
-        states
-            .next()
-            .map_or(M::Scalar::ZERO, |state| component(x, state))
-    })
+    let mut parts = [M::Scalar::ZERO; N];
+    let mut places = parts.iter_mut();
+    for state in 0..M::State::LEN {
+        if model.decay(state).is_some()
+            && let Some(place) = places.next()
+        {
+            *place = component(x, state);
+        }
+    }
+    parts
 }
 
 /// The name of the first of these states that a column moves.

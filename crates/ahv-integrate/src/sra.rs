@@ -39,7 +39,7 @@ impl ItoSra1 {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: AdditiveNoise>(
         &self,
         model: &M,

@@ -114,7 +114,7 @@ impl ItoDri1 {
     /// # Errors
     ///
     /// [`StepError`]; `x` is then the state before the step.
-    #[inline]
+    #[inline(always)]
     pub fn step<M: StochasticModel>(
         &self,
         model: &M,

@@ -8,7 +8,7 @@ use ahv_core::Real;
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 5 operations: 2 additions, 3 multiplications.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (2)
     let alpha_2 = x.alpha * x.alpha;
@@ -21,7 +21,7 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 7 operations: 3 additions, 4 multiplications.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (2)
     let alpha_2 = x.alpha * x.alpha;
@@ -35,7 +35,7 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Air density, eq. (2). Unit: slug/ft^3.
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -46,7 +46,7 @@ pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
 ///
 /// 7 operations: 1 addition, 5 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -59,7 +59,7 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -
 /// Lift coefficient, eq. (3). Unit: 1.
 ///
 /// 4 operations: 2 additions, 2 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     p.c_l_0
@@ -70,7 +70,7 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Drag coefficient, eq. (3). Unit: 1.
 ///
 /// 10 operations: 4 additions, 6 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -86,7 +86,7 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
 ///
 /// 7 operations: 3 additions, 4 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -100,7 +100,7 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Thrust, eq. (3). Unit: lb/ft.
 ///
 /// 16 operations: 7 additions, 9 multiplications.
-#[inline]
+#[inline(always)]
 pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -120,7 +120,7 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lift, eq. (2). Unit: lb/ft.
 ///
 /// 13 operations: 3 additions, 9 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -141,7 +141,7 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Drag, eq. (2). Unit: lb/ft.
 ///
 /// 19 operations: 5 additions, 13 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -166,7 +166,7 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Pitching moment, eq. (2). Unit: lb.
 ///
 /// 34 operations: 12 additions, 21 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

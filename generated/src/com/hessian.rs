@@ -63,7 +63,7 @@ pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 220 operations: 49 additions, 166 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 46] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -394,7 +394,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
-#[inline]
+#[inline(always)]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
     HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
 }

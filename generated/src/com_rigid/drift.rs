@@ -8,7 +8,7 @@ use ahv_core::Real;
 /// Time derivative of the state, eq. (1).
 ///
 /// 77 operations: 25 additions, 47 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

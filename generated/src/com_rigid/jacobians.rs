@@ -30,6 +30,46 @@ pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_state_jacobian<R: Real>(values: &[R; 18]) -> StateJacobian<R> {
+    let no_state = State::splat(R::ZERO);
+    State {
+        velocity: State {
+            velocity: values[0],
+            altitude: values[1],
+            gamma: values[2],
+            alpha: values[3],
+            ..no_state
+        },
+        altitude: State {
+            velocity: values[4],
+            gamma: values[5],
+            ..no_state
+        },
+        gamma: State {
+            velocity: values[6],
+            altitude: values[7],
+            gamma: values[8],
+            alpha: values[9],
+            ..no_state
+        },
+        alpha: State {
+            velocity: values[10],
+            altitude: values[11],
+            gamma: values[12],
+            alpha: values[13],
+            pitch_rate: values[14],
+        },
+        pitch_rate: State {
+            velocity: values[15],
+            altitude: values[16],
+            alpha: values[17],
+            ..no_state
+        },
+    }
+}
+
 /// Where the entries of the compressed [`InputJacobian`] stand.
 pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     [State::<u8>::LEN, Input::<u8>::LEN],
@@ -45,12 +85,38 @@ pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_input_jacobian<R: Real>(values: &[R; 8]) -> InputJacobian<R> {
+    let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
+    State {
+        velocity: Input {
+            phi: values[0],
+            delta_e: values[1],
+        },
+        gamma: Input {
+            phi: values[2],
+            delta_e: values[3],
+        },
+        alpha: Input {
+            phi: values[4],
+            delta_e: values[5],
+        },
+        pitch_rate: Input {
+            phi: values[6],
+            delta_e: values[7],
+        },
+        ..no_state_input
+    }
+}
+
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 149 operations: 38 additions, 106 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -219,26 +285,28 @@ pub fn jacobians_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
-#[inline]
+#[inline(always)]
 pub fn jacobians<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
+    (dense_state_jacobian(&state), dense_input_jacobian(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (1).
 ///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
 /// 167 operations: 44 additions, 118 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
-pub fn drift_and_jacobians<R: Real>(
+#[inline(always)]
+pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+) -> (State<R>, [R; 18], [R; 8]) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
@@ -381,9 +449,6 @@ pub fn drift_and_jacobians<R: Real>(
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
     // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
     let drift = State {
         velocity: velocity_rate,
         altitude: altitude_rate,
@@ -391,58 +456,47 @@ pub fn drift_and_jacobians<R: Real>(
         alpha: alpha_rate,
         pitch_rate: pitch_acceleration,
     };
-    let state = State {
-        velocity: State {
-            velocity: d_velocity_rate_d_velocity,
-            altitude: d_velocity_rate_d_altitude,
-            gamma: d_velocity_rate_d_gamma,
-            alpha: d_velocity_rate_d_alpha,
-            ..no_state
-        },
-        altitude: State {
-            velocity: sin_gamma,
-            gamma: d_altitude_rate_d_gamma,
-            ..no_state
-        },
-        gamma: State {
-            velocity: d_gamma_rate_d_velocity,
-            altitude: d_gamma_rate_d_altitude,
-            gamma: d_gamma_rate_d_gamma,
-            alpha: d_force_turn_d_alpha,
-            ..no_state
-        },
-        alpha: State {
-            velocity: -d_gamma_rate_d_velocity,
-            altitude: -d_gamma_rate_d_altitude,
-            gamma: -d_gamma_rate_d_gamma,
-            alpha: -d_force_turn_d_alpha,
-            pitch_rate: R::ONE,
-        },
-        pitch_rate: State {
-            velocity: d_pitch_acceleration_d_velocity,
-            altitude: d_pitch_acceleration_d_altitude,
-            alpha: d_pitch_acceleration_d_alpha,
-            ..no_state
-        },
-    };
-    let input = State {
-        velocity: Input {
-            phi: d_velocity_rate_d_phi,
-            delta_e: d_velocity_rate_d_delta_e,
-        },
-        gamma: Input {
-            phi: d_force_turn_d_phi,
-            delta_e: turn_factor * p.c_l_delta_e,
-        },
-        alpha: Input {
-            phi: -d_force_turn_d_phi,
-            delta_e: d_alpha_rate_d_delta_e,
-        },
-        pitch_rate: Input {
-            phi: d_pitch_acceleration_d_phi,
-            delta_e: d_pitch_acceleration_d_delta_e,
-        },
-        ..no_state_input
-    };
+    let state = [
+        d_velocity_rate_d_velocity,
+        d_velocity_rate_d_altitude,
+        d_velocity_rate_d_gamma,
+        d_velocity_rate_d_alpha,
+        sin_gamma,
+        d_altitude_rate_d_gamma,
+        d_gamma_rate_d_velocity,
+        d_gamma_rate_d_altitude,
+        d_gamma_rate_d_gamma,
+        d_force_turn_d_alpha,
+        -d_gamma_rate_d_velocity,
+        -d_gamma_rate_d_altitude,
+        -d_gamma_rate_d_gamma,
+        -d_force_turn_d_alpha,
+        R::ONE,
+        d_pitch_acceleration_d_velocity,
+        d_pitch_acceleration_d_altitude,
+        d_pitch_acceleration_d_alpha,
+    ];
+    let input = [
+        d_velocity_rate_d_phi,
+        d_velocity_rate_d_delta_e,
+        d_force_turn_d_phi,
+        turn_factor * p.c_l_delta_e,
+        -d_force_turn_d_phi,
+        d_alpha_rate_d_delta_e,
+        d_pitch_acceleration_d_phi,
+        d_pitch_acceleration_d_delta_e,
+    ];
     (drift, state, input)
+}
+
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
+/// less than one after the other, eq. (1).
+#[inline(always)]
+pub fn drift_and_jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    let (drift, state, input) = drift_and_jacobians_values(x, u, p);
+    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
 }

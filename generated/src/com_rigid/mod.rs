@@ -123,12 +123,22 @@ impl<R: Real> Model<R> {
     }
 }
 
+impl<R> Model<R> {
+    /// The model with another scalar: `f` applied to every prepared value.
+    #[inline(always)]
+    pub fn map_ref<U>(&self, f: impl FnMut(&R) -> U) -> Model<U> {
+        Model {
+            prepared: self.prepared.map_ref(f),
+        }
+    }
+}
+
 impl<R: Real> ahv_core::Model for Model<R> {
     type Scalar = R;
     type State = State<R>;
     type Input = Input<R>;
 
-    #[inline]
+    #[inline(always)]
     fn drift(&self, x: &State<R>, u: &Input<R>) -> State<R> {
         drift(x, u, &self.prepared)
     }
@@ -139,7 +149,7 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     type InputJacobian = InputJacobian<R>;
     const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
-    #[inline]
+    #[inline(always)]
     fn jacobians(
         &self,
         x: &State<R>,
@@ -148,7 +158,7 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
         jacobians(x, u, &self.prepared)
     }
 
-    #[inline]
+    #[inline(always)]
     fn drift_and_jacobians(
         &self,
         x: &State<R>,

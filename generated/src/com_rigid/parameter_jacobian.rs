@@ -95,7 +95,7 @@ pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 235 operations: 25 additions, 205 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -282,7 +282,7 @@ pub fn parameter_jacobian_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian<R: Real>(
     x: &State<R>,
     u: &Input<R>,

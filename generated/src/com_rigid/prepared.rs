@@ -130,6 +130,75 @@ pub struct Prepared<R> {
     pub two_c_bar_c_m_alpha_2: R,
 }
 
+impl<R> Prepared<R> {
+    /// Applies `f` to each field; the type of the fields may change.
+    #[inline(always)]
+    pub fn map_ref<U>(&self, mut f: impl FnMut(&R) -> U) -> Prepared<U> {
+        Prepared {
+            t_phi_alpha_3: f(&self.t_phi_alpha_3),
+            t_phi_alpha_2: f(&self.t_phi_alpha_2),
+            t_phi_alpha: f(&self.t_phi_alpha),
+            t_phi: f(&self.t_phi),
+            t_alpha_3: f(&self.t_alpha_3),
+            t_alpha_2: f(&self.t_alpha_2),
+            t_alpha: f(&self.t_alpha),
+            t_0: f(&self.t_0),
+            rho_0: f(&self.rho_0),
+            h_0: f(&self.h_0),
+            inv_h_s: f(&self.inv_h_s),
+            s: f(&self.s),
+            c_d_alpha_2: f(&self.c_d_alpha_2),
+            c_d_alpha: f(&self.c_d_alpha),
+            c_d_delta_e_2: f(&self.c_d_delta_e_2),
+            c_d_delta_e: f(&self.c_d_delta_e),
+            c_d_0: f(&self.c_d_0),
+            inv_m: f(&self.inv_m),
+            g: f(&self.g),
+            earth_curvature: f(&self.earth_curvature),
+            half_s_over_m: f(&self.half_s_over_m),
+            c_l_alpha: f(&self.c_l_alpha),
+            c_l_delta_e: f(&self.c_l_delta_e),
+            c_l_0: f(&self.c_l_0),
+            z_t: f(&self.z_t),
+            c_bar: f(&self.c_bar),
+            c_m_alpha_2: f(&self.c_m_alpha_2),
+            c_m_alpha: f(&self.c_m_alpha),
+            c_m_delta_e: f(&self.c_m_delta_e),
+            c_m_0: f(&self.c_m_0),
+            inv_i_yy: f(&self.inv_i_yy),
+            two_g: f(&self.two_g),
+            three_t_alpha_3: f(&self.three_t_alpha_3),
+            two_t_alpha_2: f(&self.two_t_alpha_2),
+            three_t_phi_alpha_3: f(&self.three_t_phi_alpha_3),
+            two_t_phi_alpha_2: f(&self.two_t_phi_alpha_2),
+            two_c_d_alpha_2: f(&self.two_c_d_alpha_2),
+            m: f(&self.m),
+            two_c_m_alpha_2: f(&self.two_c_m_alpha_2),
+            two_c_d_delta_e_2: f(&self.two_c_d_delta_e_2),
+            z_t_over_i_yy: f(&self.z_t_over_i_yy),
+            c_bar_c_m_delta_e: f(&self.c_bar_c_m_delta_e),
+            inv_m_2: f(&self.inv_m_2),
+            minus_half_s_over_m: f(&self.minus_half_s_over_m),
+            inv_h_s_2: f(&self.inv_h_s_2),
+            two_g_earth_curvature_over_r_e: f(&self.two_g_earth_curvature_over_r_e),
+            minus_two_g_over_r_e: f(&self.minus_two_g_over_r_e),
+            half_inv_m_2: f(&self.half_inv_m_2),
+            half_over_m: f(&self.half_over_m),
+            inv_r_e: f(&self.inv_r_e),
+            earth_curvature_2: f(&self.earth_curvature_2),
+            minus_half_over_m: f(&self.minus_half_over_m),
+            c_bar_over_i_yy: f(&self.c_bar_over_i_yy),
+            half_c_bar_s_over_i_yy: f(&self.half_c_bar_s_over_i_yy),
+            two_earth_curvature_2: f(&self.two_earth_curvature_2),
+            six_t_alpha_3: f(&self.six_t_alpha_3),
+            six_t_phi_alpha_3: f(&self.six_t_phi_alpha_3),
+            two_m_2: f(&self.two_m_2),
+            c_bar_s: f(&self.c_bar_s),
+            two_c_bar_c_m_alpha_2: f(&self.two_c_bar_c_m_alpha_2),
+        }
+    }
+}
+
 /// Computes everything that depends on parameters alone.
 ///
 /// 42 operations: 38 multiplications, 4 divisions.

@@ -8,7 +8,7 @@ use ahv_core::Real;
 /// Air density, eq. (2). Unit: slug/ft^3.
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -19,7 +19,7 @@ pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
 ///
 /// 7 operations: 1 addition, 5 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -32,7 +32,7 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -
 /// Lift coefficient, eq. (3). Unit: 1.
 ///
 /// 13 operations: 6 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -50,7 +50,7 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Drag coefficient, eq. (3). Unit: 1.
 ///
 /// 24 operations: 10 additions, 14 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -76,7 +76,7 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
 ///
 /// 18 operations: 8 additions, 10 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -98,7 +98,7 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Thrust coefficient, eq. (3). Unit: 1.
 ///
 /// 22 operations: 10 additions, 12 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Curve fits, (3)
     let alpha_2 = x.alpha * x.alpha;
@@ -121,7 +121,7 @@ pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Thrust, eq. (2). Unit: lb/ft.
 ///
 /// 31 operations: 11 additions, 19 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -153,7 +153,7 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lift, eq. (2). Unit: lb/ft.
 ///
 /// 22 operations: 7 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -181,7 +181,7 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Drag, eq. (2). Unit: lb/ft.
 ///
 /// 33 operations: 11 additions, 21 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -216,7 +216,7 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Pitching moment, eq. (2). Unit: lb.
 ///
 /// 52 operations: 20 additions, 31 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -262,7 +262,7 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
 /// Generalized-force coefficient of mode 1, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 12 operations: 5 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -281,7 +281,7 @@ pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -309,7 +309,7 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Generalized-force coefficient of mode 2, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 12 operations: 5 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -328,7 +328,7 @@ pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -356,7 +356,7 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Generalized-force coefficient of mode 3, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 12 operations: 5 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -375,7 +375,7 @@ pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

@@ -60,6 +60,95 @@ pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_state_jacobian<R: Real>(values: &[R; 48]) -> StateJacobian<R> {
+    let no_state = State::splat(R::ZERO);
+    State {
+        velocity: State {
+            velocity: values[0],
+            altitude: values[1],
+            gamma: values[2],
+            alpha: values[3],
+            eta_1: values[4],
+            eta_2: values[5],
+            eta_3: values[6],
+            ..no_state
+        },
+        altitude: State {
+            velocity: values[7],
+            gamma: values[8],
+            ..no_state
+        },
+        gamma: State {
+            velocity: values[9],
+            altitude: values[10],
+            gamma: values[11],
+            alpha: values[12],
+            eta_1: values[13],
+            eta_2: values[14],
+            eta_3: values[15],
+            ..no_state
+        },
+        alpha: State {
+            velocity: values[16],
+            altitude: values[17],
+            gamma: values[18],
+            alpha: values[19],
+            pitch_rate: values[20],
+            eta_1: values[21],
+            eta_2: values[22],
+            eta_3: values[23],
+            ..no_state
+        },
+        pitch_rate: State {
+            velocity: values[24],
+            altitude: values[25],
+            alpha: values[26],
+            eta_1: values[27],
+            eta_2: values[28],
+            eta_3: values[29],
+            ..no_state
+        },
+        eta_1: State {
+            eta_dot_1: values[30],
+            ..no_state
+        },
+        eta_dot_1: State {
+            velocity: values[31],
+            altitude: values[32],
+            alpha: values[33],
+            eta_1: values[34],
+            eta_dot_1: values[35],
+            ..no_state
+        },
+        eta_2: State {
+            eta_dot_2: values[36],
+            ..no_state
+        },
+        eta_dot_2: State {
+            velocity: values[37],
+            altitude: values[38],
+            alpha: values[39],
+            eta_2: values[40],
+            eta_dot_2: values[41],
+            ..no_state
+        },
+        eta_3: State {
+            eta_dot_3: values[42],
+            ..no_state
+        },
+        eta_dot_3: State {
+            velocity: values[43],
+            altitude: values[44],
+            alpha: values[45],
+            eta_3: values[46],
+            eta_dot_3: values[47],
+            ..no_state
+        },
+    }
+}
+
 /// Where the entries of the compressed [`InputJacobian`] stand.
 pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     [State::<u8>::LEN, Input::<u8>::LEN],
@@ -85,12 +174,57 @@ pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_input_jacobian<R: Real>(values: &[R; 18]) -> InputJacobian<R> {
+    let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
+    State {
+        velocity: Input {
+            phi: values[0],
+            delta_e: values[1],
+            delta_c: values[2],
+        },
+        gamma: Input {
+            phi: values[3],
+            delta_e: values[4],
+            delta_c: values[5],
+        },
+        alpha: Input {
+            phi: values[6],
+            delta_e: values[7],
+            delta_c: values[8],
+        },
+        pitch_rate: Input {
+            phi: values[9],
+            delta_e: values[10],
+            delta_c: values[11],
+        },
+        eta_dot_1: Input {
+            delta_e: values[12],
+            delta_c: values[13],
+            ..no_input
+        },
+        eta_dot_2: Input {
+            delta_e: values[14],
+            delta_c: values[15],
+            ..no_input
+        },
+        eta_dot_3: Input {
+            delta_e: values[16],
+            delta_c: values[17],
+            ..no_input
+        },
+        ..no_state_input
+    }
+}
+
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 275 operations: 82 additions, 188 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -416,26 +550,28 @@ pub fn jacobians_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
-#[inline]
+#[inline(always)]
 pub fn jacobians<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
+    (dense_state_jacobian(&state), dense_input_jacobian(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (1).
 ///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
 /// 306 operations: 93 additions, 208 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
-pub fn drift_and_jacobians<R: Real>(
+#[inline(always)]
+pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+) -> (State<R>, [R; 48], [R; 18]) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
@@ -709,9 +845,6 @@ pub fn drift_and_jacobians<R: Real>(
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
 
     // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
     let drift = State {
         velocity: velocity_rate,
         altitude: altitude_rate,
@@ -725,126 +858,87 @@ pub fn drift_and_jacobians<R: Real>(
         eta_3: x.eta_dot_3,
         eta_dot_3: eta_acceleration_3,
     };
-    let state = State {
-        velocity: State {
-            velocity: d_velocity_rate_d_velocity,
-            altitude: d_velocity_rate_d_altitude,
-            gamma: d_velocity_rate_d_gamma,
-            alpha: d_velocity_rate_d_alpha,
-            eta_1: d_velocity_rate_d_eta_1,
-            eta_2: d_velocity_rate_d_eta_2,
-            eta_3: d_velocity_rate_d_eta_3,
-            ..no_state
-        },
-        altitude: State {
-            velocity: sin_gamma,
-            gamma: d_altitude_rate_d_gamma,
-            ..no_state
-        },
-        gamma: State {
-            velocity: d_gamma_rate_d_velocity,
-            altitude: d_gamma_rate_d_altitude,
-            gamma: d_gamma_rate_d_gamma,
-            alpha: d_force_turn_d_alpha,
-            eta_1: d_force_turn_d_eta_1,
-            eta_2: d_force_turn_d_eta_2,
-            eta_3: d_force_turn_d_eta_3,
-            ..no_state
-        },
-        alpha: State {
-            velocity: -d_gamma_rate_d_velocity,
-            altitude: -d_gamma_rate_d_altitude,
-            gamma: -d_gamma_rate_d_gamma,
-            alpha: -d_force_turn_d_alpha,
-            pitch_rate: R::ONE,
-            eta_1: -d_force_turn_d_eta_1,
-            eta_2: -d_force_turn_d_eta_2,
-            eta_3: -d_force_turn_d_eta_3,
-            ..no_state
-        },
-        pitch_rate: State {
-            velocity: d_pitch_acceleration_d_velocity,
-            altitude: d_pitch_acceleration_d_altitude,
-            alpha: d_pitch_acceleration_d_alpha,
-            eta_1: d_pitch_acceleration_d_eta_1,
-            eta_2: d_pitch_acceleration_d_eta_2,
-            eta_3: d_pitch_acceleration_d_eta_3,
-            ..no_state
-        },
-        eta_1: State {
-            eta_dot_1: R::ONE,
-            ..no_state
-        },
-        eta_dot_1: State {
-            velocity: d_generalized_force_1_d_velocity,
-            altitude: d_generalized_force_1_d_altitude,
-            alpha: d_generalized_force_1_d_alpha,
-            eta_1: p.minus_stiffness_1,
-            eta_dot_1: p.minus_damping_1,
-            ..no_state
-        },
-        eta_2: State {
-            eta_dot_2: R::ONE,
-            ..no_state
-        },
-        eta_dot_2: State {
-            velocity: d_generalized_force_2_d_velocity,
-            altitude: d_generalized_force_2_d_altitude,
-            alpha: d_generalized_force_2_d_alpha,
-            eta_2: p.minus_stiffness_2,
-            eta_dot_2: p.minus_damping_2,
-            ..no_state
-        },
-        eta_3: State {
-            eta_dot_3: R::ONE,
-            ..no_state
-        },
-        eta_dot_3: State {
-            velocity: d_generalized_force_3_d_velocity,
-            altitude: d_generalized_force_3_d_altitude,
-            alpha: d_generalized_force_3_d_alpha,
-            eta_3: p.minus_stiffness_3,
-            eta_dot_3: p.minus_damping_3,
-            ..no_state
-        },
-    };
-    let input = State {
-        velocity: Input {
-            phi: d_velocity_rate_d_phi,
-            delta_e: d_velocity_rate_d_delta_e,
-            delta_c: d_velocity_rate_d_delta_c,
-        },
-        gamma: Input {
-            phi: d_force_turn_d_phi,
-            delta_e: d_force_turn_d_delta_e,
-            delta_c: d_force_turn_d_delta_c,
-        },
-        alpha: Input {
-            phi: -d_force_turn_d_phi,
-            delta_e: -d_force_turn_d_delta_e,
-            delta_c: -d_force_turn_d_delta_c,
-        },
-        pitch_rate: Input {
-            phi: d_pitch_acceleration_d_phi,
-            delta_e: d_pitch_acceleration_d_delta_e,
-            delta_c: d_pitch_acceleration_d_delta_c,
-        },
-        eta_dot_1: Input {
-            delta_e: d_generalized_force_1_d_delta_e,
-            delta_c: d_generalized_force_1_d_delta_c,
-            ..no_input
-        },
-        eta_dot_2: Input {
-            delta_e: d_generalized_force_2_d_delta_e,
-            delta_c: d_generalized_force_2_d_delta_c,
-            ..no_input
-        },
-        eta_dot_3: Input {
-            delta_e: d_generalized_force_3_d_delta_e,
-            delta_c: d_generalized_force_3_d_delta_c,
-            ..no_input
-        },
-        ..no_state_input
-    };
+    let state = [
+        d_velocity_rate_d_velocity,
+        d_velocity_rate_d_altitude,
+        d_velocity_rate_d_gamma,
+        d_velocity_rate_d_alpha,
+        d_velocity_rate_d_eta_1,
+        d_velocity_rate_d_eta_2,
+        d_velocity_rate_d_eta_3,
+        sin_gamma,
+        d_altitude_rate_d_gamma,
+        d_gamma_rate_d_velocity,
+        d_gamma_rate_d_altitude,
+        d_gamma_rate_d_gamma,
+        d_force_turn_d_alpha,
+        d_force_turn_d_eta_1,
+        d_force_turn_d_eta_2,
+        d_force_turn_d_eta_3,
+        -d_gamma_rate_d_velocity,
+        -d_gamma_rate_d_altitude,
+        -d_gamma_rate_d_gamma,
+        -d_force_turn_d_alpha,
+        R::ONE,
+        -d_force_turn_d_eta_1,
+        -d_force_turn_d_eta_2,
+        -d_force_turn_d_eta_3,
+        d_pitch_acceleration_d_velocity,
+        d_pitch_acceleration_d_altitude,
+        d_pitch_acceleration_d_alpha,
+        d_pitch_acceleration_d_eta_1,
+        d_pitch_acceleration_d_eta_2,
+        d_pitch_acceleration_d_eta_3,
+        R::ONE,
+        d_generalized_force_1_d_velocity,
+        d_generalized_force_1_d_altitude,
+        d_generalized_force_1_d_alpha,
+        p.minus_stiffness_1,
+        p.minus_damping_1,
+        R::ONE,
+        d_generalized_force_2_d_velocity,
+        d_generalized_force_2_d_altitude,
+        d_generalized_force_2_d_alpha,
+        p.minus_stiffness_2,
+        p.minus_damping_2,
+        R::ONE,
+        d_generalized_force_3_d_velocity,
+        d_generalized_force_3_d_altitude,
+        d_generalized_force_3_d_alpha,
+        p.minus_stiffness_3,
+        p.minus_damping_3,
+    ];
+    let input = [
+        d_velocity_rate_d_phi,
+        d_velocity_rate_d_delta_e,
+        d_velocity_rate_d_delta_c,
+        d_force_turn_d_phi,
+        d_force_turn_d_delta_e,
+        d_force_turn_d_delta_c,
+        -d_force_turn_d_phi,
+        -d_force_turn_d_delta_e,
+        -d_force_turn_d_delta_c,
+        d_pitch_acceleration_d_phi,
+        d_pitch_acceleration_d_delta_e,
+        d_pitch_acceleration_d_delta_c,
+        d_generalized_force_1_d_delta_e,
+        d_generalized_force_1_d_delta_c,
+        d_generalized_force_2_d_delta_e,
+        d_generalized_force_2_d_delta_c,
+        d_generalized_force_3_d_delta_e,
+        d_generalized_force_3_d_delta_c,
+    ];
     (drift, state, input)
+}
+
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
+/// less than one after the other, eq. (1).
+#[inline(always)]
+pub fn drift_and_jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    let (drift, state, input) = drift_and_jacobians_values(x, u, p);
+    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
 }

@@ -181,7 +181,7 @@ pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 477 operations: 66 additions, 406 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -531,7 +531,7 @@ pub fn parameter_jacobian_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian<R: Real>(
     x: &State<R>,
     u: &Input<R>,

@@ -11,13 +11,25 @@ pub const DIFFUSION_PATTERN: Pattern<2> = Pattern::new(
     &[ahv_core::at!(State.eta_dot, Noise.xi), ahv_core::at!(State.chi, Noise.xi)],
 );
 
+/// The [`Diffusion`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_diffusion<R: Real>(values: &[R; 2]) -> Diffusion<R> {
+    let no_noise = Noise::splat(R::ZERO);
+    let no_state_noise = State::splat(no_noise);
+    State {
+        eta_dot: Noise { xi: values[0] },
+        chi: Noise { xi: values[1] },
+        ..no_state_noise
+    }
+}
+
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; mode (17) and coloured noise (24)
 /// share one white noise, eq. (17).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn diffusion_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -28,15 +40,15 @@ pub fn diffusion_values<R: Real>(
 
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; mode (17) and coloured noise (24)
 /// share one white noise, eq. (17).
-#[inline]
+#[inline(always)]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    DIFFUSION_PATTERN.dense(&diffusion_values(x, u, p))
+    dense_diffusion(&diffusion_values(x, u, p))
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (17).
 ///
 /// 5 operations: 2 additions, 3 multiplications.
-#[inline]
+#[inline(always)]
 pub fn drift_and_diffusion<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -69,7 +81,7 @@ pub fn drift_and_diffusion<R: Real>(
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (17).
 ///
 /// 2 operations: 2 multiplications.
-#[inline]
+#[inline(always)]
 pub fn noise_increment<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -81,4 +93,36 @@ pub fn noise_increment<R: Real>(
         eta_dot: p.sigma * dw.xi,
         chi: p.chi_diffusion * dw.xi,
     }
+}
+
+/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq. (17).
+///
+/// 7 operations: 2 additions, 5 multiplications.
+#[inline(always)]
+pub fn drift_and_noise_increment<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    dw: &Noise<R>,
+) -> (State<R>, State<R>) {
+    // Response of the mode, (5)
+    let eta_acceleration = u.force
+        - p.damping * x.eta_dot
+        - p.stiffness * x.eta; // (ft*slug)^0.5/s^2
+
+    // Coloured noise, (27)
+    let chi_rate = -p.chi_decay * x.chi; // (ft*slug)^0.5/s
+
+    // Result
+    let drift = State {
+        eta: x.eta_dot,
+        eta_dot: eta_acceleration,
+        chi: chi_rate,
+    };
+    let increment = State {
+        eta: R::ZERO,
+        eta_dot: p.sigma * dw.xi,
+        chi: p.chi_diffusion * dw.xi,
+    };
+    (drift, increment)
 }

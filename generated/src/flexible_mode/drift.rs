@@ -8,7 +8,7 @@ use ahv_core::Real;
 /// Time derivative of the state, eq. (5).
 ///
 /// 5 operations: 2 additions, 3 multiplications.
-#[inline]
+#[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Response of the mode, (5)
     let eta_acceleration = u.force

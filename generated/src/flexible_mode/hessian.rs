@@ -16,7 +16,7 @@ pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn hessian_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -26,7 +26,7 @@ pub fn hessian_values<R: Real>(
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (5).
-#[inline]
+#[inline(always)]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
     HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
 }

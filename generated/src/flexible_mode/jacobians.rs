@@ -16,18 +16,50 @@ pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_state_jacobian<R: Real>(values: &[R; 4]) -> StateJacobian<R> {
+    let no_state = State::splat(R::ZERO);
+    State {
+        eta: State {
+            eta_dot: values[0],
+            ..no_state
+        },
+        eta_dot: State {
+            eta: values[1],
+            eta_dot: values[2],
+            ..no_state
+        },
+        chi: State {
+            chi: values[3],
+            ..no_state
+        },
+    }
+}
+
 /// Where the entries of the compressed [`InputJacobian`] stand.
 pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     [State::<u8>::LEN, Input::<u8>::LEN],
     &[ahv_core::at!(State.eta_dot, Input.force)],
 );
 
+/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_input_jacobian<R: Real>(values: &[R; 1]) -> InputJacobian<R> {
+    let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
+    State {
+        eta_dot: Input { force: values[0] },
+        ..no_state_input
+    }
+}
+
 /// Derivatives of the drift with respect to the state and to the input, eq. (5).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn jacobians_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -40,26 +72,28 @@ pub fn jacobians_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (5).
-#[inline]
+#[inline(always)]
 pub fn jacobians<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
+    (dense_state_jacobian(&state), dense_input_jacobian(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (5).
 ///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
 /// 5 operations: 2 additions, 3 multiplications.
-#[inline]
-pub fn drift_and_jacobians<R: Real>(
+#[inline(always)]
+pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+) -> (State<R>, [R; 4], [R; 1]) {
     // Response of the mode, (5)
     let eta_acceleration = u.force
         - p.damping * x.eta_dot
@@ -69,32 +103,24 @@ pub fn drift_and_jacobians<R: Real>(
     let chi_rate = -p.chi_decay * x.chi; // (ft*slug)^0.5/s
 
     // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
     let drift = State {
         eta: x.eta_dot,
         eta_dot: eta_acceleration,
         chi: chi_rate,
     };
-    let state = State {
-        eta: State {
-            eta_dot: R::ONE,
-            ..no_state
-        },
-        eta_dot: State {
-            eta: p.minus_stiffness,
-            eta_dot: p.minus_damping,
-            ..no_state
-        },
-        chi: State {
-            chi: p.minus_chi_decay,
-            ..no_state
-        },
-    };
-    let input = State {
-        eta_dot: Input { force: R::ONE },
-        ..no_state_input
-    };
+    let state = [R::ONE, p.minus_stiffness, p.minus_damping, p.minus_chi_decay];
+    let input = [R::ONE];
     (drift, state, input)
+}
+
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
+/// less than one after the other, eq. (5).
+#[inline(always)]
+pub fn drift_and_jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    let (drift, state, input) = drift_and_jacobians_values(x, u, p);
+    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
 }

@@ -148,12 +148,22 @@ impl<R: Real> Model<R> {
     }
 }
 
+impl<R> Model<R> {
+    /// The model with another scalar: `f` applied to every prepared value.
+    #[inline(always)]
+    pub fn map_ref<U>(&self, f: impl FnMut(&R) -> U) -> Model<U> {
+        Model {
+            prepared: self.prepared.map_ref(f),
+        }
+    }
+}
+
 impl<R: Real> ahv_core::Model for Model<R> {
     type Scalar = R;
     type State = State<R>;
     type Input = Input<R>;
 
-    #[inline]
+    #[inline(always)]
     fn drift(&self, x: &State<R>, u: &Input<R>) -> State<R> {
         drift(x, u, &self.prepared)
     }
@@ -164,7 +174,7 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     type InputJacobian = InputJacobian<R>;
     const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
-    #[inline]
+    #[inline(always)]
     fn jacobians(
         &self,
         x: &State<R>,
@@ -173,7 +183,7 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
         jacobians(x, u, &self.prepared)
     }
 
-    #[inline]
+    #[inline(always)]
     fn drift_and_jacobians(
         &self,
         x: &State<R>,
@@ -186,31 +196,41 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
 impl<R: Real> ahv_core::StochasticModel for Model<R> {
     type Noise = Noise<R>;
 
-    #[inline]
+    #[inline(always)]
     fn noise_increment(&self, x: &State<R>, u: &Input<R>, dw: &Noise<R>) -> State<R> {
         noise_increment(x, u, &self.prepared, dw)
     }
 
-    #[inline]
+    #[inline(always)]
+    fn drift_and_noise_increment(
+        &self,
+        x: &State<R>,
+        u: &Input<R>,
+        dw: &Noise<R>,
+    ) -> (State<R>, State<R>) {
+        drift_and_noise_increment(x, u, &self.prepared, dw)
+    }
+
+    #[inline(always)]
     fn noise_class(channel: usize) -> NoiseClass {
         NOISE_CLASS.get(channel).unwrap_or(NoiseClass::General)
     }
 
-    #[inline]
+    #[inline(always)]
     fn noise_commutes(first: usize, second: usize) -> bool {
         NOISE_COMMUTES.get(first).and_then(|row| row.get(second)).unwrap_or(false)
     }
 }
 
 impl<R: Real> ahv_core::ItoCorrected for Model<R> {
-    #[inline]
+    #[inline(always)]
     fn ito_correction(&self, x: &State<R>, u: &Input<R>) -> State<R> {
         ito_correction(x, u, &self.prepared)
     }
 }
 
 impl<R: Real> ahv_core::DifferentiableNoise for Model<R> {
-    #[inline]
+    #[inline(always)]
     fn iterated_increment(
         &self,
         x: &State<R>,
@@ -234,7 +254,7 @@ impl<R: Real> ahv_core::AdditiveNoise for Model<R> {}
 impl<R: Real> ahv_core::CommutativeNoise for Model<R> {}
 
 impl<R: Real> ahv_core::ColouredNoise for Model<R> {
-    #[inline]
+    #[inline(always)]
     fn decay(&self, state: usize) -> Option<R> {
         let mut decays = State::splat(None);
         decays.chi = Some(self.prepared.chi_decay);

@@ -8,7 +8,7 @@ use ahv_core::Real;
 /// Decay rate (1/s) and diffusion that match decay rate and gain at zero frequency, eq. (23).
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn reduction_printed<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -24,7 +24,7 @@ pub fn reduction_printed<R: Real>(
 /// ft*slug.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn chi_variance_printed<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -36,7 +36,7 @@ pub fn chi_variance_printed<R: Real>(
 /// Decay rate (1/s) and diffusion that match decay rate and variance, eq. (23).
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn reduction_variance<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -51,7 +51,7 @@ pub fn reduction_variance<R: Real>(
 /// Stationary variance of the coloured noise that matches decay rate and variance, eq. (24). Unit: ft*slug.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn chi_variance_variance<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -63,7 +63,7 @@ pub fn chi_variance_variance<R: Real>(
 /// Decay rate (1/s) and diffusion that match variance and spectrum at zero frequency, eq. (23).
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn reduction_moment<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -79,7 +79,7 @@ pub fn reduction_moment<R: Real>(
 /// Unit: ft*slug.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn chi_variance_moment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.chi_variance_variance_constant_1
 }
@@ -87,7 +87,7 @@ pub fn chi_variance_moment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R
 /// Stationary variance of the mode, eq. (17). Unit: ft*slug.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn eta_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.chi_variance_variance_constant_1
 }
@@ -95,7 +95,7 @@ pub fn eta_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R
 /// Stationary variance of its rate, eq. (17). Unit: ft*slug/s^2.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn eta_dot_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.eta_dot_variance_constant_1
 }
@@ -103,7 +103,7 @@ pub fn eta_dot_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) 
 /// Stationary variance of the coloured noise, eq. (24). Unit: ft*slug.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn chi_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.half_chi_diffusion_2_over_chi_decay
 }
@@ -111,7 +111,7 @@ pub fn chi_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R
 /// Variance of the coloured noise at a time, from rest, eq. (24). Unit: ft*slug.
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn chi_variance_at<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -126,7 +126,7 @@ pub fn chi_variance_at<R: Real>(
 /// Stationary autocorrelation of the coloured noise at a lag, eq. (24). Unit: ft*slug.
 ///
 /// 3 operations: 2 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn chi_autocorrelation<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -141,16 +141,18 @@ pub fn chi_autocorrelation<R: Real>(
 /// Two-sided spectral density of the mode at an angular frequency, for white noise of intensity sigma^2, eq.
 /// (17). Unit: ft*slug*s.
 ///
-/// 12 operations: 5 additions, 6 multiplications, 1 division.
-#[inline]
+/// 10 operations: 3 additions, 6 multiplications, 1 division.
+#[inline(always)]
 pub fn eta_spectrum<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
     p: &Prepared<R>,
     frequency: R,
 ) -> R {
-    let omega_minus_frequency_2 = (p.omega - frequency) * (p.omega - frequency);
-    let omega_plus_frequency_2 = (p.omega + frequency) * (p.omega + frequency);
+    let omega_minus_frequency = p.omega - frequency;
+    let omega_minus_frequency_2 = omega_minus_frequency * omega_minus_frequency;
+    let omega_plus_frequency = p.omega + frequency;
+    let omega_plus_frequency_2 = omega_plus_frequency * omega_plus_frequency;
     let frequency_2 = frequency * frequency;
     let eta_spectrum_term_1 = (omega_minus_frequency_2 * omega_plus_frequency_2
         + p.damping_2 * frequency_2)
@@ -162,7 +164,7 @@ pub fn eta_spectrum<R: Real>(
 /// Two-sided spectral density of the coloured noise at an angular frequency, eq. (24). Unit: ft*slug*s.
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 division.
-#[inline]
+#[inline(always)]
 pub fn chi_spectrum<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -178,7 +180,7 @@ pub fn chi_spectrum<R: Real>(
 /// Variance of the mode at a time, from rest, for zeta < 1, eq. (17). Unit: ft*slug.
 ///
 /// 15 operations: 3 additions, 10 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_variance_at_underdamped<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -203,7 +205,7 @@ pub fn eta_variance_at_underdamped<R: Real>(
 /// Stationary autocorrelation of the mode at a lag, for zeta < 1, eq. (17). Unit: ft*slug.
 ///
 /// 9 operations: 1 addition, 6 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_autocorrelation_underdamped<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -223,7 +225,7 @@ pub fn eta_autocorrelation_underdamped<R: Real>(
 /// Variance of the mode at a time, from rest, for zeta = 1, whatever zeta says, eq. (17). Unit: ft*slug.
 ///
 /// 11 operations: 3 additions, 7 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_variance_at_critical<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -245,7 +247,7 @@ pub fn eta_variance_at_critical<R: Real>(
 /// Stationary autocorrelation of the mode at a lag, for zeta = 1, whatever zeta says, eq. (17). Unit: ft*slug.
 ///
 /// 5 operations: 1 addition, 3 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_autocorrelation_critical<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -262,7 +264,7 @@ pub fn eta_autocorrelation_critical<R: Real>(
 /// Variance of the mode at a time, from rest, for zeta > 1, eq. (17). Unit: ft*slug.
 ///
 /// 15 operations: 5 additions, 8 multiplications, 2 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_variance_at_overdamped<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -286,7 +288,7 @@ pub fn eta_variance_at_overdamped<R: Real>(
 /// Stationary autocorrelation of the mode at a lag, for zeta > 1, eq. (17). Unit: ft*slug.
 ///
 /// 8 operations: 1 addition, 5 multiplications, 2 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_autocorrelation_overdamped<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,

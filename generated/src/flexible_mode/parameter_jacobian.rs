@@ -22,7 +22,7 @@ pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 7 operations: 1 addition, 6 multiplications.
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
     _u: &Input<R>,
@@ -44,7 +44,7 @@ pub fn parameter_jacobian_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (5).
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian<R: Real>(
     x: &State<R>,
     u: &Input<R>,

@@ -96,6 +96,68 @@ pub struct Prepared<R> {
     pub eta_autocorrelation_overdamped_constant_1: R,
 }
 
+impl<R> Prepared<R> {
+    /// Applies `f` to each field; the type of the fields may change.
+    #[inline(always)]
+    pub fn map_ref<U>(&self, mut f: impl FnMut(&R) -> U) -> Prepared<U> {
+        Prepared {
+            damping: f(&self.damping),
+            stiffness: f(&self.stiffness),
+            chi_decay: f(&self.chi_decay),
+            minus_stiffness: f(&self.minus_stiffness),
+            minus_damping: f(&self.minus_damping),
+            minus_chi_decay: f(&self.minus_chi_decay),
+            two_zeta: f(&self.two_zeta),
+            two_omega: f(&self.two_omega),
+            minus_two_omega: f(&self.minus_two_omega),
+            d_chi_decay_d_omega: f(&self.d_chi_decay_d_omega),
+            d_chi_decay_d_zeta: f(&self.d_chi_decay_d_zeta),
+            d_chi_decay_d_moment_matching: f(&self.d_chi_decay_d_moment_matching),
+            sigma: f(&self.sigma),
+            chi_diffusion: f(&self.chi_diffusion),
+            zeta_omega: f(&self.zeta_omega),
+            zeta_sigma_over_omega: f(&self.zeta_sigma_over_omega),
+            half_zeta_sigma_2_over_omega_stiffness: f(
+                &self.half_zeta_sigma_2_over_omega_stiffness,
+            ),
+            reduction_variance_constant_1: f(&self.reduction_variance_constant_1),
+            chi_variance_variance_constant_1: f(&self.chi_variance_variance_constant_1),
+            half_omega_over_zeta: f(&self.half_omega_over_zeta),
+            sigma_over_damping: f(&self.sigma_over_damping),
+            eta_dot_variance_constant_1: f(&self.eta_dot_variance_constant_1),
+            half_chi_diffusion_2_over_chi_decay: f(
+                &self.half_chi_diffusion_2_over_chi_decay,
+            ),
+            minus_two_chi_decay: f(&self.minus_two_chi_decay),
+            sigma_2: f(&self.sigma_2),
+            omega: f(&self.omega),
+            damping_2: f(&self.damping_2),
+            chi_diffusion_2: f(&self.chi_diffusion_2),
+            chi_decay_2: f(&self.chi_decay_2),
+            omega_damped_ratio: f(&self.omega_damped_ratio),
+            zeta: f(&self.zeta),
+            inv_damped_ratio: f(&self.inv_damped_ratio),
+            inv_omega: f(&self.inv_omega),
+            inv_stiffness: f(&self.inv_stiffness),
+            two_zeta_2: f(&self.two_zeta_2),
+            eta_variance_at_critical_constant_1: f(
+                &self.eta_variance_at_critical_constant_1,
+            ),
+            fast_pole: f(&self.fast_pole),
+            slow_pole: f(&self.slow_pole),
+            inv_pole_gap: f(&self.inv_pole_gap),
+            stiffness_over_pole_gap: f(&self.stiffness_over_pole_gap),
+            two_zeta_2_stiffness_inv_pole_gap_2: f(
+                &self.two_zeta_2_stiffness_inv_pole_gap_2,
+            ),
+            zeta_omega_over_pole_gap: f(&self.zeta_omega_over_pole_gap),
+            eta_autocorrelation_overdamped_constant_1: f(
+                &self.eta_autocorrelation_overdamped_constant_1,
+            ),
+        }
+    }
+}
+
 /// Computes everything that depends on parameters alone.
 ///
 /// 92 operations: 12 additions, 70 multiplications, 8 divisions, 2 sqrt.

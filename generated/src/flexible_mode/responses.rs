@@ -8,7 +8,7 @@ use ahv_core::{Real, Vector};
 /// Transition matrix of mode and coloured noise over a time, for zeta < 1, eq. (14).
 ///
 /// 16 operations: 2 additions, 11 multiplications, 1 sin_cos, 2 exp.
-#[inline]
+#[inline(always)]
 pub fn transition_underdamped<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -46,7 +46,7 @@ pub fn transition_underdamped<R: Real>(
 /// State after a time under a constant force and no noise, for zeta < 1; (15) has one sign wrong, eq. (15).
 ///
 /// 24 operations: 6 additions, 15 multiplications, 1 sin_cos, 2 exp.
-#[inline]
+#[inline(always)]
 pub fn response_underdamped<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -77,7 +77,7 @@ pub fn response_underdamped<R: Real>(
 /// Transition matrix of mode and coloured noise over a time, for zeta = 1, whatever zeta says, eq. (14).
 ///
 /// 11 operations: 2 additions, 7 multiplications, 2 exp.
-#[inline]
+#[inline(always)]
 pub fn transition_critical<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -113,7 +113,7 @@ pub fn transition_critical<R: Real>(
 /// wrong, eq. (15).
 ///
 /// 19 operations: 6 additions, 11 multiplications, 2 exp.
-#[inline]
+#[inline(always)]
 pub fn response_critical<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -141,7 +141,7 @@ pub fn response_critical<R: Real>(
 /// Transition matrix of mode and coloured noise over a time, for zeta > 1, eq. (14).
 ///
 /// 18 operations: 4 additions, 11 multiplications, 3 exp.
-#[inline]
+#[inline(always)]
 pub fn transition_overdamped<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -178,7 +178,7 @@ pub fn transition_overdamped<R: Real>(
 /// State after a time under a constant force and no noise, for zeta > 1; (15) has one sign wrong, eq. (15).
 ///
 /// 27 operations: 8 additions, 16 multiplications, 3 exp.
-#[inline]
+#[inline(always)]
 pub fn response_overdamped<R: Real>(
     x: &State<R>,
     u: &Input<R>,

@@ -84,7 +84,7 @@ pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 740 operations: 235 additions, 500 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 67] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -873,7 +873,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
     HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
 }

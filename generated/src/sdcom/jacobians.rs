@@ -45,6 +45,70 @@ pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_state_jacobian<R: Real>(values: &[R; 33]) -> StateJacobian<R> {
+    let no_state = State::splat(R::ZERO);
+    State {
+        velocity: State {
+            velocity: values[0],
+            altitude: values[1],
+            gamma: values[2],
+            alpha: values[3],
+            chi_1: values[4],
+            chi_2: values[5],
+            chi_3: values[6],
+            ..no_state
+        },
+        altitude: State {
+            velocity: values[7],
+            gamma: values[8],
+            ..no_state
+        },
+        gamma: State {
+            velocity: values[9],
+            altitude: values[10],
+            gamma: values[11],
+            alpha: values[12],
+            chi_1: values[13],
+            chi_2: values[14],
+            chi_3: values[15],
+            ..no_state
+        },
+        alpha: State {
+            velocity: values[16],
+            altitude: values[17],
+            gamma: values[18],
+            alpha: values[19],
+            pitch_rate: values[20],
+            chi_1: values[21],
+            chi_2: values[22],
+            chi_3: values[23],
+        },
+        pitch_rate: State {
+            velocity: values[24],
+            altitude: values[25],
+            alpha: values[26],
+            chi_1: values[27],
+            chi_2: values[28],
+            chi_3: values[29],
+            ..no_state
+        },
+        chi_1: State {
+            chi_1: values[30],
+            ..no_state
+        },
+        chi_2: State {
+            chi_2: values[31],
+            ..no_state
+        },
+        chi_3: State {
+            chi_3: values[32],
+            ..no_state
+        },
+    }
+}
+
 /// Where the entries of the compressed [`InputJacobian`] stand.
 pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     [State::<u8>::LEN, Input::<u8>::LEN],
@@ -64,12 +128,42 @@ pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_input_jacobian<R: Real>(values: &[R; 12]) -> InputJacobian<R> {
+    let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
+    State {
+        velocity: Input {
+            phi: values[0],
+            delta_e: values[1],
+            delta_c: values[2],
+        },
+        gamma: Input {
+            phi: values[3],
+            delta_e: values[4],
+            delta_c: values[5],
+        },
+        alpha: Input {
+            phi: values[6],
+            delta_e: values[7],
+            delta_c: values[8],
+        },
+        pitch_rate: Input {
+            phi: values[9],
+            delta_e: values[10],
+            delta_c: values[11],
+        },
+        ..no_state_input
+    }
+}
+
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 445 operations: 151 additions, 289 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -488,26 +582,28 @@ pub fn jacobians_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn jacobians<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
+    (dense_state_jacobian(&state), dense_input_jacobian(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (27).
 ///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
 /// 464 operations: 156 additions, 303 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
-pub fn drift_and_jacobians<R: Real>(
+#[inline(always)]
+pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+) -> (State<R>, [R; 33], [R; 12]) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
@@ -884,9 +980,6 @@ pub fn drift_and_jacobians<R: Real>(
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
 
     // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
     let drift = State {
         velocity: velocity_rate,
         altitude: altitude_rate,
@@ -897,86 +990,66 @@ pub fn drift_and_jacobians<R: Real>(
         chi_2: chi_rate_2,
         chi_3: chi_rate_3,
     };
-    let state = State {
-        velocity: State {
-            velocity: d_velocity_rate_d_velocity,
-            altitude: d_velocity_rate_d_altitude,
-            gamma: d_velocity_rate_d_gamma,
-            alpha: d_velocity_rate_d_alpha,
-            chi_1: d_velocity_rate_d_chi_1,
-            chi_2: d_velocity_rate_d_chi_2,
-            chi_3: d_velocity_rate_d_chi_3,
-            ..no_state
-        },
-        altitude: State {
-            velocity: sin_gamma,
-            gamma: d_altitude_rate_d_gamma,
-            ..no_state
-        },
-        gamma: State {
-            velocity: d_gamma_rate_d_velocity,
-            altitude: d_gamma_rate_d_altitude,
-            gamma: d_gamma_rate_d_gamma,
-            alpha: d_force_turn_d_alpha,
-            chi_1: d_force_turn_d_chi_1,
-            chi_2: d_force_turn_d_chi_2,
-            chi_3: d_force_turn_d_chi_3,
-            ..no_state
-        },
-        alpha: State {
-            velocity: -d_gamma_rate_d_velocity,
-            altitude: -d_gamma_rate_d_altitude,
-            gamma: -d_gamma_rate_d_gamma,
-            alpha: -d_force_turn_d_alpha,
-            pitch_rate: R::ONE,
-            chi_1: -d_force_turn_d_chi_1,
-            chi_2: -d_force_turn_d_chi_2,
-            chi_3: -d_force_turn_d_chi_3,
-        },
-        pitch_rate: State {
-            velocity: d_pitch_acceleration_d_velocity,
-            altitude: d_pitch_acceleration_d_altitude,
-            alpha: d_pitch_acceleration_d_alpha,
-            chi_1: d_pitch_acceleration_d_chi_1,
-            chi_2: d_pitch_acceleration_d_chi_2,
-            chi_3: d_pitch_acceleration_d_chi_3,
-            ..no_state
-        },
-        chi_1: State {
-            chi_1: p.minus_chi_decay_1,
-            ..no_state
-        },
-        chi_2: State {
-            chi_2: p.minus_chi_decay_2,
-            ..no_state
-        },
-        chi_3: State {
-            chi_3: p.minus_chi_decay_3,
-            ..no_state
-        },
-    };
-    let input = State {
-        velocity: Input {
-            phi: d_velocity_rate_d_phi,
-            delta_e: d_velocity_rate_d_delta_e,
-            delta_c: d_velocity_rate_d_delta_c,
-        },
-        gamma: Input {
-            phi: d_force_turn_d_phi,
-            delta_e: d_force_turn_d_delta_e,
-            delta_c: d_force_turn_d_delta_c,
-        },
-        alpha: Input {
-            phi: -d_force_turn_d_phi,
-            delta_e: -d_force_turn_d_delta_e,
-            delta_c: -d_force_turn_d_delta_c,
-        },
-        pitch_rate: Input {
-            phi: d_pitch_acceleration_d_phi,
-            delta_e: d_pitch_acceleration_d_delta_e,
-            delta_c: d_pitch_acceleration_d_delta_c,
-        },
-        ..no_state_input
-    };
+    let state = [
+        d_velocity_rate_d_velocity,
+        d_velocity_rate_d_altitude,
+        d_velocity_rate_d_gamma,
+        d_velocity_rate_d_alpha,
+        d_velocity_rate_d_chi_1,
+        d_velocity_rate_d_chi_2,
+        d_velocity_rate_d_chi_3,
+        sin_gamma,
+        d_altitude_rate_d_gamma,
+        d_gamma_rate_d_velocity,
+        d_gamma_rate_d_altitude,
+        d_gamma_rate_d_gamma,
+        d_force_turn_d_alpha,
+        d_force_turn_d_chi_1,
+        d_force_turn_d_chi_2,
+        d_force_turn_d_chi_3,
+        -d_gamma_rate_d_velocity,
+        -d_gamma_rate_d_altitude,
+        -d_gamma_rate_d_gamma,
+        -d_force_turn_d_alpha,
+        R::ONE,
+        -d_force_turn_d_chi_1,
+        -d_force_turn_d_chi_2,
+        -d_force_turn_d_chi_3,
+        d_pitch_acceleration_d_velocity,
+        d_pitch_acceleration_d_altitude,
+        d_pitch_acceleration_d_alpha,
+        d_pitch_acceleration_d_chi_1,
+        d_pitch_acceleration_d_chi_2,
+        d_pitch_acceleration_d_chi_3,
+        p.minus_chi_decay_1,
+        p.minus_chi_decay_2,
+        p.minus_chi_decay_3,
+    ];
+    let input = [
+        d_velocity_rate_d_phi,
+        d_velocity_rate_d_delta_e,
+        d_velocity_rate_d_delta_c,
+        d_force_turn_d_phi,
+        d_force_turn_d_delta_e,
+        d_force_turn_d_delta_c,
+        -d_force_turn_d_phi,
+        -d_force_turn_d_delta_e,
+        -d_force_turn_d_delta_c,
+        d_pitch_acceleration_d_phi,
+        d_pitch_acceleration_d_delta_e,
+        d_pitch_acceleration_d_delta_c,
+    ];
     (drift, state, input)
+}
+
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
+/// less than one after the other, eq. (27).
+#[inline(always)]
+pub fn drift_and_jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    let (drift, state, input) = drift_and_jacobians_values(x, u, p);
+    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
 }

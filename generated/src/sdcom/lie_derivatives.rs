@@ -9,7 +9,7 @@ use ahv_core::Real;
 /// Lie derivative of the velocity along the drift at the held input, eq. (27). Unit: ft/s/s.
 ///
 /// 100 operations: 39 additions, 57 multiplications, 1 division, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -102,7 +102,7 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lie derivatives of the velocity along the input columns: its relative degree is 1, eq. (27).
 ///
 /// 74 operations: 20 additions, 52 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -186,7 +186,7 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
 /// Lie derivative of the gamma along the drift at the held input, eq. (27). Unit: rad/s.
 ///
 /// 97 operations: 37 additions, 55 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -279,7 +279,7 @@ pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lie derivatives of the gamma along the input columns: its relative degree is 1, eq. (27).
 ///
 /// 61 operations: 16 additions, 43 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -353,7 +353,7 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
 /// Lie derivative of the altitude along the drift at the held input, eq. (27). Unit: ft/s.
 ///
 /// 2 operations: 1 multiplication, 1 sin_cos.
-#[inline]
+#[inline(always)]
 pub fn L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
     // Angles, (1)
     let sin_gamma = x.gamma.sin();
@@ -365,7 +365,7 @@ pub fn L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 /// Second Lie derivative of the altitude along the drift at the held input, eq. (27). Unit: ft/s^2.
 ///
 /// 128 operations: 49 additions, 74 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -479,7 +479,7 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lie derivatives of L_f h along the input columns: the relative degree of the altitude is 2, eq. (27).
 ///
 /// 107 operations: 31 additions, 73 multiplications, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

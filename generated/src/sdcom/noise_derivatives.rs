@@ -46,7 +46,7 @@ pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 466 operations: 140 additions, 321 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn noise_derivatives_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -490,7 +490,7 @@ pub fn noise_derivatives_values<R: Real>(
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn noise_derivatives<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -502,7 +502,7 @@ pub fn noise_derivatives<R: Real>(
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
 ///
 /// 324 operations: 109 additions, 210 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

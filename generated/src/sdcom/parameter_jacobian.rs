@@ -217,7 +217,7 @@ pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 987 operations: 195 additions, 787 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -1010,7 +1010,7 @@ pub fn parameter_jacobian_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian<R: Real>(
     x: &State<R>,
     u: &Input<R>,

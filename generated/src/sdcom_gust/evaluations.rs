@@ -8,7 +8,7 @@ use ahv_core::Real;
 /// Air density, eq. (2). Unit: slug/ft^3.
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -19,7 +19,7 @@ pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
 ///
 /// 7 operations: 1 addition, 5 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -32,7 +32,7 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -
 /// Lift coefficient, eq. (3). Unit: 1.
 ///
 /// 58 operations: 24 additions, 33 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -92,7 +92,7 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Drag coefficient, eq. (3). Unit: 1.
 ///
 /// 66 operations: 27 additions, 38 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -158,7 +158,7 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
 ///
 /// 60 operations: 25 additions, 34 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -219,7 +219,7 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Thrust coefficient, eq. (3). Unit: 1.
 ///
 /// 67 operations: 28 additions, 38 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -286,7 +286,7 @@ pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Thrust, eq. (2). Unit: lb/ft.
 ///
 /// 68 operations: 28 additions, 39 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -355,7 +355,7 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lift, eq. (2). Unit: lb/ft.
 ///
 /// 59 operations: 24 additions, 34 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -418,7 +418,7 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Drag, eq. (2). Unit: lb/ft.
 ///
 /// 67 operations: 27 additions, 39 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -486,7 +486,7 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Pitching moment, eq. (2). Unit: lb.
 ///
 /// 86 operations: 36 additions, 49 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -565,7 +565,7 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
 /// Generalized-force coefficient of mode 1, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 13 operations: 6 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -587,7 +587,7 @@ pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 22 operations: 7 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -618,7 +618,7 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Static flexible coordinate of mode 1, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 23 operations: 7 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -652,7 +652,7 @@ pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Reduced flexible coordinate of mode 1, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 24 operations: 8 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -688,7 +688,7 @@ pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized-force coefficient of mode 2, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 13 operations: 6 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -710,7 +710,7 @@ pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 22 operations: 7 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -741,7 +741,7 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Static flexible coordinate of mode 2, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 23 operations: 7 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -775,7 +775,7 @@ pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Reduced flexible coordinate of mode 2, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 24 operations: 8 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -811,7 +811,7 @@ pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized-force coefficient of mode 3, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 13 operations: 6 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -833,7 +833,7 @@ pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 22 operations: 7 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -864,7 +864,7 @@ pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Static flexible coordinate of mode 3, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 23 operations: 7 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -898,7 +898,7 @@ pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Reduced flexible coordinate of mode 3, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 24 operations: 8 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

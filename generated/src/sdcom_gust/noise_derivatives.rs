@@ -16,7 +16,7 @@ pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn noise_derivatives_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
@@ -26,7 +26,7 @@ pub fn noise_derivatives_values<R: Real>(
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn noise_derivatives<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -38,7 +38,7 @@ pub fn noise_derivatives<R: Real>(
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn ito_correction<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,

@@ -9,7 +9,7 @@ use ahv_core::Real;
 /// Delta f of (27): the velocity rate of the exact form less that of the printed one, eq. (27). Unit: ft/s^2.
 ///
 /// 138 operations: 56 additions, 78 multiplications, 1 division, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -129,7 +129,7 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Delta f of (27): the gamma rate of the exact form less that of the printed one, eq. (27). Unit: rad/s.
 ///
 /// 131 operations: 53 additions, 73 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -252,7 +252,7 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 /// Delta f of (27): the alpha rate of the exact form less that of the printed one, eq. (27). Unit: rad/s.
 ///
 /// 131 operations: 55 additions, 71 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -376,7 +376,7 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 /// Delta f of (27): the pitch_rate rate of the exact form less that of the printed one, eq. (27). Unit: rad/s^2.
 ///
 /// 119 operations: 49 additions, 69 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -478,7 +478,7 @@ pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// H of the velocity row in the exact form less that of the printed one, eq. (28). Unit: ft/s^2/rad.
 ///
 /// 118 operations: 47 additions, 69 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -588,7 +588,7 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// H of the gamma row in the exact form less that of the printed one, eq. (30). Unit: rad/s/rad.
 ///
 /// 114 operations: 46 additions, 66 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -693,7 +693,7 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 /// H of the alpha row in the exact form less that of the printed one, eq. (32). Unit: rad/s/rad.
 ///
 /// 114 operations: 46 additions, 66 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -799,7 +799,7 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 /// H of the pitch_rate row in the exact form less that of the printed one, eq. (34). Unit: rad/s^2/rad.
 ///
 /// 58 operations: 20 additions, 37 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn delta_H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

@@ -8,7 +8,7 @@ use ahv_core::Real;
 /// Time derivative of the state, eq. (27).
 ///
 /// 180 operations: 68 additions, 107 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -142,9 +142,10 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
         + f_gamma
         + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed = turn_factor
-        * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2
-            - gamma_rate_printed_term_3) + f_alpha + x.pitch_rate; // rad/s
+    let alpha_rate_printed =
+        turn_factor * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2 - gamma_rate_printed_term_3)
+        + f_alpha
+        + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed = reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
             + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2

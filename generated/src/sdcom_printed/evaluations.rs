@@ -8,7 +8,7 @@ use ahv_core::Real;
 /// Air density, eq. (2). Unit: slug/ft^3.
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -19,7 +19,7 @@ pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
 ///
 /// 7 operations: 1 addition, 5 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -32,7 +32,7 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -
 /// Generalized-force coefficient of mode 1, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 12 operations: 5 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -51,7 +51,7 @@ pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -79,7 +79,7 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Static flexible coordinate of mode 1, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 22 operations: 6 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -110,7 +110,7 @@ pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Reduced flexible coordinate of mode 1, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 23 operations: 7 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -143,7 +143,7 @@ pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized-force coefficient of mode 2, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 12 operations: 5 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -162,7 +162,7 @@ pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -190,7 +190,7 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Static flexible coordinate of mode 2, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 22 operations: 6 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -221,7 +221,7 @@ pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Reduced flexible coordinate of mode 2, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 23 operations: 7 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -254,7 +254,7 @@ pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized-force coefficient of mode 3, eq. (3). Unit: (ft/slug)^0.5.
 ///
 /// 12 operations: 5 additions, 7 multiplications.
-#[inline]
+#[inline(always)]
 pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Canard, (4)
     let canard_commanded = p.canard_command * u.delta_c; // rad
@@ -273,7 +273,7 @@ pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -301,7 +301,7 @@ pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// Static flexible coordinate of mode 3, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 22 operations: 6 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -332,7 +332,7 @@ pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Reduced flexible coordinate of mode 3, eq. (25). Unit: (ft*slug)^0.5.
 ///
 /// 23 operations: 7 additions, 15 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn eta_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

@@ -84,7 +84,7 @@ pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 959 operations: 297 additions, 657 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 67] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -295,16 +295,12 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_generalized_force_1_d_velocity_d_velocity = c_n_1 * p.s * density; // slug^0.5/ft^1.5
     let d2_generalized_force_2_d_velocity_d_velocity = c_n_2 * p.s * density; // slug^0.5/ft^1.5
     let d2_generalized_force_3_d_velocity_d_velocity = c_n_3 * p.s * density; // slug^0.5/ft^1.5
-    let d2_f_velocity_eta_d_velocity_d_velocity = R::TWO
-        * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity
-        * d_dynamic_pressure_d_velocity
+    let d2_f_velocity_eta_d_velocity_d_velocity =
+        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * d_dynamic_pressure_d_velocity
         + slope_of_f_velocity_eta_in_dynamic_pressure * density
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_velocity
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_velocity
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_velocity; // 1/ft
+        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_velocity
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_velocity
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_velocity; // 1/ft
     let d2_f_velocity_d_velocity_d_velocity = slope_of_f_velocity_in_dynamic_pressure
         * density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
     let d2_g_velocity_d_velocity_d_velocity = slope_of_g_velocity_in_dynamic_pressure
@@ -334,25 +330,20 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_generalized_force_3_d_velocity_d_altitude = c_n_3
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_f_velocity_eta_d_velocity_d_altitude = d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity
-        * d_dynamic_pressure_d_altitude
-        + slope_of_f_velocity_eta_in_dynamic_pressure
-            * d2_dynamic_pressure_d_velocity_d_altitude
-        + d_dynamic_pressure_d_velocity
-            * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_altitude
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_altitude
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_altitude; // 1/s/ft
+    let d2_f_velocity_eta_d_velocity_d_altitude =
+        d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * d_dynamic_pressure_d_altitude
+        + slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_velocity_d_altitude
+        + d_dynamic_pressure_d_velocity * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
+        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_altitude
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_altitude
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_altitude; // 1/s/ft
     let d2_f_velocity_d_velocity_d_altitude = slope_of_f_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude
         + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
     let d2_g_velocity_d_velocity_d_altitude = slope_of_g_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft
-    let d2_velocity_rate_printed_d_velocity_d_altitude = d2_reference_force_d_velocity_d_altitude
-        * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
+    let d2_velocity_rate_printed_d_velocity_d_altitude =
+        d2_reference_force_d_velocity_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
         + d2_f_velocity_d_velocity_d_altitude
         + u.phi * d2_g_velocity_d_velocity_d_altitude; // 1/s/ft
 
@@ -433,25 +424,20 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     let d2_generalized_force_3_d_altitude_d_altitude = c_n_3
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_f_velocity_eta_d_altitude_d_altitude = R::TWO
-        * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
-        * d_dynamic_pressure_d_altitude
-        + slope_of_f_velocity_eta_in_dynamic_pressure
-            * d2_dynamic_pressure_d_altitude_d_altitude
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_altitude_d_altitude
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_altitude_d_altitude
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_altitude_d_altitude; // 1/s^2/ft
-    let d2_f_velocity_d_altitude_d_altitude = slope_of_f_velocity_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude
+    let d2_f_velocity_eta_d_altitude_d_altitude =
+        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude * d_dynamic_pressure_d_altitude
+        + slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
+        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_altitude
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_altitude; // 1/s^2/ft
+    let d2_f_velocity_d_altitude_d_altitude =
+        slope_of_f_velocity_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
         - sin_gamma * d2_gravity_d_altitude_d_altitude
         + d2_f_velocity_eta_d_altitude_d_altitude; // 1/s^2/ft
     let d2_g_velocity_d_altitude_d_altitude = slope_of_g_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
-    let d2_velocity_rate_printed_d_altitude_d_altitude = d2_reference_force_d_altitude_d_altitude
-        * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
+    let d2_velocity_rate_printed_d_altitude_d_altitude =
+        d2_reference_force_d_altitude_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
         + d2_f_velocity_d_altitude_d_altitude
         + u.phi * d2_g_velocity_d_altitude_d_altitude; // 1/s^2/ft
 
@@ -516,15 +502,12 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_f_velocity_eta_d_alpha_d_alpha = R::TWO
-        * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
+    let d2_f_velocity_eta_d_alpha_d_alpha =
+        R::TWO * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
         + slope_of_f_velocity_eta_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_alpha_d_alpha
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_alpha_d_alpha
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_alpha_d_alpha; // ft/s^2/rad^2
+        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha; // ft/s^2/rad^2
     let d2_f_velocity_d_alpha_d_alpha = R::TWO * d_slope_of_f_velocity_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
         + slope_of_f_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d2_f_velocity_eta_d_alpha_d_alpha; // ft/s^2/rad^2
@@ -562,31 +545,24 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to velocity
     let inv_velocity_3 = inv_velocity * inv_velocity_2;
     let d2_gravity_turn_d_velocity_d_velocity = R::TWO * gravity * inv_velocity_3; // s/ft^2
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_velocity
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_velocity
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_velocity; // rad*s/ft
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_velocity =
+        d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_velocity
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_velocity
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_velocity;
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
         * p.inv_omega_1_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
         * p.inv_omega_2_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
         * p.inv_omega_3_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
-    let d2_f_gamma_eta_d_velocity_d_velocity = slope_of_f_gamma_eta_in_generalized_force_1
-        * d2_generalized_force_1_d_velocity_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_velocity_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_velocity_d_velocity
+    let d2_f_gamma_eta_d_velocity_d_velocity =
+        slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
         + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_velocity
-        + d_generalized_force_1_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
-        + d_generalized_force_2_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
-        + d_generalized_force_3_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
+        + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
+        + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
+        + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
     let d2_f_gamma_d_velocity_d_velocity_term_1 = cos_gamma
         * d2_gravity_turn_d_velocity_d_velocity;
     let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
@@ -596,32 +572,25 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * d_density_d_altitude; // 1/ft^2
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * d_radius_ratio_d_altitude + inv_velocity_2 * d_gravity_d_altitude); // 1/ft^2
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_altitude
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_altitude
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_altitude; // rad/ft
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude =
+        d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_altitude
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_altitude
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_altitude;
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
         * p.inv_omega_1_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
         * p.inv_omega_2_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
         * p.inv_omega_3_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
-    let d2_f_gamma_eta_d_velocity_d_altitude = slope_of_f_gamma_eta_in_generalized_force_1
-        * d2_generalized_force_1_d_velocity_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_velocity_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_velocity_d_altitude
+    let d2_f_gamma_eta_d_velocity_d_altitude =
+        slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
         + slope_of_f_gamma_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
         + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + d_generalized_force_1_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
-        + d_generalized_force_2_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
-        + d_generalized_force_3_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+        + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
     let d2_f_gamma_d_velocity_d_altitude_term_1 = cos_gamma
         * d2_gravity_turn_d_velocity_d_altitude;
     let d2_f_gamma_d_velocity_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
@@ -629,8 +598,9 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
     let d2_g_gamma_d_velocity_d_altitude = slope_of_g_gamma_in_turn_factor
         * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
-    let d2_gamma_rate_printed_d_velocity_d_altitude = slope_of_gamma_rate_printed_in_turn_factor
-        * d2_turn_factor_d_velocity_d_altitude + d2_f_gamma_d_velocity_d_altitude
+    let d2_gamma_rate_printed_d_velocity_d_altitude =
+        slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + d2_f_gamma_d_velocity_d_altitude
         + x.alpha * d2_g_gamma_d_velocity_d_altitude; // rad/ft^2
 
     // Derivatives with respect to gamma
@@ -640,33 +610,24 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = slope_of_velocity_rate_printed_in_cos_alpha_term_1
         * cos_alpha;
     let d_slope_of_f_gamma_in_turn_factor_d_alpha = c_t_phi_phi_plus_c_t_0 * cos_alpha;
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = slope_of_f_velocity_eta_in_cos_alpha_term_1
-        * cos_alpha
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_alpha
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_alpha
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_alpha;
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = slope_of_f_velocity_eta_in_cos_alpha_term_1 * cos_alpha
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_alpha
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_alpha
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_alpha;
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = turn_factor
         * p.c_t_eta_1_inv_omega_1_2 * cos_alpha; // s/ft^0.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = turn_factor
         * p.c_t_eta_2_inv_omega_2_2 * cos_alpha; // s/ft^0.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha = turn_factor
         * p.c_t_eta_3_inv_omega_3_2 * cos_alpha; // s/ft^0.5/slug^0.5
-    let d2_f_gamma_eta_d_velocity_d_alpha = slope_of_f_gamma_eta_in_generalized_force_1
-        * d2_generalized_force_1_d_velocity_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_velocity_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_velocity_d_alpha
+    let d2_f_gamma_eta_d_velocity_d_alpha =
+        slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_alpha
         + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
-        + d_generalized_force_1_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha; // 1/ft
+        + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha; // 1/ft
     let d2_f_gamma_d_velocity_d_alpha = d_turn_factor_d_velocity
         * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_velocity_d_alpha; // 1/ft
     let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
@@ -675,7 +636,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/ft/rad
     let d2_gamma_rate_printed_d_velocity_d_alpha = d_g_gamma_d_velocity
         + d_turn_factor_d_velocity * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
-        + d2_f_gamma_d_velocity_d_alpha + x.alpha * d2_g_gamma_d_velocity_d_alpha; // 1/ft
+        + d2_f_gamma_d_velocity_d_alpha
+        + x.alpha * d2_g_gamma_d_velocity_d_alpha; // 1/ft
 
     // Derivatives with respect to chi_1
     let d2_gamma_rate_printed_d_velocity_d_chi_1 = d_turn_factor_d_velocity
@@ -695,20 +657,14 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
         * inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_f_gamma_eta_d_altitude_d_altitude = d_turn_factor_d_altitude
-        * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + d_generalized_force_1_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
-        + d_generalized_force_2_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
-        + d_generalized_force_3_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_1
-            * d2_generalized_force_1_d_altitude_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_altitude_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_altitude_d_altitude
+    let d2_f_gamma_eta_d_altitude_d_altitude =
+        d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        + d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
         + slope_of_f_gamma_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_gamma_d_altitude_d_altitude_term_1 = cos_gamma
         * d2_gravity_turn_d_altitude_d_altitude;
@@ -717,35 +673,30 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
     let d2_g_gamma_d_altitude_d_altitude = slope_of_g_gamma_in_turn_factor
         * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_gamma_rate_printed_d_altitude_d_altitude = slope_of_gamma_rate_printed_in_turn_factor
-        * d2_turn_factor_d_altitude_d_altitude + d2_f_gamma_d_altitude_d_altitude
+    let d2_gamma_rate_printed_d_altitude_d_altitude =
+        slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+        + d2_f_gamma_d_altitude_d_altitude
         + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
     let d2_f_gamma_d_altitude_d_gamma = -d_gravity_turn_d_altitude * d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_f_gamma_eta_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
-        + d_generalized_force_1_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_1
-            * d2_generalized_force_1_d_altitude_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_altitude_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
+    let d2_f_gamma_eta_d_altitude_d_alpha = d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
+        + d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
     let d2_f_gamma_d_altitude_d_alpha = d_turn_factor_d_altitude
         * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_altitude_d_alpha; // 1/s/ft
     let d2_g_gamma_d_altitude_d_alpha = d_turn_factor_d_altitude
         * d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/s/ft/rad
     let d2_gamma_rate_printed_d_altitude_d_alpha = d_g_gamma_d_altitude
         + d_turn_factor_d_altitude * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
-        + d2_f_gamma_d_altitude_d_alpha + x.alpha * d2_g_gamma_d_altitude_d_alpha; // 1/s/ft
+        + d2_f_gamma_d_altitude_d_alpha
+        + x.alpha * d2_g_gamma_d_altitude_d_alpha; // 1/s/ft
 
     // Derivatives with respect to chi_1
     let d2_gamma_rate_printed_d_altitude_d_chi_1 = d_turn_factor_d_altitude
@@ -766,18 +717,13 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to alpha
     let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = turn_factor
         * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1; // 1/s
-    let d2_f_gamma_eta_d_alpha_d_alpha = d_generalized_force_1_d_alpha
-        * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_alpha
-            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_alpha
-            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_1
-            * d2_generalized_force_1_d_alpha_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_alpha_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_alpha_d_alpha
+    let d2_f_gamma_eta_d_alpha_d_alpha =
+        d_generalized_force_1_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_alpha_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
         + slope_of_f_gamma_eta_in_sin_alpha * d_cos_alpha_d_alpha
         + cos_alpha * d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s/rad
     let d2_f_gamma_d_alpha_d_alpha = slope_of_f_gamma_in_sin_alpha * d_cos_alpha_d_alpha
@@ -805,19 +751,14 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * p.inv_omega_2_2; // rad*s^2/ft^1.5/slug^0.5
     let d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_3
         * p.inv_omega_3_2; // rad*s^2/ft^1.5/slug^0.5
-    let d2_f_alpha_eta_d_velocity_d_velocity = slope_of_f_alpha_eta_in_generalized_force_1
-        * d2_generalized_force_1_d_velocity_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_velocity_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_velocity_d_velocity
+    let d2_f_alpha_eta_d_velocity_d_velocity =
+        slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
         + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_velocity
-        + d_generalized_force_1_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
-        + d_generalized_force_2_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
-        + d_generalized_force_3_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
+        + d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
+        + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
+        + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
     let d2_f_alpha_d_velocity_d_velocity = d2_f_gamma_d_velocity_d_velocity_term_1
         - gravity_turn
             * (cos_gamma * inv_velocity_2
@@ -833,20 +774,15 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * p.inv_omega_2_2; // rad*s/ft^1.5/slug^0.5
     let d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_3
         * p.inv_omega_3_2; // rad*s/ft^1.5/slug^0.5
-    let d2_f_alpha_eta_d_velocity_d_altitude = slope_of_f_alpha_eta_in_generalized_force_1
-        * d2_generalized_force_1_d_velocity_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_velocity_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_velocity_d_altitude
+    let d2_f_alpha_eta_d_velocity_d_altitude =
+        slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
         + slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
         + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
-        + d_generalized_force_1_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
-        + d_generalized_force_2_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
-        + d_generalized_force_3_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+        + d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
+        + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
+        + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
     let d2_f_alpha_d_velocity_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
         + d2_f_gamma_d_velocity_d_altitude_term_1
         + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
@@ -868,19 +804,14 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * p.inv_omega_2_2; // s/ft^0.5/slug^0.5
     let d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_3
         * p.inv_omega_3_2; // s/ft^0.5/slug^0.5
-    let d2_f_alpha_eta_d_velocity_d_alpha = slope_of_f_alpha_eta_in_generalized_force_1
-        * d2_generalized_force_1_d_velocity_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_velocity_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_velocity_d_alpha
+    let d2_f_alpha_eta_d_velocity_d_alpha =
+        slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_alpha
         + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
-        + d_generalized_force_1_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_velocity
-            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha; // 1/ft
+        + d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha; // 1/ft
     let d2_f_alpha_d_velocity_d_alpha = d_turn_factor_d_velocity
         * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_velocity_d_alpha; // 1/ft
     let d2_alpha_rate_printed_d_velocity_d_alpha = d_turn_factor_d_velocity
@@ -903,20 +834,14 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
-    let d2_f_alpha_eta_d_altitude_d_altitude = d_turn_factor_d_altitude
-        * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
-        + d_generalized_force_1_d_altitude
-            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
-        + d_generalized_force_2_d_altitude
-            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
-        + d_generalized_force_3_d_altitude
-            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_1
-            * d2_generalized_force_1_d_altitude_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_altitude_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_altitude_d_altitude
+    let d2_f_alpha_eta_d_altitude_d_altitude =
+        d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
+        + d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
+        + d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
+        + d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
         + slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_alpha_d_altitude_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
         + d2_f_gamma_d_altitude_d_altitude_term_1
@@ -928,20 +853,13 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_f_alpha_d_altitude_d_gamma = d_gravity_turn_d_altitude * d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_f_alpha_eta_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
-        + d_generalized_force_1_d_altitude
-            * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_altitude
-            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_altitude
-            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_1
-            * d2_generalized_force_1_d_altitude_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_altitude_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
+    let d2_f_alpha_eta_d_altitude_d_alpha = d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
+        + d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
     let d2_f_alpha_d_altitude_d_alpha = d_turn_factor_d_altitude
         * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_altitude_d_alpha; // 1/s/ft
     let d2_alpha_rate_printed_d_altitude_d_alpha = d_turn_factor_d_altitude
@@ -966,18 +884,13 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to alpha
     let d_slope_of_f_alpha_in_sin_alpha_d_alpha = -slope_of_g_gamma_in_sin_alpha; // 1/s
     let d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha = -d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s
-    let d2_f_alpha_eta_d_alpha_d_alpha = d_generalized_force_1_d_alpha
-        * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_alpha
-            * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_alpha
-            * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_1
-            * d2_generalized_force_1_d_alpha_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_alpha_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_alpha_d_alpha
+    let d2_f_alpha_eta_d_alpha_d_alpha =
+        d_generalized_force_1_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + d_generalized_force_2_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + d_generalized_force_3_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_alpha_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
         + slope_of_f_alpha_eta_in_sin_alpha * d_cos_alpha_d_alpha
         + cos_alpha * d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha; // 1/s/rad
     let d_alpha_slope_alpha_d_alpha = cos_alpha
@@ -1033,8 +946,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
-    let d2_pitch_rate_rate_printed_d_velocity_d_velocity = p.s_over_i_yy
-        * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 * density
+    let d2_pitch_rate_rate_printed_d_velocity_d_velocity =
+        p.s_over_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 * density
         + d2_f_pitch_rate_d_velocity_d_velocity
         + u.delta_e * d2_g_pitch_rate_d_velocity_d_velocity; // rad/ft^2
 
@@ -1081,14 +994,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         p.d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_alpha
         + p.d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_alpha
         + p.d_f_pitch_rate_eta_d_velocity_constant_3 * d_generalized_force_3_d_alpha;
-    let d2_f_pitch_rate_eta_d_velocity_d_alpha = d_reference_force_d_velocity
-        * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
+    let d2_f_pitch_rate_eta_d_velocity_d_alpha =
+        d_reference_force_d_velocity * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
+        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_alpha
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_alpha
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
     let d2_f_pitch_rate_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_velocity_d_alpha; // 1/s/ft
@@ -1131,14 +1041,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
 
     // Derivatives with respect to alpha
-    let d2_f_pitch_rate_eta_d_altitude_d_alpha = d_reference_force_d_altitude
-        * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_altitude_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_altitude_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/ft
+    let d2_f_pitch_rate_eta_d_altitude_d_alpha =
+        d_reference_force_d_altitude * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
+        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_alpha
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_alpha
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/ft
     let d2_f_pitch_rate_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_altitude_d_alpha; // 1/s^2/ft
@@ -1156,12 +1063,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to alpha
-    let d2_f_pitch_rate_eta_d_alpha_d_alpha = d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_alpha_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
+    let d2_f_pitch_rate_eta_d_alpha_d_alpha =
+        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
     let d2_f_pitch_rate_d_alpha_d_alpha = reference_force
         * p.two_c_bar_c_m_alpha_2_over_i_yy + d2_f_pitch_rate_eta_d_alpha_d_alpha; // 1/s^2/rad
 
@@ -1237,7 +1142,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
     HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
 }

@@ -45,6 +45,70 @@ pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_state_jacobian<R: Real>(values: &[R; 33]) -> StateJacobian<R> {
+    let no_state = State::splat(R::ZERO);
+    State {
+        velocity: State {
+            velocity: values[0],
+            altitude: values[1],
+            gamma: values[2],
+            alpha: values[3],
+            chi_1: values[4],
+            chi_2: values[5],
+            chi_3: values[6],
+            ..no_state
+        },
+        altitude: State {
+            velocity: values[7],
+            gamma: values[8],
+            ..no_state
+        },
+        gamma: State {
+            velocity: values[9],
+            altitude: values[10],
+            gamma: values[11],
+            alpha: values[12],
+            chi_1: values[13],
+            chi_2: values[14],
+            chi_3: values[15],
+            ..no_state
+        },
+        alpha: State {
+            velocity: values[16],
+            altitude: values[17],
+            gamma: values[18],
+            alpha: values[19],
+            pitch_rate: values[20],
+            chi_1: values[21],
+            chi_2: values[22],
+            chi_3: values[23],
+        },
+        pitch_rate: State {
+            velocity: values[24],
+            altitude: values[25],
+            alpha: values[26],
+            chi_1: values[27],
+            chi_2: values[28],
+            chi_3: values[29],
+            ..no_state
+        },
+        chi_1: State {
+            chi_1: values[30],
+            ..no_state
+        },
+        chi_2: State {
+            chi_2: values[31],
+            ..no_state
+        },
+        chi_3: State {
+            chi_3: values[32],
+            ..no_state
+        },
+    }
+}
+
 /// Where the entries of the compressed [`InputJacobian`] stand.
 pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     [State::<u8>::LEN, Input::<u8>::LEN],
@@ -64,12 +128,42 @@ pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
     ],
 );
 
+/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
+#[inline(always)]
+pub fn dense_input_jacobian<R: Real>(values: &[R; 12]) -> InputJacobian<R> {
+    let no_input = Input::splat(R::ZERO);
+    let no_state_input = State::splat(no_input);
+    State {
+        velocity: Input {
+            phi: values[0],
+            delta_e: values[1],
+            delta_c: values[2],
+        },
+        gamma: Input {
+            phi: values[3],
+            delta_e: values[4],
+            delta_c: values[5],
+        },
+        alpha: Input {
+            phi: values[6],
+            delta_e: values[7],
+            delta_c: values[8],
+        },
+        pitch_rate: Input {
+            phi: values[9],
+            delta_e: values[10],
+            delta_c: values[11],
+        },
+        ..no_state_input
+    }
+}
+
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 495 operations: 157 additions, 333 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -174,8 +268,9 @@ pub fn jacobians_values<R: Real>(
     let d_velocity_rate_printed_d_velocity_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
         + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
         + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
-    let d_velocity_rate_printed_d_velocity = d_reference_force_d_velocity * p.inv_m
-        * d_velocity_rate_printed_d_velocity_term_1 + d_f_velocity_d_velocity
+    let d_velocity_rate_printed_d_velocity =
+        d_reference_force_d_velocity * p.inv_m * d_velocity_rate_printed_d_velocity_term_1
+        + d_f_velocity_d_velocity
         + u.phi * d_g_velocity_d_velocity; // 1/s
     let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
     let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
@@ -202,8 +297,7 @@ pub fn jacobians_values<R: Real>(
         * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
         * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor
-        * d_turn_factor_d_velocity
+    let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
@@ -227,8 +321,7 @@ pub fn jacobians_values<R: Real>(
     let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
     let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
     let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
-    let d_f_alpha_eta_d_velocity = slope_of_f_alpha_eta_in_turn_factor
-        * d_turn_factor_d_velocity
+    let d_f_alpha_eta_d_velocity = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
@@ -260,8 +353,9 @@ pub fn jacobians_values<R: Real>(
     let d_pitch_rate_rate_printed_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
-    let d_pitch_rate_rate_printed_d_velocity = d_reference_force_d_velocity * p.inv_i_yy
-        * d_pitch_rate_rate_printed_d_velocity_term_1 + d_f_pitch_rate_d_velocity
+    let d_pitch_rate_rate_printed_d_velocity =
+        d_reference_force_d_velocity * p.inv_i_yy * d_pitch_rate_rate_printed_d_velocity_term_1
+        + d_f_pitch_rate_d_velocity
         + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
 
     // Derivatives with respect to altitude
@@ -287,14 +381,14 @@ pub fn jacobians_values<R: Real>(
         + d_f_velocity_eta_d_altitude; // 1/s^2
     let d_g_velocity_d_altitude = slope_of_g_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_altitude; // 1/s^2
-    let d_velocity_rate_printed_d_altitude = d_reference_force_d_altitude * p.inv_m
-        * d_velocity_rate_printed_d_velocity_term_1 + d_f_velocity_d_altitude
+    let d_velocity_rate_printed_d_altitude =
+        d_reference_force_d_altitude * p.inv_m * d_velocity_rate_printed_d_velocity_term_1
+        + d_f_velocity_d_altitude
         + u.phi * d_g_velocity_d_altitude; // 1/s^2
     let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
     let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
         - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_f_gamma_eta_d_altitude = slope_of_f_gamma_eta_in_turn_factor
-        * d_turn_factor_d_altitude
+    let d_f_gamma_eta_d_altitude = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
@@ -307,8 +401,7 @@ pub fn jacobians_values<R: Real>(
     let d_gamma_rate_printed_d_altitude = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_altitude
         + d_f_gamma_d_altitude
         + x.alpha * d_g_gamma_d_altitude; // rad/s/ft
-    let d_f_alpha_eta_d_altitude = slope_of_f_alpha_eta_in_turn_factor
-        * d_turn_factor_d_altitude
+    let d_f_alpha_eta_d_altitude = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
@@ -330,8 +423,9 @@ pub fn jacobians_values<R: Real>(
         * d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
     let d_g_pitch_rate_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_altitude; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_altitude = d_reference_force_d_altitude * p.inv_i_yy
-        * d_pitch_rate_rate_printed_d_velocity_term_1 + d_f_pitch_rate_d_altitude
+    let d_pitch_rate_rate_printed_d_altitude =
+        d_reference_force_d_altitude * p.inv_i_yy * d_pitch_rate_rate_printed_d_velocity_term_1
+        + d_f_pitch_rate_d_altitude
         + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
 
     // Derivatives with respect to gamma
@@ -458,28 +552,22 @@ pub fn jacobians_values<R: Real>(
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // ft/s^2/rad
+    let d_f_velocity_eta_d_delta_e =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
         - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_e
+    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_alpha_eta_d_delta_e = slope_of_f_alpha_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_e
+    let d_f_alpha_eta_d_delta_e = slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_pitch_rate_eta_d_delta_e = d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // 1/s^2
+    let d_f_pitch_rate_eta_d_delta_e =
+        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // 1/s^2
     let d_pitch_rate_rate_printed_d_delta_e = g_pitch_rate
         + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
 
@@ -490,26 +578,20 @@ pub fn jacobians_values<R: Real>(
         * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_c = reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_c
+    let d_f_velocity_eta_d_delta_c =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
+    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_alpha_eta_d_delta_c = slope_of_f_alpha_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_c
+    let d_f_alpha_eta_d_delta_c = slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_pitch_rate_eta_d_delta_c = d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // 1/s^2
+    let d_f_pitch_rate_eta_d_delta_c =
+        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
 
     // Result
     let state = [
@@ -565,26 +647,28 @@ pub fn jacobians_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn jacobians<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (STATE_JACOBIAN_PATTERN.dense(&state), INPUT_JACOBIAN_PATTERN.dense(&input))
+    (dense_state_jacobian(&state), dense_input_jacobian(&input))
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
 /// less than one after the other, eq. (27).
 ///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
 /// 538 operations: 174 additions, 359 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
-pub fn drift_and_jacobians<R: Real>(
+#[inline(always)]
+pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+) -> (State<R>, [R; 33], [R; 12]) {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     let density = p.rho_0 * density_ratio; // slug/ft^3
@@ -728,9 +812,10 @@ pub fn drift_and_jacobians<R: Real>(
     let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
         + f_gamma
         + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed = turn_factor
-        * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2
-            - gamma_rate_printed_term_3) + f_alpha + x.pitch_rate; // rad/s
+    let alpha_rate_printed =
+        turn_factor * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2 - gamma_rate_printed_term_3)
+        + f_alpha
+        + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
@@ -773,8 +858,7 @@ pub fn drift_and_jacobians<R: Real>(
         * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
         * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor
-        * d_turn_factor_d_velocity
+    let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
@@ -793,8 +877,7 @@ pub fn drift_and_jacobians<R: Real>(
     let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
     let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
     let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
-    let d_f_alpha_eta_d_velocity = slope_of_f_alpha_eta_in_turn_factor
-        * d_turn_factor_d_velocity
+    let d_f_alpha_eta_d_velocity = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
@@ -851,8 +934,7 @@ pub fn drift_and_jacobians<R: Real>(
     let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
     let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
         - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_f_gamma_eta_d_altitude = slope_of_f_gamma_eta_in_turn_factor
-        * d_turn_factor_d_altitude
+    let d_f_gamma_eta_d_altitude = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
@@ -865,8 +947,7 @@ pub fn drift_and_jacobians<R: Real>(
     let d_gamma_rate_printed_d_altitude = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_altitude
         + d_f_gamma_d_altitude
         + x.alpha * d_g_gamma_d_altitude; // rad/s/ft
-    let d_f_alpha_eta_d_altitude = slope_of_f_alpha_eta_in_turn_factor
-        * d_turn_factor_d_altitude
+    let d_f_alpha_eta_d_altitude = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
@@ -1016,28 +1097,22 @@ pub fn drift_and_jacobians<R: Real>(
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // ft/s^2/rad
+    let d_f_velocity_eta_d_delta_e =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
         - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_e
+    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_alpha_eta_d_delta_e = slope_of_f_alpha_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_e
+    let d_f_alpha_eta_d_delta_e = slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_pitch_rate_eta_d_delta_e = d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // 1/s^2
+    let d_f_pitch_rate_eta_d_delta_e =
+        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // 1/s^2
     let d_pitch_rate_rate_printed_d_delta_e = g_pitch_rate
         + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
 
@@ -1048,31 +1123,22 @@ pub fn drift_and_jacobians<R: Real>(
         * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_c = reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_c
+    let d_f_velocity_eta_d_delta_c =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
+    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_alpha_eta_d_delta_c = slope_of_f_alpha_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_c
+    let d_f_alpha_eta_d_delta_c = slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_pitch_rate_eta_d_delta_c = d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // 1/s^2
+    let d_f_pitch_rate_eta_d_delta_c =
+        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
 
     // Result
-    let no_state = State::splat(R::ZERO);
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
     let drift = State {
         velocity: velocity_rate_printed,
         altitude: altitude_rate,
@@ -1083,86 +1149,66 @@ pub fn drift_and_jacobians<R: Real>(
         chi_2: chi_rate_2,
         chi_3: chi_rate_3,
     };
-    let state = State {
-        velocity: State {
-            velocity: d_velocity_rate_printed_d_velocity,
-            altitude: d_velocity_rate_printed_d_altitude,
-            gamma: d_f_velocity_d_gamma,
-            alpha: d_velocity_rate_printed_d_alpha,
-            chi_1: d_velocity_rate_printed_d_chi_1,
-            chi_2: d_velocity_rate_printed_d_chi_2,
-            chi_3: d_velocity_rate_printed_d_chi_3,
-            ..no_state
-        },
-        altitude: State {
-            velocity: sin_gamma,
-            gamma: d_altitude_rate_d_gamma,
-            ..no_state
-        },
-        gamma: State {
-            velocity: d_gamma_rate_printed_d_velocity,
-            altitude: d_gamma_rate_printed_d_altitude,
-            gamma: d_f_gamma_d_gamma,
-            alpha: d_gamma_rate_printed_d_alpha,
-            chi_1: d_gamma_rate_printed_d_chi_1,
-            chi_2: d_gamma_rate_printed_d_chi_2,
-            chi_3: d_gamma_rate_printed_d_chi_3,
-            ..no_state
-        },
-        alpha: State {
-            velocity: d_alpha_rate_printed_d_velocity,
-            altitude: d_alpha_rate_printed_d_altitude,
-            gamma: d_f_alpha_d_gamma,
-            alpha: d_alpha_rate_printed_d_alpha,
-            pitch_rate: R::ONE,
-            chi_1: d_alpha_rate_printed_d_chi_1,
-            chi_2: d_alpha_rate_printed_d_chi_2,
-            chi_3: d_alpha_rate_printed_d_chi_3,
-        },
-        pitch_rate: State {
-            velocity: d_pitch_rate_rate_printed_d_velocity,
-            altitude: d_pitch_rate_rate_printed_d_altitude,
-            alpha: d_f_pitch_rate_d_alpha,
-            chi_1: d_pitch_rate_rate_printed_d_chi_1,
-            chi_2: d_pitch_rate_rate_printed_d_chi_2,
-            chi_3: d_pitch_rate_rate_printed_d_chi_3,
-            ..no_state
-        },
-        chi_1: State {
-            chi_1: p.minus_chi_decay_1,
-            ..no_state
-        },
-        chi_2: State {
-            chi_2: p.minus_chi_decay_2,
-            ..no_state
-        },
-        chi_3: State {
-            chi_3: p.minus_chi_decay_3,
-            ..no_state
-        },
-    };
-    let input = State {
-        velocity: Input {
-            phi: g_velocity,
-            delta_e: d_f_velocity_d_delta_e,
-            delta_c: d_f_velocity_eta_d_delta_c,
-        },
-        gamma: Input {
-            phi: d_gamma_rate_printed_d_phi,
-            delta_e: d_f_gamma_eta_d_delta_e,
-            delta_c: d_f_gamma_eta_d_delta_c,
-        },
-        alpha: Input {
-            phi: d_f_alpha_d_phi,
-            delta_e: d_f_alpha_eta_d_delta_e,
-            delta_c: d_f_alpha_eta_d_delta_c,
-        },
-        pitch_rate: Input {
-            phi: d_f_pitch_rate_d_phi,
-            delta_e: d_pitch_rate_rate_printed_d_delta_e,
-            delta_c: d_f_pitch_rate_eta_d_delta_c,
-        },
-        ..no_state_input
-    };
+    let state = [
+        d_velocity_rate_printed_d_velocity,
+        d_velocity_rate_printed_d_altitude,
+        d_f_velocity_d_gamma,
+        d_velocity_rate_printed_d_alpha,
+        d_velocity_rate_printed_d_chi_1,
+        d_velocity_rate_printed_d_chi_2,
+        d_velocity_rate_printed_d_chi_3,
+        sin_gamma,
+        d_altitude_rate_d_gamma,
+        d_gamma_rate_printed_d_velocity,
+        d_gamma_rate_printed_d_altitude,
+        d_f_gamma_d_gamma,
+        d_gamma_rate_printed_d_alpha,
+        d_gamma_rate_printed_d_chi_1,
+        d_gamma_rate_printed_d_chi_2,
+        d_gamma_rate_printed_d_chi_3,
+        d_alpha_rate_printed_d_velocity,
+        d_alpha_rate_printed_d_altitude,
+        d_f_alpha_d_gamma,
+        d_alpha_rate_printed_d_alpha,
+        R::ONE,
+        d_alpha_rate_printed_d_chi_1,
+        d_alpha_rate_printed_d_chi_2,
+        d_alpha_rate_printed_d_chi_3,
+        d_pitch_rate_rate_printed_d_velocity,
+        d_pitch_rate_rate_printed_d_altitude,
+        d_f_pitch_rate_d_alpha,
+        d_pitch_rate_rate_printed_d_chi_1,
+        d_pitch_rate_rate_printed_d_chi_2,
+        d_pitch_rate_rate_printed_d_chi_3,
+        p.minus_chi_decay_1,
+        p.minus_chi_decay_2,
+        p.minus_chi_decay_3,
+    ];
+    let input = [
+        g_velocity,
+        d_f_velocity_d_delta_e,
+        d_f_velocity_eta_d_delta_c,
+        d_gamma_rate_printed_d_phi,
+        d_f_gamma_eta_d_delta_e,
+        d_f_gamma_eta_d_delta_c,
+        d_f_alpha_d_phi,
+        d_f_alpha_eta_d_delta_e,
+        d_f_alpha_eta_d_delta_c,
+        d_f_pitch_rate_d_phi,
+        d_pitch_rate_rate_printed_d_delta_e,
+        d_f_pitch_rate_eta_d_delta_c,
+    ];
     (drift, state, input)
+}
+
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
+/// less than one after the other, eq. (27).
+#[inline(always)]
+pub fn drift_and_jacobians<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    let (drift, state, input) = drift_and_jacobians_values(x, u, p);
+    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
 }

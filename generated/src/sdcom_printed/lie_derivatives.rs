@@ -9,7 +9,7 @@ use ahv_core::Real;
 /// Lie derivative of the velocity along the drift at the held input, eq. (27). Unit: ft/s/s.
 ///
 /// 90 operations: 31 additions, 55 multiplications, 1 division, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -85,7 +85,7 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lie derivatives of the velocity along the input columns: its relative degree is 1, eq. (27).
 ///
 /// 50 operations: 10 additions, 38 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -117,12 +117,10 @@ pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> 
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // ft/s^2/rad
+    let d_f_velocity_eta_d_delta_e =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
         - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
 
@@ -133,12 +131,10 @@ pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> 
         * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_c = reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // ft/s^2/rad
+    let d_f_velocity_eta_d_delta_c =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
 
     Input {
         phi: g_velocity,
@@ -150,7 +146,7 @@ pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> 
 /// Lie derivative of the gamma along the drift at the held input, eq. (27). Unit: rad/s.
 ///
 /// 90 operations: 31 additions, 54 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -239,7 +235,7 @@ pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lie derivatives of the gamma along the input columns: its relative degree is 1, eq. (27).
 ///
 /// 45 operations: 9 additions, 34 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -277,8 +273,7 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_e
+    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
 
@@ -289,8 +284,7 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
         * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_c = reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_c
+    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
 
@@ -304,7 +298,7 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
 /// Lie derivative of the altitude along the drift at the held input, eq. (27). Unit: ft/s.
 ///
 /// 2 operations: 1 multiplication, 1 sin_cos.
-#[inline]
+#[inline(always)]
 pub fn L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
     // Angles, (1)
     let sin_gamma = x.gamma.sin();
@@ -316,7 +310,7 @@ pub fn L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 /// Second Lie derivative of the altitude along the drift at the held input, eq. (27). Unit: ft/s^2.
 ///
 /// 135 operations: 48 additions, 82 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -428,7 +422,7 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Lie derivatives of L_f h along the input columns: the relative degree of the altitude is 2, eq. (27).
 ///
 /// 91 operations: 21 additions, 67 multiplications, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -486,16 +480,13 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_e; // ft/s^2/rad
+    let d_f_velocity_eta_d_delta_e =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
         - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_e
+    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
 
@@ -506,14 +497,11 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
         * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_c = reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1
-        * d_generalized_force_1_d_delta_c
+    let d_f_velocity_eta_d_delta_c =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
+    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
 

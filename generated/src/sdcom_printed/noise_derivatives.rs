@@ -29,7 +29,7 @@ pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 76 operations: 8 additions, 66 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn noise_derivatives_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -142,7 +142,7 @@ pub fn noise_derivatives_values<R: Real>(
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn noise_derivatives<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -154,7 +154,7 @@ pub fn noise_derivatives<R: Real>(
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
 ///
 /// 51 operations: 8 additions, 41 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

@@ -198,7 +198,7 @@ pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
 /// 968 operations: 195 additions, 768 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
@@ -436,9 +436,10 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_f_pitch_rate_d_c_bar = reference_force * p.inv_i_yy
         * slope_of_f_pitch_rate_in_dynamic_pressure_term_1 + d_f_pitch_rate_eta_d_c_bar; // rad/s^2/ft
     let d_g_pitch_rate_d_c_bar = p.d_g_pitch_rate_d_c_bar_constant_1 * reference_force; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_c_bar = reference_force * p.inv_i_yy
-        * (x.chi_1 * p.c_m_eta_1 + x.chi_2 * p.c_m_eta_2 + x.chi_3 * p.c_m_eta_3)
-        + d_f_pitch_rate_d_c_bar + u.delta_e * d_g_pitch_rate_d_c_bar; // rad/s^2/ft
+    let d_pitch_rate_rate_printed_d_c_bar =
+        reference_force * p.inv_i_yy * (x.chi_1 * p.c_m_eta_1 + x.chi_2 * p.c_m_eta_2 + x.chi_3 * p.c_m_eta_3)
+        + d_f_pitch_rate_d_c_bar
+        + u.delta_e * d_g_pitch_rate_d_c_bar; // rad/s^2/ft
     let d_f_pitch_rate_eta_d_z_t = reference_force * p.inv_i_yy
         * (eta_static_1 * p.c_t_eta_1 + eta_static_2 * p.c_t_eta_2
             + eta_static_3 * p.c_t_eta_3); // rad/s^2/ft
@@ -505,12 +506,10 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_generalized_force_1_d_h_0 = c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_2_d_h_0 = c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_0 = c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_h_0 = slope_of_f_velocity_eta_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_0
+    let d_f_velocity_eta_d_h_0 = slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_0
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_h_0; // 1/s^2
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // 1/s^2
     let d_f_velocity_d_h_0 = slope_of_f_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0 + d_f_velocity_eta_d_h_0; // 1/s^2
     let d_g_velocity_d_h_0 = slope_of_g_velocity_in_dynamic_pressure
@@ -537,20 +536,17 @@ pub fn parameter_jacobian_values<R: Real>(
         + d_f_alpha_eta_d_h_0; // rad/s/ft
     let d_alpha_rate_printed_d_h_0 = slope_of_alpha_rate_printed_in_turn_factor
         * d_turn_factor_d_h_0 + d_f_alpha_d_h_0; // rad/s/ft
-    let d_f_pitch_rate_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy
-        * d_f_pitch_rate_eta_d_i_yy_term_1
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_h_0
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_h_0
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_h_0; // rad/s^2/ft
+    let d_f_pitch_rate_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
+        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // rad/s^2/ft
     let d_f_pitch_rate_d_h_0 = slope_of_f_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0 + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
     let d_g_pitch_rate_d_h_0 = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy
-        * d_pitch_rate_rate_printed_d_i_yy_term_1 + d_f_pitch_rate_d_h_0
+    let d_pitch_rate_rate_printed_d_h_0 =
+        d_reference_force_d_h_0 * p.inv_i_yy * d_pitch_rate_rate_printed_d_i_yy_term_1
+        + d_f_pitch_rate_d_h_0
         + u.delta_e * d_g_pitch_rate_d_h_0; // rad/s^2/ft
     let d_density_ratio_d_h_s = -density_ratio * h_0_minus_altitude * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
@@ -559,12 +555,10 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_generalized_force_1_d_h_s = c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_2_d_h_s = c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_s = c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_h_s = slope_of_f_velocity_eta_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_s
+    let d_f_velocity_eta_d_h_s = slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_s
         + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_h_s; // 1/s^2
+        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // 1/s^2
     let d_f_velocity_d_h_s = slope_of_f_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s + d_f_velocity_eta_d_h_s; // 1/s^2
     let d_g_velocity_d_h_s = slope_of_g_velocity_in_dynamic_pressure
@@ -591,20 +585,17 @@ pub fn parameter_jacobian_values<R: Real>(
         + d_f_alpha_eta_d_h_s; // rad/s/ft
     let d_alpha_rate_printed_d_h_s = slope_of_alpha_rate_printed_in_turn_factor
         * d_turn_factor_d_h_s + d_f_alpha_d_h_s; // rad/s/ft
-    let d_f_pitch_rate_eta_d_h_s = d_reference_force_d_h_s * p.inv_i_yy
-        * d_f_pitch_rate_eta_d_i_yy_term_1
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_h_s
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_h_s
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_h_s; // rad/s^2/ft
+    let d_f_pitch_rate_eta_d_h_s = d_reference_force_d_h_s * p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
+        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
+        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
+        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // rad/s^2/ft
     let d_f_pitch_rate_d_h_s = slope_of_f_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
     let d_g_pitch_rate_d_h_s = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_h_s = d_reference_force_d_h_s * p.inv_i_yy
-        * d_pitch_rate_rate_printed_d_i_yy_term_1 + d_f_pitch_rate_d_h_s
+    let d_pitch_rate_rate_printed_d_h_s =
+        d_reference_force_d_h_s * p.inv_i_yy * d_pitch_rate_rate_printed_d_i_yy_term_1
+        + d_f_pitch_rate_d_h_s
         + u.delta_e * d_g_pitch_rate_d_h_s; // rad/s^2/ft
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
@@ -666,8 +657,8 @@ pub fn parameter_jacobian_values<R: Real>(
                 * u.delta_c
             + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
                 * u.delta_c); // rad/s^2
-    let d_f_velocity_eta_d_canard_slaving_term_1 = d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
+    let d_f_velocity_eta_d_canard_slaving_term_1 =
+        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
     let d_f_velocity_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
@@ -687,8 +678,8 @@ pub fn parameter_jacobian_values<R: Real>(
         + slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
     let d_f_alpha_eta_d_canard_slaving = -reference_force
         * p.c_l_delta_e_over_c_l_delta_c * d_f_alpha_eta_d_canard_slaving_term_1; // rad/s
-    let d_f_pitch_rate_eta_d_canard_slaving_term_1 = d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
+    let d_f_pitch_rate_eta_d_canard_slaving_term_1 =
+        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
         + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
         + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
     let d_f_pitch_rate_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
@@ -1021,7 +1012,7 @@ pub fn parameter_jacobian_values<R: Real>(
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (27).
-#[inline]
+#[inline(always)]
 pub fn parameter_jacobian<R: Real>(
     x: &State<R>,
     u: &Input<R>,

@@ -9,7 +9,7 @@ use ahv_core::Real;
 /// Part of the velocity rate that is left to f, eq. (28). Unit: ft/s^2.
 ///
 /// 75 operations: 26 additions, 45 multiplications, 1 division, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -74,7 +74,7 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Coefficient of phi (1) in the velocity rate, eq. (28). Unit: ft/s^2.
 ///
 /// 14 operations: 2 additions, 10 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -93,7 +93,7 @@ pub fn g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
 /// Derivatives of the velocity rate with respect to the coloured noises chi, eq. (29).
 ///
 /// 21 operations: 4 additions, 15 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -128,7 +128,7 @@ pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 /// ft/s^2/rad.
 ///
 /// 15 operations: 3 additions, 10 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -150,7 +150,7 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Part of f_V from the static flexible coordinates, eq. (29). Unit: ft/s^2.
 ///
 /// 56 operations: 19 additions, 35 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -204,7 +204,7 @@ pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Part of the gamma rate that is left to f, eq. (30). Unit: rad/s.
 ///
 /// 76 operations: 25 additions, 46 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -282,7 +282,7 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
 ///
 /// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -304,7 +304,7 @@ pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
 ///
 /// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -344,7 +344,7 @@ pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
 /// Derivative of the gamma rate with respect to the angle of attack, at frozen inputs, eq. (30). Unit: 1/s.
 ///
 /// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -366,7 +366,7 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
 ///
 /// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -430,7 +430,7 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
 ///
 /// 83 operations: 28 additions, 50 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -510,7 +510,7 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
 ///
 /// No operations.
-#[inline]
+#[inline(always)]
 pub fn g_alpha<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
     R::ONE
 }
@@ -518,7 +518,7 @@ pub fn g_alpha<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 /// Derivatives of the alpha rate with respect to the coloured noises chi, eq. (33).
 ///
 /// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -561,7 +561,7 @@ pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
 /// Derivative of the alpha rate with respect to the angle of attack, at frozen inputs, eq. (32). Unit: 1/s.
 ///
 /// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -584,7 +584,7 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Part of f_alpha from the static flexible coordinates, eq. (33). Unit: rad/s.
 ///
 /// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -649,7 +649,7 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Part of the pitch_rate rate that is left to f, eq. (34). Unit: rad/s^2.
 ///
 /// 66 operations: 23 additions, 42 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -707,7 +707,7 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Coefficient of delta_e (rad) in the pitch_rate rate, eq. (34). Unit: 1/s^2.
 ///
 /// 9 operations: 1 addition, 7 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn g_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -723,7 +723,7 @@ pub fn g_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
 /// Derivatives of the pitch_rate rate with respect to the coloured noises chi, eq. (35).
 ///
 /// 11 operations: 1 addition, 9 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -755,7 +755,7 @@ pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 /// 1/s^2.
 ///
 /// 14 operations: 3 additions, 10 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
@@ -772,7 +772,7 @@ pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// Part of f_Q from the static flexible coordinates, eq. (35). Unit: rad/s^2.
 ///
 /// 49 operations: 16 additions, 32 multiplications, 1 exp.
-#[inline]
+#[inline(always)]
 pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Air, (2)
     let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::flights::Flight;
 use super::library::Step;
-use crate::timing::Spread;
+use crate::timing::{Spread, interleave};
 
 /// Steps of a turn.
 pub(crate) const COUNT: usize = 1000;
@@ -120,28 +120,20 @@ impl<'s> Group<'s> {
                 ));
             }
         }
-        let count = self.subjects.len();
-        let mut times = vec![Vec::new(); count];
-        for round in 0..(TURNS * rounds) as usize {
-            for turn in 0..count {
-                // Another one begins each round, so that none always follows the same one.
-                let index = (turn + round) % count;
-                let begin = Instant::now();
-                let end = (self.subjects[index].run)();
-                times[index].push(begin.elapsed().as_secs_f64() * 1e9 / COUNT as f64);
-                black_box(end?);
-            }
-        }
-        let base = times.first().cloned().unwrap_or_default();
-        let timed = self.subjects.iter().zip(times).map(|(subject, times)| {
-            let ratios = times.iter().zip(&base).map(|(own, base)| own / base);
-            StepTime {
-                model: self.model,
-                stepper: subject.stepper,
-                part: subject.part,
-                ratio: Spread::of(ratios.collect()),
-                nanoseconds: Spread::of(times),
-            }
+        let measured = interleave(self.subjects.len(), 0, TURNS * rounds, |index, _| {
+            let begin = Instant::now();
+            let end = (self.subjects[index].run)();
+            let nanoseconds = begin.elapsed().as_secs_f64() * 1e9 / COUNT as f64;
+            black_box(end?);
+            Ok(nanoseconds)
+        })?;
+        let timed = self.subjects.iter().zip(measured);
+        let timed = timed.map(|(subject, measured)| StepTime {
+            model: self.model,
+            stepper: subject.stepper,
+            part: subject.part,
+            nanoseconds: measured.time,
+            ratio: measured.ratio,
         });
         Ok(timed.collect())
     }
@@ -153,7 +145,7 @@ pub(crate) fn values<X: Vector<f64>>(x: &X) -> Vec<f64> {
 }
 
 /// Greatest difference of two states, relative to the component or to 1, if that is more.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
     let differences = a
         .iter()
         .zip(b)

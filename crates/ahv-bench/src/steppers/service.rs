@@ -1,73 +1,12 @@
-//! Solvers in programs of their own: a line of JSON in, a line of JSON out.
+//! Solvers in programs of their own.
 
 use std::cell::RefCell;
-use std::io::{BufRead as _, BufReader, Write as _};
-use std::process::{Child, ChildStdout, Command, Stdio};
 use std::rc::Rc;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::flights::Flights;
-use super::solver::{Request, Solution, Solver, steps, tolerances};
-
-/// A running program.
-pub(crate) struct Service {
-    child: Child,
-    answers: BufReader<ChildStdout>,
-}
-
-impl Service {
-    /// Starts a program and tells it the flights.
-    pub(crate) fn start(command: &mut Command, flights: &Flights) -> Result<Self, String> {
-        let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut child = command
-            .spawn()
-            .map_err(|error| format!("error: cannot run a peer: {error}"))?;
-        let answers = child.stdout.take().ok_or("error: a peer has no output")?;
-        let mut service = Self {
-            child,
-            answers: BufReader::new(answers),
-        };
-        service.write(&flights.json())?;
-        Ok(service)
-    }
-
-    fn write(&mut self, line: &Value) -> Result<(), String> {
-        let problem = |error| format!("error: a peer does not listen: {error}");
-        let input = self
-            .child
-            .stdin
-            .as_mut()
-            .ok_or("error: a peer has no input")?;
-        writeln!(input, "{line}").map_err(problem)
-    }
-
-    fn ask(&mut self, solver: &str, request: &Request) -> Result<Solution, String> {
-        self.write(&json!({
-            "solver": solver,
-            "flight": request.flight,
-            "setting": request.setting,
-            "repeats": request.repeats,
-        }))?;
-        let mut line = String::new();
-        let read = self.answers.read_line(&mut line);
-        read.map_err(|error| format!("error: a peer does not answer: {error}"))?;
-        let answer: Value = serde_json::from_str(&line)
-            .map_err(|error| format!("error: a peer's answer to {solver}: {error}"))?;
-        match answer["failure"].as_str() {
-            Some(failure) => Err(failure.to_owned()),
-            None => serde_json::from_value(answer).map_err(|error| format!("error: {error}")),
-        }
-    }
-}
-
-impl Drop for Service {
-    /// The program ends with its input.
-    fn drop(&mut self) {
-        drop(self.child.stdin.take());
-        let _ = self.child.wait();
-    }
-}
+use super::solver::{Solver, steps, tolerances};
+use crate::service::Service;
 
 /// Those of peers/solver-crates.
 pub(crate) fn crates(service: Service) -> Vec<Solver> {
@@ -111,7 +50,14 @@ fn solvers(service: Service, names: Vec<(&str, &'static str, Vec<f64>)>) -> Vec<
         Solver {
             name: name.to_owned(),
             settings,
-            solve: Box::new(move |request| service.borrow_mut().ask(method, request)),
+            solve: Box::new(move |request| {
+                service.borrow_mut().ask(&json!({
+                    "solver": method,
+                    "flight": request.flight,
+                    "setting": request.setting,
+                    "repeats": request.repeats,
+                }))
+            }),
         }
     };
     names.into_iter().map(solver).collect()

@@ -1,20 +1,69 @@
 //! The figures of the steppers as tables.
 
-use super::Steppers;
 use super::group::{COUNT, DT};
 use super::precision::{Effort, TARGETS, Work};
 use super::service::CVODES;
+use super::{Precision, Steppers};
 use crate::table::Table;
 
 impl Steppers {
     /// Time of a step, and work and precision of each flight.
     pub(crate) fn tables(&self) -> Vec<Table> {
         let mut tables = vec![self.step_times()];
+        tables.extend(self.precision.iter().flat_map(Precision::tables));
+        tables
+    }
+
+    fn step_times(&self) -> Table {
+        let row = |it: &super::group::StepTime| {
+            vec![
+                it.model.to_owned(),
+                it.stepper.to_owned(),
+                it.part.to_owned(),
+                format!("{:.0}", it.nanoseconds.median),
+                format!("{:.0}", it.nanoseconds.min),
+                format!(
+                    "{:.0}–{:.0}",
+                    it.nanoseconds.lower_quartile, it.nanoseconds.upper_quartile
+                ),
+                format!("{:.2}", it.ratio.median),
+                format!(
+                    "{:.2}–{:.2}",
+                    it.ratio.lower_quartile, it.ratio.upper_quartile
+                ),
+            ]
+        };
+        Table {
+            title: "Time of a step".to_owned(),
+            note: format!(
+                "Steppers with a fixed step of {DT} s, {COUNT} steps a turn, of the set 5.1; ratios to CasADi's C of \
+                 the same model within each turn. `ahv`: rustc -O, thin LTO, baseline target; CasADi's C of one step: \
+                 gcc -O3 -march=native, a call a step. Noise is drawn before and not part of the time; all schemes get \
+                 the same numbers. `Rk4` and `ItoEulerMaruyama` end where CasADi's steps end."
+            ),
+            columns: vec![
+                "model",
+                "stepper",
+                "part",
+                "ns",
+                "min",
+                "quartiles",
+                "ratio",
+                "quartiles",
+            ],
+            rows: self.steps.iter().map(row).collect(),
+        }
+    }
+}
+
+impl Precision {
+    fn tables(&self) -> Vec<Table> {
+        let mut tables = Vec::new();
         let mut sets: Vec<&str> = self.work.iter().map(|it| it.set).collect();
         sets.dedup();
         for set in sets {
             for target in TARGETS {
-                let note = if tables.len() == 1 {
+                let note = if tables.is_empty() {
                     self.note()
                 } else {
                     String::new()
@@ -59,47 +108,6 @@ impl Steppers {
              widths.",
             self.references, self.rounds
         )
-    }
-
-    fn step_times(&self) -> Table {
-        let row = |it: &super::group::StepTime| {
-            vec![
-                it.model.to_owned(),
-                it.stepper.to_owned(),
-                it.part.to_owned(),
-                format!("{:.0}", it.nanoseconds.median),
-                format!("{:.0}", it.nanoseconds.min),
-                format!(
-                    "{:.0}–{:.0}",
-                    it.nanoseconds.lower_quartile, it.nanoseconds.upper_quartile
-                ),
-                format!("{:.2}", it.ratio.median),
-                format!(
-                    "{:.2}–{:.2}",
-                    it.ratio.lower_quartile, it.ratio.upper_quartile
-                ),
-            ]
-        };
-        Table {
-            title: "Time of a step".to_owned(),
-            note: format!(
-                "Steppers with a fixed step of {DT} s, {COUNT} steps a turn, of the set 5.1; ratios to CasADi's C of \
-                 the same model within each turn. `ahv`: rustc -O, thin LTO, baseline target; CasADi's C of one step: \
-                 gcc -O3 -march=native, a call a step. Noise is drawn before and not part of the time; all schemes get \
-                 the same numbers. `Rk4` and `ItoEulerMaruyama` end where CasADi's steps end."
-            ),
-            columns: vec![
-                "model",
-                "stepper",
-                "part",
-                "ns",
-                "min",
-                "quartiles",
-                "ratio",
-                "quartiles",
-            ],
-            rows: self.steps.iter().map(row).collect(),
-        }
     }
 
     fn rows(&self, set: &str, target: f64) -> Vec<Vec<String>> {

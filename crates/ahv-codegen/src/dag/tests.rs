@@ -1,59 +1,12 @@
 //! The normal form keeps values, and has the shape that the emitter relies on.
 
-use std::collections::HashMap;
-
 use super::{Call, Dag, Id, Kind, Node};
-use crate::ir::{Expr, Model};
+use crate::passes::Passes;
+use crate::testing::{
+    Draw, LEAVES, NAMES, Point, choices_of_passes, expr, model, quantity, value_of_expr,
+};
 
-const LEAVES: [&str; 6] = ["x.a", "x.b", "u.c", "p.d", "p.e", "p.f"];
-
-fn model(quantities: &str) -> Model {
-    let json = format!(
-        r#"{{"name": "m", "title": "", "equations": "", "bases": {{}}, "functions": [], "quantities": [{quantities}]}}"#
-    );
-    serde_json::from_str(&json).unwrap()
-}
-
-fn quantity(name: &str, expr: &str) -> String {
-    format!(
-        r#"{{"name": "{name}", "symbol": "", "unit": "1", "doc": "", "equation": "", "section": "", "expr": {expr}}}"#
-    )
-}
-
-fn expr(json: &str) -> Expr {
-    serde_json::from_str(json).unwrap()
-}
-
-fn leaf(name: &str, at: &HashMap<String, f64>) -> f64 {
-    at[name]
-}
-
-fn value_of_expr(expr: &Expr, at: &HashMap<String, f64>) -> f64 {
-    match expr {
-        Expr::Number(value) => *value,
-        Expr::Name(name) => leaf(name, at),
-        Expr::Apply(items) => {
-            let Expr::Name(op) = &items[0] else {
-                panic!("an operator")
-            };
-            let v: Vec<f64> = items[1..].iter().map(|e| value_of_expr(e, at)).collect();
-            match op.as_str() {
-                "+" => v.iter().sum(),
-                "*" => v.iter().product(),
-                "-" => v[0] - v[1],
-                "/" => v[0] / v[1],
-                "neg" => -v[0],
-                "pow" => v[0].powi(v[1] as i32),
-                "sin" => v[0].sin(),
-                "cos" => v[0].cos(),
-                "exp" => v[0].exp(),
-                other => panic!("{other}"),
-            }
-        }
-    }
-}
-
-fn value_of_node(dag: &Dag, id: Id, at: &HashMap<String, f64>) -> f64 {
+fn value_of_node(dag: &Dag, id: Id, at: &Point) -> f64 {
     let value = |id: &Id| value_of_node(dag, *id, at);
     match dag.node(id) {
         Node::Number(value) => *value,
@@ -65,7 +18,7 @@ fn value_of_node(dag: &Dag, id: Id, at: &HashMap<String, f64>) -> f64 {
                 Kind::Parameter => "p",
                 Kind::Argument => "t",
             };
-            leaf(&format!("{prefix}.{name}"), at)
+            at[&format!("{prefix}.{name}")]
         }
         Node::Sum(terms) => terms.iter().map(|(c, t)| c * value(t)).sum(),
         Node::Product(c, factors) => c * factors.iter().map(value).product::<f64>(),
@@ -77,76 +30,37 @@ fn value_of_node(dag: &Dag, id: Id, at: &HashMap<String, f64>) -> f64 {
     }
 }
 
-/// A small generator of numbers: the tests need no more.
-struct Draw(u64);
-
-impl Draw {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % limit
-    }
-
-    fn tree(&mut self, depth: u32) -> String {
-        if depth == 0 || self.below(6) == 0 {
-            return match self.below(4) {
-                0 => ["0", "1", "2", "0.5", "-3"][self.below(5) as usize].to_owned(),
-                _ => format!("\"{}\"", LEAVES[self.below(6) as usize]),
-            };
-        }
-        let mut part = || self.tree(depth - 1);
-        let (a, b, c) = (part(), part(), part());
-        match self.below(9) {
-            0 => format!(r#"["+", {a}, {b}, {c}]"#),
-            1 => format!(r#"["-", {a}, {b}]"#),
-            2 | 3 => format!(r#"["*", {a}, {b}]"#),
-            // A denominator that is away from zero.
-            4 => format!(r#"["/", {a}, ["+", 2, ["*", {b}, {b}]]]"#),
-            5 => format!(r#"["neg", {a}]"#),
-            6 => format!(r#"["pow", {a}, {}]"#, 2 + self.below(3)),
-            7 => format!(r#"["sin", {a}]"#),
-            _ => format!(r#"["cos", {a}]"#),
-        }
-    }
-
-    fn point(&mut self) -> HashMap<String, f64> {
-        LEAVES
-            .iter()
-            .map(|name| ((*name).to_owned(), self.below(4000) as f64 / 1000.0 - 2.0))
-            .collect()
-    }
-}
-
 #[test]
-fn the_normal_form_keeps_values() {
-    let mut draw = Draw(7);
-    let mut compared = 0;
-    for _ in 0..2000 {
-        let text = draw.tree(4);
-        let tree = expr(&text);
-        // A named quantity inside: its name must not change what the rest is worth.
-        let named = quantity("q", &draw.tree(3));
-        let mut dag = Dag::new(&model(&named)).unwrap();
-        let id = dag.build(&tree, "test").unwrap();
-        for _ in 0..3 {
-            let at = draw.point();
-            let (expected, found) = (value_of_expr(&tree, &at), value_of_node(&dag, id, &at));
-            if expected.is_finite() && expected.abs() < 1e6 {
-                compared += 1;
-                assert!(
-                    (expected - found).abs() <= 1e-9 * (1.0 + expected.abs()),
-                    "{text}: {expected} became {found} at {at:?}"
-                );
+fn the_graph_keeps_values_whatever_passes_are_taken() {
+    for passes in choices_of_passes() {
+        let mut draw = Draw(7);
+        let mut compared = 0;
+        for _ in 0..400 {
+            let (inner, text) = (draw.tree(3, &LEAVES), draw.tree(4, &NAMES));
+            let tree = expr(&text);
+            // A named quantity inside: its name must not change what the rest is worth.
+            let named = quantity("q", &inner);
+            let mut dag = Dag::new(&model(&named), &passes).unwrap();
+            let id = dag.build(&tree, "test").unwrap();
+            for _ in 0..3 {
+                let mut at = draw.point();
+                at.insert("q".to_owned(), value_of_expr(&expr(&inner), &at));
+                let (expected, found) = (value_of_expr(&tree, &at), value_of_node(&dag, id, &at));
+                if expected.is_finite() && expected.abs() < 1e6 {
+                    compared += 1;
+                    assert!(
+                        (expected - found).abs() <= 1e-9 * (1.0 + expected.abs()),
+                        "{text}: {expected} became {found} at {at:?} with {passes:?}"
+                    );
+                }
             }
         }
+        assert!(compared > 600, "only {compared} comparisons");
     }
-    assert!(compared > 3000, "only {compared} comparisons");
 }
 
 fn built(quantities: &[String], text: &str) -> (Dag, Id) {
-    let mut dag = Dag::new(&model(&quantities.join(","))).unwrap();
+    let mut dag = Dag::new(&model(&quantities.join(",")), &Passes::default()).unwrap();
     let id = dag.build(&expr(text), "test").unwrap();
     (dag, id)
 }
@@ -214,7 +128,7 @@ fn polynomials_of_states_keep_their_terms() {
 
 #[test]
 fn faults_of_an_ir_are_named() {
-    let mut dag = Dag::new(&model("")).unwrap();
+    let mut dag = Dag::new(&model(""), &Passes::default()).unwrap();
     for (text, part) in [
         (r#""nowhere""#, "unknown name `nowhere`"),
         (r#"["tanh", "x.a"]"#, "`tanh` with 1 arguments"),

@@ -9,8 +9,8 @@ use super::tree::Tex;
 use super::typeset::signed;
 use crate::ir::{Document, Expr, Function, Model, Output};
 
-/// Operation counts by model and function, such as `71 operations: 30 additions, …`.
-pub(crate) type Costs = BTreeMap<(String, String), String>;
+/// Operation counts of a model by function, such as `71 operations: 30 additions, …`.
+pub(crate) type Costs = BTreeMap<String, String>;
 
 /// Formulas longer than this are named and counted instead.
 const LONGEST_FORMULA: usize = 900;
@@ -41,7 +41,7 @@ pub(super) fn list(model: &Model, document: &Document, costs: &Costs) -> Vec<Fun
             .outputs
             .iter()
             .find_map(|output| output.unit.as_deref());
-        let cost = costs.get(&(model.name.clone(), function.name.clone()));
+        let cost = costs.get(&function.name);
         FunctionRow {
             name: function.name.clone(),
             doc: cell(&function.doc),

@@ -9,6 +9,7 @@ mod latex;
 mod lines;
 mod model_page;
 mod noise;
+mod passes_page;
 mod search;
 mod sparsity;
 mod subject;
@@ -22,33 +23,50 @@ mod typeset;
 pub(crate) use audit::audit;
 pub(crate) use functions::Costs;
 pub(crate) use index::Page;
+pub(crate) use passes_page::passes_page;
 pub(crate) use subject::Subject;
 
+use crate::effect::Effect;
+use crate::ir::Model;
 use crate::{EmitError, Tree};
 
 /// The texts of the templates, for the manifest.
-pub(crate) const TEMPLATES: [&str; 4] = [
+pub(crate) const TEMPLATES: [&str; 5] = [
     audit::TEMPLATE,
     include_str!("../../templates/docs/index.md"),
     include_str!("../../templates/docs/model.md"),
+    include_str!("../../templates/docs/passes.md"),
     include_str!("../../templates/docs/table.md"),
 ];
 
-/// The pages and pictures of one table and its models, by their path in the generated package.
+/// The page of a table, by its path in the generated package.
+pub(crate) fn emit_table(subject: &Subject<'_>) -> Tree {
+    let page = table_page::page(subject);
+    let path = format!("docs/{}-table.md", subject.table.name);
+    Tree::from([(path, tidy(&page))])
+}
+
+/// The page and the picture of a model, by their path in the generated package.
 ///
 /// # Errors
 /// [`EmitError::Mismatch`] where the IR names what it does not have.
-pub(crate) fn emit_table(subject: &Subject<'_>, costs: &Costs) -> Result<Tree, EmitError> {
-    let mut tree = Tree::new();
-    for model in &subject.document.models {
-        let page = model_page::page(subject, model, costs)?;
-        tree.insert(format!("docs/{}.md", model.name), tidy(&page));
-        let picture = sparsity::picture(model, subject.document);
-        tree.insert(format!("docs/images/{}-structure.svg", model.name), picture);
-    }
-    let page = table_page::page(subject);
-    tree.insert(format!("docs/{}-table.md", subject.table.name), tidy(&page));
-    Ok(tree)
+pub(crate) fn emit_model(
+    subject: &Subject<'_>,
+    model: &Model,
+    costs: &Costs,
+) -> Result<Tree, EmitError> {
+    let page = model_page::page(subject, model, costs)?;
+    let picture = sparsity::picture(model, subject.document);
+    Ok(Tree::from([
+        (format!("docs/{}.md", model.name), tidy(&page)),
+        (format!("docs/images/{}-structure.svg", model.name), picture),
+    ]))
+}
+
+/// The page of the passes, by its path in the generated package.
+pub(crate) fn emit_passes<'a>(models: impl Iterator<Item = (&'a Model, &'a Vec<Effect>)>) -> Tree {
+    let page = passes_page::page(models);
+    Tree::from([(format!("docs/{}", passes_page::PATH), tidy(&page))])
 }
 
 /// The first page, `docs/README.md`; `further` are pages that stand beside those of [`emit_table`].

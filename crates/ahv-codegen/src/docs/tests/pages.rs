@@ -2,7 +2,7 @@
 
 use super::super::differences::three_digits;
 use super::super::search::largest;
-use super::super::{Costs, Page, Subject, emit_index, emit_table};
+use super::super::{Costs, Page, Subject, emit_index, emit_model, emit_table};
 use super::{TABLE, document, read};
 use crate::Tree;
 use crate::evaluate::Tape;
@@ -10,16 +10,15 @@ use crate::ir::Expr;
 
 fn pages(text: &str, system: Option<&str>) -> Tree {
     let (table, document, values) = read(text, system);
-    let cost = (
-        ("small".to_owned(), "drift".to_owned()),
-        "7 operations".to_owned(),
-    );
+    let costs = Costs::from([("drift".to_owned(), "7 operations".to_owned())]);
     let subject = Subject {
         table: &table,
         document: &document,
         values: &values,
     };
-    emit_table(&subject, &Costs::from([cost])).expect("pages")
+    let mut tree = emit_table(&subject);
+    tree.extend(emit_model(&subject, &document.models[0], &costs).expect("pages"));
+    tree
 }
 
 #[test]

@@ -1,0 +1,46 @@
+//! Many flights of a stochastic model, as fast as the machine goes.
+//!
+//! Members fly [`LANES`] at a time: numbers lie member by member, a step is a loop over members around code without
+//! branches, and `pulp` runs the loop with the vector instructions that the machine has. Batches go to threads by `rayon`.
+//! Noise is a function of (seed, member, channel, step), and sums run in the order of the members: a result has the same bits
+//! whatever the threads, and a member the bits that it has alone.
+
+mod arithmetic;
+mod batch;
+mod experiment;
+mod family;
+mod feedback;
+mod scheme;
+
+use ahv_integrate::NoiseError;
+
+pub use arithmetic::Mode;
+pub use batch::Loss;
+pub use experiment::{Control, Experiment, Flown, Seen};
+pub use family::{Dcom, Family, LANES, Packed, Sdcom};
+pub use feedback::Feedback;
+pub use scheme::Scheme;
+
+/// Why members cannot be flown.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MonteCarloError {
+    /// A scheme that is not for this model's noise.
+    #[error("the scheme {scheme} does not go: {reason}")]
+    Scheme {
+        /// The scheme.
+        scheme: &'static str,
+        /// What its stepper says.
+        reason: NoiseError,
+    },
+    /// A mode that the scheme does not have.
+    #[error("the scheme {scheme} has no mode {mode}; splitting, heun and euler-maruyama have it")]
+    ModeOfScheme {
+        /// The mode.
+        mode: &'static str,
+        /// The scheme.
+        scheme: &'static str,
+    },
+    /// The mode `fma` on a processor without the instruction.
+    #[error("the mode fma asks for a processor with a fused multiply-add, which this one is without")]
+    NoFma,
+}

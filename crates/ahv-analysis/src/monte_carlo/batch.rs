@@ -1,0 +1,358 @@
+//! Members side by side, from step to step.
+
+use std::marker::PhantomData;
+
+use ahv_core::{Bounds, Real, Vector};
+use ahv_integrate::{NormalLanes, Precision, StepError};
+
+use super::arithmetic::Arithmetic;
+use super::family::{Family, LANES, Packed};
+use super::feedback::Law;
+use super::scheme::{MOST_NORMALS, Steps};
+
+/// A number of steps that none has reached.
+pub(super) const NEVER: u64 = u64::MAX;
+
+/// How a member ended before its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loss {
+    /// Number of the step that failed.
+    pub step: u64,
+    /// State that became infinite or NaN.
+    pub state: &'static str,
+}
+
+/// The normal numbers of a batch, in the order in which a step takes them.
+pub(super) enum Noise {
+    Double(Vec<Option<NormalLanes<f64, LANES>>>),
+    Single(Vec<Option<NormalLanes<f32, LANES>>>),
+}
+
+impl Noise {
+    /// Those of these members; channels that are not used have none.
+    pub(super) fn new(seed: u64, members: [u64; LANES], used: &[bool], single: bool) -> Self {
+        let numbered = || used.iter().copied().zip(0_u64..);
+        if single {
+            let streams = numbered()
+                .map(|(used, channel)| used.then(|| NormalLanes::new(seed, members, channel)));
+            Self::Single(streams.collect())
+        } else {
+            let streams = numbered()
+                .map(|(used, channel)| used.then(|| NormalLanes::new(seed, members, channel)));
+            Self::Double(streams.collect())
+        }
+    }
+
+    /// Puts the numbers of a step to their places; those that are not used stay.
+    #[inline(always)]
+    fn fill(&mut self, numbers: &mut [Packed; MOST_NORMALS], step: u64) {
+        match self {
+            Self::Double(channels) => fill(numbers, channels, step, |number| number),
+            Self::Single(channels) => fill(numbers, channels, step, f64::from),
+        }
+    }
+}
+
+#[inline(always)]
+fn fill<T: Precision>(
+    numbers: &mut [Packed; MOST_NORMALS],
+    channels: &mut [Option<NormalLanes<T, LANES>>],
+    step: u64,
+    widened: impl Fn(T) -> f64,
+) {
+    for (place, channel) in numbers.iter_mut().zip(channels) {
+        if let Some(channel) = channel {
+            *place = channel.normal(step).map(&widened);
+        }
+    }
+}
+
+/// [`LANES`] members in flight.
+pub(super) struct Batch<F: Family, S> {
+    pub(super) model: F::Model<Packed>,
+    pub(super) scheme: S,
+    pub(super) law: Option<Law<F>>,
+    pub(super) noise: Noise,
+    pub(super) dt: f64,
+    /// Step that comes next.
+    pub(super) step: u64,
+    pub(super) x: F::State<Packed>,
+    pub(super) u: F::Input<Packed>,
+    /// Where the members started: a lane flies on from there when its member is lost.
+    start: F::State<Packed>,
+    pub(super) lost: [Option<Loss>; LANES],
+    /// Last states of those that are lost.
+    last: F::State<Packed>,
+    /// The box of validity, and the limits if there are any.
+    pub(super) watches: Vec<Watch<F>>,
+}
+
+/// Intervals of the states, and when each was left first.
+pub(super) struct Watch<F: Family> {
+    /// Ends of the intervals; of one that was left, infinite.
+    min: F::State<Packed>,
+    max: F::State<Packed>,
+    /// Steps after which the state first was outside.
+    pub(super) left: F::State<[u64; LANES]>,
+}
+
+impl<F: Family> Watch<F> {
+    pub(super) fn new(bounds: F::State<Bounds>) -> Self {
+        Self {
+            min: F::map_state(&bounds, |bounds| Packed::splat(bounds.min)),
+            max: F::map_state(&bounds, |bounds| Packed::splat(bounds.max)),
+            left: F::State::splat([NEVER; LANES]),
+        }
+    }
+
+    /// Looks at the states after `step` steps.
+    #[inline(always)]
+    fn look(&mut self, x: &F::State<Packed>, step: u64) {
+        let mut any = false;
+        for lane in 0..LANES {
+            let mut outside = false;
+            F::zip_state(x, &self.min, |x, min| outside |= x.0[lane] < min.0[lane]);
+            F::zip_state(x, &self.max, |x, max| outside |= x.0[lane] > max.0[lane]);
+            any |= outside;
+        }
+        if any {
+            self.note(x, step);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn note(&mut self, x: &F::State<Packed>, step: u64) {
+        let mut outside = F::State::splat([false; LANES]);
+        let mut mark = |beyond: fn(&f64, &f64) -> bool, ends: &F::State<Packed>| {
+            let mut here = F::State::splat([false; LANES]);
+            let mut flags = F::map_state(ends, |ends| *ends);
+            F::update_state(&mut flags, *x, |ends, x| {
+                for (end, x) in ends.0.iter_mut().zip(&x.0) {
+                    *end = f64::from(u8::from(beyond(x, end)));
+                }
+            });
+            F::update_state(&mut here, flags, |here, flags| {
+                for (here, flag) in here.iter_mut().zip(&flags.0) {
+                    *here = *flag != 0.0;
+                }
+            });
+            F::update_state(&mut outside, here, |outside, here| {
+                for (outside, here) in outside.iter_mut().zip(here) {
+                    *outside |= here;
+                }
+            });
+        };
+        mark(f64::lt, &self.min);
+        mark(f64::gt, &self.max);
+        F::update_state(&mut self.left, outside, |left, outside| {
+            for (left, outside) in left.iter_mut().zip(outside) {
+                if outside {
+                    *left = step;
+                }
+            }
+        });
+        let open = |end: f64| {
+            move |ends: &mut Packed, outside: [bool; LANES]| {
+                for (place, outside) in ends.0.iter_mut().zip(outside) {
+                    if outside {
+                        *place = end;
+                    }
+                }
+            }
+        };
+        F::update_state(&mut self.min, outside, open(f64::NEG_INFINITY));
+        F::update_state(&mut self.max, outside, open(f64::INFINITY));
+    }
+
+    /// Looks at this lane no more.
+    fn close(&mut self, lane: usize) {
+        let close = |ends: &mut Packed, end| ends.0[lane] = end;
+        F::update_state(&mut self.min, F::State::splat(f64::NEG_INFINITY), close);
+        F::update_state(&mut self.max, F::State::splat(f64::INFINITY), close);
+    }
+}
+
+/// Steps a batch with the instructions of the machine that it runs on.
+pub(super) struct Advance<'b, F: Family, S, A> {
+    pub(super) batch: &'b mut Batch<F, S>,
+    /// Step to stop before.
+    pub(super) until: u64,
+    /// Fast, and for what is stepped again.
+    pub(super) arithmetic: PhantomData<A>,
+}
+
+/// Makes a member's model of the batch's.
+pub(super) trait Member<F: Family>: Copy {
+    type Scalar: Arithmetic;
+    type Model: ahv_core::StochasticModel<
+            Scalar = Self::Scalar,
+            State = F::State<Self::Scalar>,
+            Input = F::Input<Self::Scalar>,
+            Noise = F::Noise<Self::Scalar>,
+        >;
+
+    fn model(model: &F::Model<Packed>, lane: usize) -> Self::Model;
+}
+
+impl<F, S, A, E> pulp::WithSimd for Advance<'_, F, S, (A, E)>
+where
+    F: Family,
+    A: Member<F>,
+    E: Member<F>,
+    S: Steps<F, A::Model> + Steps<F, E::Model>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: pulp::Simd>(self, _: V) {
+        let batch = self.batch;
+        let dt = batch.dt;
+        // Known to hold from here on, it costs nothing in the loop.
+        if !(dt > 0.0 && dt.is_finite()) {
+            return;
+        }
+        // Local copies, of which the compiler knows that no store to a state changes them.
+        let (model, scheme, law) = (batch.model, batch.scheme, batch.law);
+        let (mut x, mut u, mut normals) = (batch.x, batch.u, [Packed::ZERO; MOST_NORMALS]);
+        let mut next = x;
+        while batch.step < self.until {
+            batch.noise.fill(&mut normals, batch.step);
+            if let Some(law) = &law {
+                law.apply(&x, &mut u);
+            }
+            // A loop over members around code without branches: it becomes vector instructions.
+            for lane in 0..LANES {
+                let mut member = F::map_state(&x, |numbers| A::Scalar::of(numbers.0[lane]));
+                // A scalar without branches has no failure.
+                let _ = step::<F, S, A>((&model, &scheme), dt, &mut member, &u, &normals, lane);
+                F::update_state(&mut next, member, |place, value| {
+                    place.0[lane] = value.value();
+                });
+            }
+            let mut sound = true;
+            for lane in 0..LANES {
+                let mut sum = 0.0;
+                F::map_state(&next, |value| sum += value.0[lane] * 0.0);
+                sound &= sum == 0.0;
+            }
+            if !sound {
+                batch.repair::<E>(&x, &u, &normals, &mut next);
+            }
+            x = next;
+            batch.step += 1;
+            for watch in &mut batch.watches {
+                watch.look(&x, batch.step);
+            }
+        }
+        (batch.x, batch.u) = (x, u);
+    }
+}
+
+/// Steps one member.
+#[inline(always)]
+fn step<F, S, A>(
+    (model, scheme): (&F::Model<Packed>, &S),
+    dt: f64,
+    x: &mut F::State<A::Scalar>,
+    u: &F::Input<Packed>,
+    normals: &[Packed; MOST_NORMALS],
+    lane: usize,
+) -> Result<(), StepError<A::Scalar>>
+where
+    F: Family,
+    A: Member<F>,
+    S: Steps<F, A::Model>,
+{
+    let pick = |numbers: &Packed| A::Scalar::of(numbers.0[lane]);
+    let (model, u) = (A::model(model, lane), F::map_input(u, pick));
+    scheme.step(dt, pick, &model, x, &u, |channel| normals[channel].0[lane])
+}
+
+/// What a batch starts from.
+pub(super) struct Start<F: Family> {
+    pub(super) model: F::Model<Packed>,
+    pub(super) x: F::State<Packed>,
+    pub(super) u: F::Input<Packed>,
+}
+
+impl<F: Family, S> Batch<F, S> {
+    /// The batch before its first step.
+    pub(super) fn new(start: Start<F>, scheme: S, dt: f64, noise: Noise, law: Option<Law<F>>, watches: Vec<Watch<F>>) -> Self {
+        Self {
+            model: start.model,
+            scheme,
+            law,
+            noise,
+            dt,
+            step: 0,
+            x: start.x,
+            u: start.u,
+            start: start.x,
+            lost: [None; LANES],
+            last: start.x,
+            watches,
+        }
+    }
+
+    /// The state of a member, and whether it still flies; else it is the last one that was finite.
+    pub(super) fn member(&self, lane: usize) -> (F::State<f64>, bool) {
+        let flies = self.lost.get(lane).is_some_and(Option::is_none);
+        let x = if flies { self.x } else { self.last };
+        (F::map_state(&x, |numbers| numbers.0[lane]), flies)
+    }
+
+    /// Steps members again whose result is not finite: exactly, they may have one. Those that have none are lost.
+    #[cold]
+    #[inline(never)]
+    fn repair<E>(
+        &mut self,
+        x: &F::State<Packed>,
+        u: &F::Input<Packed>,
+        normals: &[Packed; MOST_NORMALS],
+        next: &mut F::State<Packed>,
+    ) where
+        E: Member<F>,
+        S: Steps<F, E::Model>,
+    {
+        for lane in 0..LANES {
+            let mut finite = true;
+            F::map_state(next, |value| finite &= value.0[lane].is_finite());
+            if finite {
+                continue;
+            }
+            let mut member = F::map_state(x, |numbers| E::Scalar::of(numbers.0[lane]));
+            let kind = (&self.model, &self.scheme);
+            match step::<F, S, E>(kind, self.dt, &mut member, u, normals, lane) {
+                Ok(()) => F::update_state(next, member, |place, value| {
+                    place.0[lane] = value.value();
+                }),
+                Err(error) => {
+                    self.lose(lane, x, error);
+                    // The lane flies on from where it is safe, unseen.
+                    F::update_state(next, self.start, |place, value| {
+                        place.0[lane] = value.0[lane];
+                    });
+                }
+            }
+        }
+    }
+
+    fn lose<R: Real>(&mut self, lane: usize, x: &F::State<Packed>, error: StepError<R>) {
+        let Some(lost @ None) = self.lost.get_mut(lane) else {
+            return;
+        };
+        let state = match error {
+            StepError::NonFinite { name, .. } => name,
+            StepError::StepSize { .. } => "",
+        };
+        *lost = Some(Loss {
+            step: self.step,
+            state,
+        });
+        self.watches.iter_mut().for_each(|watch| watch.close(lane));
+        F::update_state(&mut self.last, *x, |place, value| {
+            place.0[lane] = value.0[lane];
+        });
+    }
+}

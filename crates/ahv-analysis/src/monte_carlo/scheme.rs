@@ -1,0 +1,363 @@
+//! The steppers of `ahv-integrate`, each as one way to step a member.
+
+use ahv_core::{ColouredNoise, DifferentiableNoise, ItoCorrected, Real, StochasticModel, Vector};
+use ahv_integrate::{
+    CommutativeChannels, AdditiveChannels, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1,
+    ItoStrangSplitting, NoiseError, StepError, StratonovichHeun, WeakIncrements, WienerIntegrals,
+};
+
+use super::arithmetic::Arithmetic;
+use super::family::{Family, Packed};
+
+/// Normal numbers that a step of a member takes at most.
+pub(super) const MOST_NORMALS: usize = 16;
+
+/// By which stepper of `ahv-integrate` members are flown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scheme {
+    /// `ItoStrangSplitting` with `ItoHeun`: coloured noise exactly; for models that have it.
+    Splitting,
+    /// `ItoHeun`.
+    Heun,
+    /// `ItoEulerMaruyama`.
+    EulerMaruyama,
+    /// `StratonovichHeun`: reads the equations in the Stratonovich sense.
+    StratonovichHeun,
+    /// `ItoMilstein`, if the channels that are on commute.
+    Milstein,
+    /// `ItoSra1`, if the channels that are on are additive.
+    Sra1,
+    /// `ItoDri1`.
+    Dri1,
+}
+
+impl Scheme {
+    /// All schemes.
+    pub const ALL: [Self; 7] = [
+        Self::Splitting,
+        Self::Heun,
+        Self::EulerMaruyama,
+        Self::StratonovichHeun,
+        Self::Milstein,
+        Self::Sra1,
+        Self::Dri1,
+    ];
+
+    /// Its name on command lines and in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Splitting => "splitting",
+            Self::Heun => "heun",
+            Self::EulerMaruyama => "euler-maruyama",
+            Self::StratonovichHeun => "stratonovich-heun",
+            Self::Milstein => "milstein",
+            Self::Sra1 => "sra1",
+            Self::Dri1 => "dri1",
+        }
+    }
+}
+
+/// A scheme, made ready for the members of a batch.
+pub(super) trait Stepping<F: Family>: Sized + Copy + Send + Sync {
+    /// The scheme for `model` at (x, u), with steps of `dt`, in s.
+    fn new(
+        model: &F::Model<Packed>,
+        x: &F::State<Packed>,
+        u: &F::Input<Packed>,
+        dt: f64,
+    ) -> Result<Self, NoiseError>;
+
+    /// Normal numbers that a step takes beside one for each Wiener process.
+    const EXTRA: usize;
+
+    /// Whether a step uses the number of the Wiener process that moves `column`.
+    fn uses(model: &F::Model<Packed>, column: &F::State<Packed>) -> bool {
+        let _ = (model, column);
+        true
+    }
+}
+
+/// A scheme that steps a model.
+pub(super) trait Steps<F, M>: Stepping<F>
+where
+    F: Family,
+    M: StochasticModel<Scalar: Arithmetic>,
+{
+    /// Steps one member over `dt`, in s; `pick` takes its number from those of the batch, `normal` gives its normal numbers.
+    fn step(
+        &self,
+        dt: f64,
+        pick: impl Fn(&Packed) -> M::Scalar + Copy,
+        model: &M,
+        x: &mut M::State,
+        u: &M::Input,
+        normal: impl Fn(usize) -> f64 + Copy,
+    ) -> Result<(), StepError<M::Scalar>>;
+}
+
+/// Wiener increments from normal numbers, of which the first belongs to the channel number `first`.
+#[inline(always)]
+fn increments<M: StochasticModel<Scalar: Arithmetic>>(
+    root: f64,
+    normal: impl Fn(usize) -> f64,
+) -> M::Noise {
+    M::Noise::from_fn(|channel| M::Scalar::of(root * normal(channel)))
+}
+
+macro_rules! plain {
+    ($($name:ident, $stepper:ident, $bound:ident;)+) => {$(
+        #[derive(Clone, Copy)]
+        pub(super) struct $name {
+            root: f64,
+        }
+
+        impl<F: Family> Stepping<F> for $name {
+            fn new(
+                _: &F::Model<Packed>,
+                _: &F::State<Packed>,
+                _: &F::Input<Packed>,
+                dt: f64,
+            ) -> Result<Self, NoiseError> {
+                Ok(Self { root: dt.sqrt() })
+            }
+
+            const EXTRA: usize = 0;
+        }
+
+        impl<F: Family, M: $bound<Scalar: Arithmetic>> Steps<F, M> for $name {
+            #[inline(always)]
+            fn step(
+                &self,
+                dt: f64,
+                _: impl Fn(&Packed) -> M::Scalar + Copy,
+                model: &M,
+                x: &mut M::State,
+                u: &M::Input,
+                normal: impl Fn(usize) -> f64 + Copy,
+            ) -> Result<(), StepError<M::Scalar>> {
+                let dw = increments::<M>(self.root, normal);
+                $stepper::new(dt).step(model, x, u, &dw)
+            }
+        }
+    )+};
+}
+
+plain! {
+    EulerMaruyama, ItoEulerMaruyama, StochasticModel;
+    Heun, ItoHeun, ItoCorrected;
+    InStratonovichSense, StratonovichHeun, StochasticModel;
+}
+
+/// Coloured states of the models that have coloured noise.
+const COLOURED: usize = 3;
+
+/// The exact transitions of the coloured noise around a step of Heun's.
+#[derive(Clone, Copy)]
+pub(super) struct Splitting {
+    splitting: ItoStrangSplitting<Packed, COLOURED>,
+    root: f64,
+}
+
+impl<F: Family> Stepping<F> for Splitting
+where
+    F::Model<Packed>: ColouredNoise,
+{
+    fn new(
+        model: &F::Model<Packed>,
+        x: &F::State<Packed>,
+        u: &F::Input<Packed>,
+        dt: f64,
+    ) -> Result<Self, NoiseError> {
+        Ok(Self {
+            splitting: ItoStrangSplitting::new(model, x, u, dt)?,
+            root: dt.sqrt(),
+        })
+    }
+
+    const EXTRA: usize = 2 * COLOURED;
+
+    fn uses(model: &F::Model<Packed>, column: &F::State<Packed>) -> bool {
+        (0..F::State::<Packed>::LEN).any(|state| {
+            let moves = column.get(state).is_some_and(is_on);
+            moves && model.decay(state).is_none()
+        })
+    }
+}
+
+impl<F: Family, M: ColouredNoise<Scalar: Arithmetic> + ItoCorrected> Steps<F, M> for Splitting
+where
+    F::Model<Packed>: ColouredNoise,
+{
+    #[inline(always)]
+    fn step(
+        &self,
+        dt: f64,
+        pick: impl Fn(&Packed) -> M::Scalar + Copy,
+        model: &M,
+        x: &mut M::State,
+        u: &M::Input,
+        normal: impl Fn(usize) -> f64 + Copy,
+    ) -> Result<(), StepError<M::Scalar>> {
+        let dw = increments::<M>(self.root, normal);
+        let mut normals = [[M::Scalar::ZERO; COLOURED]; 2];
+        for (half, normals) in normals.iter_mut().enumerate() {
+            for (index, place) in normals.iter_mut().enumerate() {
+                *place = M::Scalar::of(normal(M::Noise::LEN + half * COLOURED + index));
+            }
+        }
+        let splitting = self.splitting.map_ref(pick).with_step(dt);
+        splitting.step_heun(model, x, u, &dw, &normals)
+    }
+}
+
+/// Whether a number is not 0 for every member.
+fn is_on(value: Packed) -> bool {
+    !value.all(|value| value == 0.0)
+}
+
+/// Channels that move the state, by their number.
+fn channels<M>(model: &M, x: &M::State, u: &M::Input) -> [bool; MOST_NORMALS]
+where
+    M: StochasticModel<Scalar = Packed>,
+{
+    let mut on = [false; MOST_NORMALS];
+    for (channel, on) in on.iter_mut().enumerate().take(M::Noise::LEN) {
+        let unit = M::Noise::from_fn(|index| Packed::splat(f64::from(u8::from(index == channel))));
+        *on = model.noise_increment(x, u, &unit).find(is_on).is_some();
+    }
+    on
+}
+
+/// Whether the channel of this name is on.
+fn is_active<M: StochasticModel>(on: &[bool; MOST_NORMALS], name: &str) -> bool {
+    let names = M::Noise::NAMES.iter().zip(on);
+    names.into_iter().any(|(own, &on)| on && *own == name)
+}
+
+macro_rules! restricted {
+    ($($name:ident, $channels:ident, $bound:ident;)+) => {$(
+        #[derive(Clone, Copy)]
+        pub(super) struct $name {
+            root: f64,
+            on: [bool; MOST_NORMALS],
+        }
+
+        impl $name {
+            fn made<M: $bound<Scalar = Packed>>(
+                model: &M,
+                x: &M::State,
+                u: &M::Input,
+                dt: f64,
+            ) -> Result<Self, NoiseError> {
+                let on = channels(model, x, u);
+                $channels::new(model, |name| is_active::<M>(&on, name))?;
+                Ok(Self { root: dt.sqrt(), on })
+            }
+
+            /// The channels of a member's model; `made` has refused those that do not go.
+            fn channels<'m, M: $bound>(
+                &self,
+                model: &'m M,
+                dt: f64,
+            ) -> Result<$channels<'m, M>, StepError<M::Scalar>> {
+                $channels::new(model, |name| is_active::<M>(&self.on, name))
+                    .map_err(|_| StepError::StepSize { dt })
+            }
+        }
+    )+};
+}
+
+restricted! {
+    Milstein, CommutativeChannels, DifferentiableNoise;
+    Sra1, AdditiveChannels, StochasticModel;
+}
+
+impl<F: Family> Stepping<F> for Milstein {
+    fn new(
+        model: &F::Model<Packed>,
+        x: &F::State<Packed>,
+        u: &F::Input<Packed>,
+        dt: f64,
+    ) -> Result<Self, NoiseError> {
+        Self::made(model, x, u, dt)
+    }
+
+    const EXTRA: usize = 0;
+}
+
+impl<F: Family, M: DifferentiableNoise<Scalar: Arithmetic>> Steps<F, M> for Milstein {
+    fn step(
+        &self,
+        dt: f64,
+        _: impl Fn(&Packed) -> M::Scalar + Copy,
+        model: &M,
+        x: &mut M::State,
+        u: &M::Input,
+        normal: impl Fn(usize) -> f64 + Copy,
+    ) -> Result<(), StepError<M::Scalar>> {
+        let dw = increments::<M>(self.root, normal);
+        ItoMilstein::new(dt).step(&self.channels(model, dt)?, x, u, &dw)
+    }
+}
+
+impl<F: Family> Stepping<F> for Sra1 {
+    fn new(
+        model: &F::Model<Packed>,
+        x: &F::State<Packed>,
+        u: &F::Input<Packed>,
+        dt: f64,
+    ) -> Result<Self, NoiseError> {
+        Self::made(model, x, u, dt)
+    }
+
+    const EXTRA: usize = <F::Noise<()> as Vector<()>>::LEN;
+}
+
+impl<F: Family, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Sra1 {
+    fn step(
+        &self,
+        dt: f64,
+        _: impl Fn(&Packed) -> M::Scalar + Copy,
+        model: &M,
+        x: &mut M::State,
+        u: &M::Input,
+        normal: impl Fn(usize) -> f64 + Copy,
+    ) -> Result<(), StepError<M::Scalar>> {
+        let first = increments::<M>(1.0, normal);
+        let second = increments::<M>(1.0, |channel| normal(M::Noise::LEN + channel));
+        let integrals = WienerIntegrals::from_normals(dt, first, second);
+        ItoSra1::new(dt).step(&self.channels(model, dt)?, x, u, &integrals)
+    }
+}
+
+#[derive(Clone, Copy)]
+pub(super) struct Dri1;
+
+impl<F: Family> Stepping<F> for Dri1 {
+    fn new(
+        _: &F::Model<Packed>,
+        _: &F::State<Packed>,
+        _: &F::Input<Packed>,
+        _: f64,
+    ) -> Result<Self, NoiseError> {
+        Ok(Self)
+    }
+
+    const EXTRA: usize = 0;
+}
+
+impl<F: Family, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Dri1 {
+    fn step(
+        &self,
+        dt: f64,
+        _: impl Fn(&Packed) -> M::Scalar + Copy,
+        model: &M,
+        x: &mut M::State,
+        u: &M::Input,
+        normal: impl Fn(usize) -> f64 + Copy,
+    ) -> Result<(), StepError<M::Scalar>> {
+        let increments = WeakIncrements::from_normals(dt, normal);
+        ItoDri1::new(dt).step(model, x, u, &increments)
+    }
+}

@@ -1,0 +1,103 @@
+//! A scalar without branches.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::{Lane, Real};
+
+/// A number whose elementary functions have no branches, so that a loop over members becomes vector instructions.
+///
+/// Sine and cosine of an angle above π/4 and the exponential of a number that gives no normal one are NaN; elsewhere results have
+/// the bits of `T`. Every number counts as finite: who steps in a loop looks at the results, and computes again with
+/// `T` what is not finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct Straight<T>(pub T);
+
+macro_rules! operator {
+    ($($name:ident, $method:ident;)+) => {$(
+        impl<T: $name<Output = T>> $name for Straight<T> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0))
+            }
+        }
+    )+};
+}
+
+operator! {
+    Add, add;
+    Sub, sub;
+    Mul, mul;
+    Div, div;
+}
+
+impl<T: Neg<Output = T>> Neg for Straight<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl<T: Lane> Real for Straight<T> {
+    const ZERO: Self = Self(T::ZERO);
+    const ONE: Self = Self(T::ONE);
+    const TWO: Self = Self(T::TWO);
+    const HALF: Self = Self(T::HALF);
+
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self(T::from_f64(value))
+    }
+
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.0.to_f64()
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let angle = if self.0.is_small_angle() { self.0 } else { T::NAN };
+        let (sin, cos) = angle.small_sin_cos();
+        (Self(sin), Self(cos))
+    }
+
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        let exponent = if self.0.is_moderate_exponent() { self.0 } else { T::NAN };
+        Self(exponent.moderate_exp())
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+
+    #[inline(always)]
+    fn recip(self) -> Self {
+        Self(self.0.recip())
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+
+    #[inline(always)]
+    fn is_finite(self) -> bool {
+        true
+    }
+}
