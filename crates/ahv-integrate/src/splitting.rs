@@ -133,9 +133,11 @@ impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
         dw: &M::Noise,
         normals: &[[R; N]; 2],
     ) -> Result<(), StepError<R>> {
-        self.step(model, x, normals, |others, x, dt| {
-            ItoHeun::new(dt).step(others, x, u, dw)
-        })
+        // As `step`, without its closure: one that holds a model is too large to be inlined.
+        let [first, second] = normals;
+        let mut next = self.coloured_half(model, *x, first);
+        ItoHeun::new(self.dt).step(&HeldColoured { model }, &mut next, u, dw)?;
+        accept(x, self.coloured_half(model, next, second))
     }
 
     #[inline(always)]

@@ -239,7 +239,6 @@ macro_rules! restricted {
     ($($name:ident, $channels:ident, $bound:ident;)+) => {$(
         #[derive(Clone, Copy)]
         pub(super) struct $name {
-            root: f64,
             on: [bool; MOST_NORMALS],
         }
 
@@ -248,11 +247,10 @@ macro_rules! restricted {
                 model: &M,
                 x: &M::State,
                 u: &M::Input,
-                dt: f64,
             ) -> Result<Self, NoiseError> {
                 let on = channels(model, x, u);
                 $channels::new(model, |name| is_active::<M>(&on, name))?;
-                Ok(Self { root: dt.sqrt(), on })
+                Ok(Self { on })
             }
 
             /// The channels of a member's model; `made` has refused those that do not go.
@@ -278,9 +276,9 @@ impl<F: Family> Stepping<F> for Milstein {
         model: &F::Model<Packed>,
         x: &F::State<Packed>,
         u: &F::Input<Packed>,
-        dt: f64,
+        _: f64,
     ) -> Result<Self, NoiseError> {
-        Self::made(model, x, u, dt)
+        Self::made(model, x, u)
     }
 
     const EXTRA: usize = 0;
@@ -296,7 +294,7 @@ impl<F: Family, M: DifferentiableNoise<Scalar: Arithmetic>> Steps<F, M> for Mils
         u: &M::Input,
         normal: impl Fn(usize) -> f64 + Copy,
     ) -> Result<(), StepError<M::Scalar>> {
-        let dw = increments::<M>(self.root, normal);
+        let dw = increments::<M>(dt.sqrt(), normal);
         ItoMilstein::new(dt).step(&self.channels(model, dt)?, x, u, &dw)
     }
 }
@@ -306,9 +304,9 @@ impl<F: Family> Stepping<F> for Sra1 {
         model: &F::Model<Packed>,
         x: &F::State<Packed>,
         u: &F::Input<Packed>,
-        dt: f64,
+        _: f64,
     ) -> Result<Self, NoiseError> {
-        Self::made(model, x, u, dt)
+        Self::made(model, x, u)
     }
 
     const EXTRA: usize = <F::Noise<()> as Vector<()>>::LEN;
