@@ -1,7 +1,9 @@
 """Command line: ``python -m ahv_oracle vectors --table T --model M --points N --seed S --out F``.
 
 ``python -m ahv_oracle flights --table T --out F`` writes SciPy's flights, ``python -m ahv_oracle riccati --out F`` its
-solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`` its trims, poles and zeros.
+solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`` its trims, poles and zeros,
+``python -m ahv_oracle elementary --out F`` values of sine, cosine and exponential, ``python -m ahv_oracle normals
+--out F`` keyed normal numbers.
 ``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
 """
 
@@ -9,13 +11,22 @@ import argparse
 import sys
 from pathlib import Path
 
+from .elementary import elementary_lines
 from .evaluate import Oracle
 from .flights import flight_lines
 from .model import MODELS
+from .normals import normal_lines
 from .riccati import riccati_lines
 from .roots import root_lines
 from .table import TableError
 from .vectors import write_lines, write_vectors
+
+ALONE = {
+    "riccati": (riccati_lines, "solutions of Riccati equations"),
+    "elementary": (elementary_lines, "values of sine, cosine and exponential"),
+    "normals": (normal_lines, "keyed normal numbers"),
+}
+"""What takes no table: its lines, and what they are."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -32,14 +43,16 @@ def main(arguments: list[str] | None = None) -> int:
     flights = commands.add_parser("flights", help="write reference flights")
     flights.add_argument("--table", type=Path, required=True, help="coefficient table (TOML)")
     flights.add_argument("--out", type=Path, required=True, help="file to write")
-    riccati = commands.add_parser("riccati", help="write reference solutions of Riccati equations")
-    riccati.add_argument("--out", type=Path, required=True, help="file to write")
+    for name, (_, what) in ALONE.items():
+        alone = commands.add_parser(name, help=f"write reference {what}")
+        alone.add_argument("--out", type=Path, required=True, help="file to write")
     roots = commands.add_parser("roots", help="write reference trims, poles and zeros")
     roots.add_argument("--tables", type=Path, required=True, help="folder of the coefficient tables")
     roots.add_argument("--out", type=Path, required=True, help="file to write")
     options = parser.parse_args(arguments)
-    if options.command == "riccati":
-        write_lines(riccati_lines(), options.out)
+    if options.command in ALONE:
+        lines, _ = ALONE[options.command]
+        write_lines(lines(), options.out)
         return 0
     if options.command == "roots":
         write_lines(root_lines(options.tables), options.out)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from ahv_oracle import MODELS, Oracle, sample, write_vectors
+from ahv_oracle.elementary import elementary_lines
 from ahv_oracle.flights import SETS, SOLVERS, START, Flight, heading_lines
+from ahv_oracle.normals import chacha8, normal_lines
 from ahv_oracle.vectors import heading, vector_row
 
 ROOT = Path(__file__).parents[2]
@@ -59,3 +62,16 @@ def test_checked_in_flights_are_up_to_date(parameters: str) -> None:
     assert list(rows) == ["start", *SOLVERS]
     assert rows["start"] == [START.get(name, 0.0) for name in flight.states], "run `cargo xtask vectors`"
     assert rows["DOP853"] == pytest.approx(flight.end("DOP853"), rel=1e-10), "run `cargo xtask vectors`"
+
+
+@pytest.mark.parametrize(("name", "lines"), [("elementary", elementary_lines), ("normals", normal_lines)])
+def test_checked_in_numbers_are_up_to_date(name: str, lines: Callable[[], Iterator[str]]) -> None:
+    path = ROOT / f"tests/vectors/{name}.txt"
+    assert path.read_text(encoding="utf-8").splitlines() == list(lines()), "run `cargo xtask vectors`"
+
+
+def test_chacha8_has_the_published_stream() -> None:
+    """Key and nonce zero: TC1 of draft-strombergson-chacha-test-vectors, 8 rounds, 256 bits."""
+    words = chacha8([0, 0, 0], 0)
+    stream = b"".join(word.to_bytes(4, "little") for word in words)
+    assert stream[:16].hex() == "3e00ef2f895f40d67f5bb8e81f09a5a1"

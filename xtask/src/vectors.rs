@@ -16,8 +16,8 @@ const MODELS: [(&str, &str); 7] = [
     ("flexible_mode", "flexible_mode"),
 ];
 
-/// Writes the oracle's points and values and CasADi's values at the same points, then SciPy's flights, Riccati solutions, poles and
-/// zeros.
+/// Writes the oracle's points and values and CasADi's values at the same points, then SciPy's flights, Riccati
+/// solutions, poles and zeros, and mpmath's elementary functions and normal numbers.
 pub(crate) fn run() -> Result<(), String> {
     let python = python::development()?;
     for (model, table) in MODELS {
@@ -47,16 +47,13 @@ pub(crate) fn run() -> Result<(), String> {
     scipy.args(["--out", "../tests/vectors/dcom.flights.txt"]);
     shell::run(scipy.current_dir(shell::root().join("generator")))?;
     println!("tests/vectors/dcom.flights.txt");
-    let mut riccati = shell::program(&python);
-    riccati.args([
-        "-m",
-        "ahv_oracle",
-        "riccati",
-        "--out",
-        "../tests/vectors/riccati.txt",
-    ]);
-    shell::run(riccati.current_dir(shell::root().join("generator")))?;
-    println!("tests/vectors/riccati.txt");
+    for name in ["riccati", "elementary", "normals"] {
+        let mut alone = shell::program(&python);
+        let out = format!("tests/vectors/{name}.txt");
+        alone.args(["-m", "ahv_oracle", name, "--out", &format!("../{out}")]);
+        shell::run(alone.current_dir(shell::root().join("generator")))?;
+        println!("{out}");
+    }
     let mut roots = shell::program(&python);
     roots.args([
         "-m",

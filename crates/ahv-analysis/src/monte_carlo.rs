@@ -10,7 +10,10 @@ mod batch;
 mod experiment;
 mod family;
 mod feedback;
+mod outcome;
+mod rare;
 mod scheme;
+mod spread;
 
 use ahv_integrate::NoiseError;
 
@@ -19,7 +22,10 @@ pub use batch::Loss;
 pub use experiment::{Control, Experiment, Flown, Seen};
 pub use family::{Dcom, Family, LANES, Packed, Sdcom};
 pub use feedback::Feedback;
+pub use outcome::{Outcome, Snapshot, StateSpread};
+pub use rare::{FEWEST_REPETITIONS, Level, RareError, RareEstimate, RareEvent};
 pub use scheme::Scheme;
+pub use spread::{Bin, QUANTILES};
 
 /// Why members cannot be flown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -43,4 +49,13 @@ pub enum MonteCarloError {
     /// The mode `fma` on a processor without the instruction.
     #[error("the mode fma asks for a processor with a fused multiply-add, which this one is without")]
     NoFma,
+    /// Stopped before a member had flown.
+    #[error("stopped before the first members had flown")]
+    Stopped,
+    /// A rare event that cannot be looked for.
+    #[error(transparent)]
+    Rare(#[from] RareError),
+    /// Threads that cannot be started.
+    #[error("cannot start the threads: {0}")]
+    Threads(String),
 }

@@ -42,6 +42,26 @@ impl Estimate {
         }
     }
 
+    /// The probability of what was seen `count` times in `of` trials, with its interval of 95 % (Wilson 1927).
+    pub fn of_share(count: u64, of: u64) -> Self {
+        let (n, share) = (of as f64, count as f64 / of as f64);
+        let z_2 = Z_95 * Z_95;
+        let middle = (share + z_2 / (2.0 * n)) / (1.0 + z_2 / n);
+        let half = Z_95 / (1.0 + z_2 / n)
+            * (share * (1.0 - share) / n + z_2 / (4.0 * n * n)).sqrt();
+        // Rounding must not push the ends past what they are for none and for all.
+        Self {
+            value: share,
+            low: if count == 0 { 0.0 } else { middle - half },
+            high: if count == of { 1.0 } else { middle + half },
+        }
+    }
+
+    /// Whether all three numbers are finite.
+    pub const fn is_finite(&self) -> bool {
+        self.value.is_finite() && self.low.is_finite() && self.high.is_finite()
+    }
+
     /// Median of `sample` with its 5 % and 95 % points; `None` of an empty sample.
     pub fn of_distribution(sample: &[f64]) -> Option<Self> {
         let mut sorted = sample.to_vec();

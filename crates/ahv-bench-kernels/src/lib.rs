@@ -5,6 +5,8 @@
     reason = "candidates of the benchmark are called through CasADi's C interface, which takes raw pointers"
 )]
 
+pub mod lanes;
+
 use core::ffi::c_int;
 
 use ahv_core::Vector;
@@ -92,10 +94,10 @@ pub unsafe extern "C" fn dcom_drift(
     0
 }
 
-/// Drift of DCOM and both Jacobians.
+/// Drift of DCOM, and the entries of both Jacobians that are not 0 by structure, in the order of the patterns.
 ///
 /// # Safety
-/// `arg` points to state, input and what [`dcom_prepare`] gave; `res` to the drift and the Jacobians.
+/// `arg` points to state, input and what [`dcom_prepare`] gave; `res` to the drift and the entries.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn dcom_drift_jacobians(
     arg: *const *const f64,
@@ -110,10 +112,10 @@ pub unsafe extern "C" fn dcom_drift_jacobians(
         u: &dcom::Input<f64>,
         p: &dcom::Prepared<f64>,
         f: &mut dcom::State<f64>,
-        f_x: &mut dcom::StateJacobian<f64>,
-        f_u: &mut dcom::InputJacobian<f64>,
+        f_x: &mut [f64; dcom::STATE_JACOBIAN_PATTERN.len()],
+        f_u: &mut [f64; dcom::INPUT_JACOBIAN_PATTERN.len()],
     ) {
-        (*f, *f_x, *f_u) = dcom::drift_and_jacobians(x, u, p);
+        (*f, *f_x, *f_u) = dcom::drift_and_jacobians_values(x, u, p);
     }
     // SAFETY: the caller's promise.
     unsafe {

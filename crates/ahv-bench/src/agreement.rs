@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::candidates::{Candidate, REFERENCE};
+use crate::candidates::{Candidate, LANES, PRODUCT, REFERENCE};
 use crate::points::Points;
 use crate::subject::SUBJECTS;
 
@@ -34,6 +34,7 @@ pub(crate) fn check(
         let Some((_, reference)) = all.iter().find(|(name, _)| *name == REFERENCE) else {
             continue;
         };
+        same_bits(subject.title, &all)?;
         let scales = root_mean_squares(reference);
         for (candidate, values) in all.iter().filter(|(name, _)| *name != REFERENCE) {
             let worst = worst(values, reference, &scales);
@@ -52,6 +53,21 @@ pub(crate) fn check(
         }
     }
     Ok(found)
+}
+
+/// Members side by side have the bits that they have alone.
+fn same_bits(title: &str, all: &[(&str, Vec<Vec<f64>>)]) -> Result<(), String> {
+    let bits = |name: &str| {
+        let values = all.iter().find(|(it, _)| *it == name);
+        let numbers = values
+            .into_iter()
+            .flat_map(|(_, values)| values.iter().flatten());
+        numbers.map(|it| it.to_bits()).collect::<Vec<_>>()
+    };
+    if bits(PRODUCT) == bits(LANES) {
+        return Ok(());
+    }
+    Err(format!("error: {LANES} and {PRODUCT} differ in {title}"))
 }
 
 fn root_mean_squares(values: &[Vec<f64>]) -> Vec<f64> {

@@ -1,11 +1,13 @@
 //! The candidates for kernels: how each is built and where its values lie.
 
+use ahv_bench_kernels::lanes::Scalar;
 use serde_json::Value;
 
 use crate::arrays::Arrays;
 use crate::commands;
 use crate::interpreted::Interpreted;
 use crate::kernel::{self, Evaluate, Kernel, Layout, Work};
+use crate::lanes;
 use crate::setting::{Built, NATIVE, Setting, rustc};
 use crate::steppers::END;
 use crate::subject::{SUBJECTS, Subject};
@@ -14,6 +16,10 @@ use crate::subject::{SUBJECTS, Subject};
 pub(crate) const REFERENCE: &str = "CasADi C";
 /// The one that the goals are about.
 pub(crate) const PRODUCT: &str = "ahv";
+/// Members side by side: the same bits.
+pub(crate) const LANES: &str = "ahv, 8 lanes";
+/// Members side by side, in the mode with a fused multiply-add.
+pub(crate) const LANES_FMA: &str = "ahv, 8 lanes, fma";
 
 /// A way to compute the subjects.
 pub(crate) struct Candidate {
@@ -69,6 +75,10 @@ pub(crate) fn build(
         if setting.peers {
             candidates.push(wrenfold(names[1], flags, setting)?);
         }
+    }
+    candidates.push(side_by_side::<lanes::Exact>(LANES, lanes::EXACT));
+    if lanes::has_fma() {
+        candidates.push(side_by_side::<lanes::Fma>(LANES_FMA, lanes::FMA));
     }
     if let Some(arrays) = arrays {
         candidates.push(symforce(setting)?);
@@ -155,7 +165,34 @@ pub(crate) fn work(said: &Value) -> Result<Work, String> {
 fn own(name: &'static str, flags: &str, setting: &Setting) -> Result<Candidate, String> {
     let packages = ["ahv-bench-kernels", "ahv-models"];
     let built = setting.rust(&setting.root, flags, &setting.out, &packages)?;
-    loaded(name, rustc(flags), &built, Some("prepare"), by_rows)
+    let own = |subject: &Subject| Ok((own_layout(subject), Work::default()));
+    loaded(name, rustc(flags), &built, Some("prepare"), own)
+}
+
+/// The outputs of the product: Jacobians have the entries that are not 0 by structure.
+fn own_layout(subject: &Subject) -> Layout {
+    let dense = |(rows, columns): &(usize, usize)| (0..rows * columns).collect();
+    let mut outputs: Layout = subject.shapes.iter().map(dense).collect();
+    for (output, pattern) in outputs.iter_mut().skip(1).zip(subject.patterns) {
+        let [_, columns] = pattern.shape;
+        *output = pattern.at.iter().map(|[i, j]| i * columns + j).collect();
+    }
+    outputs
+}
+
+/// Where the outputs of the product stand within all outputs.
+pub(crate) fn layout(subject: &Subject) -> Layout {
+    shifted(own_layout(subject), subject)
+}
+
+/// The product's functions for members side by side.
+fn side_by_side<R: Scalar>(name: &'static str, built: &str) -> Candidate {
+    Candidate {
+        name,
+        built: built.to_owned(),
+        compiled: 0.0,
+        kernels: lanes::kernels::<R>(),
+    }
 }
 
 fn wrenfold(name: &'static str, flags: &str, setting: &Setting) -> Result<Candidate, String> {

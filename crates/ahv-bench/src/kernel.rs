@@ -108,11 +108,7 @@ impl Kernel {
             integers: vec![0; work.integers],
             reals: vec![0.0; work.reals],
             layout,
-            dense: subject
-                .shapes
-                .iter()
-                .map(|(rows, columns)| rows * columns)
-                .sum(),
+            dense: subject.dense(),
         })
     }
 

@@ -10,6 +10,7 @@ mod ensembles;
 mod generation;
 mod interpreted;
 mod kernel;
+mod lanes;
 mod machine;
 mod modes;
 mod moments;

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::agreement::Agreement;
-use crate::candidates::PRODUCT;
 use crate::compilation::{self, Compilation};
 use crate::generation::Generation;
 use crate::machine::Machine;
@@ -115,7 +114,6 @@ impl Report {
                 .iter()
                 .filter(|it| it.function == subject.symbol)
             {
-                let goal = subject.goal.filter(|_| timing.candidate == PRODUCT);
                 let Spread {
                     min,
                     lower_quartile,
@@ -134,7 +132,6 @@ impl Report {
                         "{:.2}–{:.2}",
                         timing.ratio.lower_quartile, timing.ratio.upper_quartile
                     ),
-                    goal.map_or_else(String::new, |goal| against(timing.ratio.median, goal, "")),
                 ]);
             }
         }
@@ -161,7 +158,6 @@ impl Report {
                 "quartiles",
                 "ratio",
                 "quartiles",
-                "goal",
             ],
             rows,
         }

@@ -1,6 +1,6 @@
 //! What is timed.
 
-use ahv_core::Vector;
+use ahv_core::{Pattern, Vector};
 use ahv_models::{dcom, sdcom};
 
 /// A model, for its vectors and its box of validity.
@@ -43,8 +43,18 @@ pub(crate) struct Subject {
     pub(crate) functions: &'static [&'static str],
     /// Rows and columns of each output.
     pub(crate) shapes: &'static [(usize, usize)],
-    /// Time at most, as a share of CasADi's.
-    pub(crate) goal: Option<f64>,
+    /// Where the entries of the outputs after the first stand that the product has; of those without pattern it has all.
+    pub(crate) patterns: &'static [Pattern<2>],
+}
+
+impl Subject {
+    /// Length of all outputs, dense.
+    pub(crate) fn dense(&self) -> usize {
+        self.shapes
+            .iter()
+            .map(|(rows, columns)| rows * columns)
+            .sum()
+    }
 }
 
 const DCOM: usize = <dcom::State<f64> as Vector<f64>>::LEN;
@@ -60,7 +70,7 @@ pub(crate) const SUBJECTS: [Subject; 3] = [
         model: Model::Dcom,
         functions: &["drift"],
         shapes: &[(DCOM, 1)],
-        goal: Some(0.75),
+        patterns: &[],
     },
     Subject {
         symbol: "dcom_drift_jacobians",
@@ -68,7 +78,7 @@ pub(crate) const SUBJECTS: [Subject; 3] = [
         model: Model::Dcom,
         functions: &["drift_and_jacobians"],
         shapes: &[(DCOM, 1), (DCOM, DCOM), (DCOM, INPUT)],
-        goal: Some(0.80),
+        patterns: &[dcom::STATE_JACOBIAN_PATTERN, dcom::INPUT_JACOBIAN_PATTERN],
     },
     Subject {
         symbol: "sdcom_drift_diffusion",
@@ -76,6 +86,6 @@ pub(crate) const SUBJECTS: [Subject; 3] = [
         model: Model::Sdcom,
         functions: &["drift_and_diffusion"],
         shapes: &[(SDCOM, 1), (SDCOM, NOISE)],
-        goal: None,
+        patterns: &[],
     },
 ];

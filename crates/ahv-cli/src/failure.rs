@@ -10,14 +10,20 @@ pub(crate) enum Failure {
     Request(String),
     /// The computation failed: no trim, a state that is not finite. Exit code 3.
     Numeric(String),
+    /// Ctrl-C ended the work; the part that was done is told. Exit code 130, as of shells.
+    Interrupted(String),
 }
 
 impl Failure {
+    /// Exit code of work that Ctrl-C ended.
+    pub(crate) const INTERRUPTED: u8 = 130;
+
     /// Says on stderr what went wrong and gives the exit code.
     pub(crate) fn report(&self) -> ExitCode {
         let (message, code) = match self {
             Self::Request(message) => (message, 2),
             Self::Numeric(message) => (message, 3),
+            Self::Interrupted(message) => (message, Self::INTERRUPTED),
         };
         complain(&format!("error: {message}"));
         ExitCode::from(code)

@@ -11,6 +11,7 @@ mod failure;
 mod generate;
 mod linearize;
 mod lqr;
+mod monte_carlo;
 mod names;
 mod output;
 mod place;
@@ -45,6 +46,8 @@ enum Command {
     Disperse(disperse::Arguments),
     Linearize(linearize::Arguments),
     Lqr(lqr::Arguments),
+    #[command(name = "montecarlo")]
+    MonteCarlo(monte_carlo::Arguments),
     Poles(poles::Arguments),
     Reduce(reduce::Arguments),
     Reproduce(reproduce::Arguments),
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
         Command::Disperse(arguments) => disperse::run(&arguments),
         Command::Linearize(arguments) => linearize::run(&arguments),
         Command::Lqr(arguments) => lqr::run(&arguments),
+        Command::MonteCarlo(arguments) => monte_carlo::run(&arguments),
         Command::Poles(arguments) => poles::run(&arguments),
         Command::Reduce(arguments) => reduce::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),

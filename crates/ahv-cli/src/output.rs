@@ -215,3 +215,17 @@ pub(crate) fn plain(error: &io::Error) -> String {
 pub(crate) fn cannot_write(path: &Path, why: &str) -> Failure {
     Failure::Request(format!("cannot write {}: {why}", path.display()))
 }
+
+/// A unit as pictures show it, with what numbers are multiplied with: degrees in the place of radians.
+pub(crate) fn readable(unit: &str) -> (String, f64) {
+    let factor = if unit.starts_with("rad") {
+        1_f64.to_degrees()
+    } else {
+        1.0
+    };
+    let pretty = unit
+        .replace("rad", "deg")
+        .replace("(ft*slug)^0.5", "(ft·slug)^½")
+        .replace("(m*kg)^0.5", "(m·kg)^½");
+    (pretty, factor)
+}

@@ -18,16 +18,30 @@ pub(crate) struct Progress {
     enabled: bool,
     /// Steps at which the clock is looked at next.
     next: u64,
+    template: &'static str,
     bar: Option<ProgressBar>,
 }
 
 impl Progress {
     pub(crate) fn new(total: u64) -> Self {
+        Self::with_template(total, "{bar:40} {percent:>3} % {eta} left")
+    }
+
+    /// With the rate at which member-steps are done.
+    pub(crate) fn of_member_steps(total: u64) -> Self {
+        Self::with_template(
+            total,
+            "{bar:40} {percent:>3} % {per_sec} member-steps, {eta} left",
+        )
+    }
+
+    fn with_template(total: u64, template: &'static str) -> Self {
         Self {
             started: Instant::now(),
             total,
             enabled: io::stderr().is_terminal(),
             next: STRIDE,
+            template,
             bar: None,
         }
     }
@@ -39,7 +53,7 @@ impl Progress {
         }
         self.next = done + STRIDE;
         if self.bar.is_none() && self.started.elapsed() > PATIENCE {
-            self.bar = Some(bar(self.total));
+            self.bar = Some(bar(self.total, self.template));
         }
         if let Some(bar) = &self.bar {
             bar.set_position(done);
@@ -55,7 +69,7 @@ impl Drop for Progress {
     }
 }
 
-fn bar(total: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {eta} left");
+fn bar(total: u64, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template);
     ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -132,13 +132,14 @@ def main() -> None:
     show("SIN", *fit(sine_tail, sine_weight, 1e-9, edge, 5, 2))
     show("COS", *fit(cosine_tail, cosine_weight, 1e-9, edge, 5, 2))
     show("EXP", *fit(exponential_tail, exponential_weight, -half, half, 9, 0))
-    print("const PI_2:", split(mp.pi / 2, [33, 33]))
+    print("const HALF_PI:", split(mp.pi / 2, [33, 33, 33]))
     print("const LN_2:", split(mp.log(2), [33]))
 
     # Single precision; the doubles are written as f32 constants.
     show("SIN of f32", *fit(sine_tail, sine_weight, 1e-9, edge, 2, 0))
     show("COS of f32", *fit(cosine_tail, cosine_weight, 1e-9, edge, 2, 0))
     show("EXP of f32", *fit(exponential_tail, exponential_weight, -half, half, 4, 0))
+    print("const HALF_PI of f32, doubles:", split(mp.pi / 2, [33]))
     print("const LN_2 of f32:", split(mp.log(2), [12]))
 
     # Normal numbers: sine and cosine of half a turn, logarithm by (1 + s)/(1 - s).

@@ -8,6 +8,7 @@ use ahv_integrate::{NormalLanes, Precision, StepError};
 use super::arithmetic::Arithmetic;
 use super::family::{Family, LANES, Packed};
 use super::feedback::Law;
+use super::rare::Passage;
 use super::scheme::{MOST_NORMALS, Steps};
 
 /// A number of steps that none has reached.
@@ -85,6 +86,8 @@ pub(super) struct Batch<F: Family, S> {
     last: F::State<Packed>,
     /// The box of validity, and the limits if there are any.
     pub(super) watches: Vec<Watch<F>>,
+    /// What a search for rare events looks for.
+    pub(super) passage: Option<Passage<F>>,
 }
 
 /// Intervals of the states, and when each was left first.
@@ -244,6 +247,9 @@ where
             for watch in &mut batch.watches {
                 watch.look(&x, batch.step);
             }
+            if let Some(passage) = &mut batch.passage {
+                passage.look(&x, &u, batch.step);
+            }
         }
         (batch.x, batch.u) = (x, u);
     }
@@ -292,6 +298,7 @@ impl<F: Family, S> Batch<F, S> {
             lost: [None; LANES],
             last: start.x,
             watches,
+            passage: None,
         }
     }
 
@@ -351,6 +358,9 @@ impl<F: Family, S> Batch<F, S> {
             state,
         });
         self.watches.iter_mut().for_each(|watch| watch.close(lane));
+        if let Some(passage) = &mut self.passage {
+            passage.close(lane);
+        }
         F::update_state(&mut self.last, *x, |place, value| {
             place.0[lane] = value.0[lane];
         });

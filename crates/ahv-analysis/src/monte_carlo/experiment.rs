@@ -10,6 +10,7 @@ use super::arithmetic::{In, Mode, Narrowed};
 use super::batch::{Advance, Batch, Member, NEVER, Noise, Start, Watch};
 use super::family::{Dcom, Family, LANES, Packed, Sdcom};
 use super::feedback::Feedback;
+use super::rare::{Goal, Particle, Passed, pass};
 use super::scheme::{
     Dri1, EulerMaruyama, Heun, InStratonovichSense, MOST_NORMALS, Milstein, Scheme, Splitting, Sra1,
     Stepping, Steps,
@@ -43,7 +44,7 @@ pub struct Experiment<F: Family> {
     pub mode: Mode,
     /// Step, in s.
     pub dt: f64,
-    /// Steps after which the states are told, ascending; the flight ends after the last.
+    /// Numbers of steps after which the states are told, ascending; the flight ends with the last.
     pub snapshots: Vec<u64>,
     /// Seed of noise and dispersion.
     pub seed: u64,
@@ -52,8 +53,8 @@ pub struct Experiment<F: Family> {
 /// What was seen of a member.
 #[derive(Clone)]
 pub struct Seen<F: Family> {
-    /// State at each snapshot that it lived to see.
-    pub states: Vec<F::State<f64>>,
+    /// State and input at each snapshot that it lived to see.
+    pub at: Vec<(F::State<f64>, F::Input<f64>)>,
     /// Its last finite state.
     pub last: F::State<f64>,
     /// How it ended before its time.
@@ -85,27 +86,64 @@ pub trait Flown: Family {
     ) -> Result<Option<Vec<Seen<Self>>>, MonteCarloError>
     where
         Self: Sized;
+
+    /// Flies members, at most [`LANES`], from where they are until they pass the goal or time is over; `None` if the work was
+    /// stopped.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::fly`].
+    fn pass(
+        experiment: &Experiment<Self>,
+        flying: &[Particle<Self>],
+        goal: &Goal,
+        control: &Control,
+    ) -> Result<Option<Vec<Passed<Self>>>, MonteCarloError>
+    where
+        Self: Sized;
 }
 
-/// Flies with the scheme `$scheme` in the experiment's mode.
+/// Calls `$call` with the scheme `$scheme` in the experiment's mode.
 macro_rules! in_mode {
-    ($experiment:ident, $members:ident, $control:ident, $scheme:ty) => {
+    ($experiment:ident: $call:ident $arguments:tt, $scheme:ty) => {
         match $experiment.mode {
-            Mode::Exact | Mode::F32Noise => fly::<Self, $scheme, In<Straight<f64>>, In<f64>>($experiment, $members, $control),
-            Mode::Fma => fly::<Self, $scheme, In<Fused<Straight<f64>>>, In<Fused<f64>>>($experiment, $members, $control),
-            Mode::F32Drift => fly::<Self, $scheme, Narrowed<Straight<f64>, Straight<f32>>, Narrowed<f64, f32>>($experiment, $members, $control),
+            Mode::Exact | Mode::F32Noise => $call::<Self, $scheme, In<Straight<f64>>, In<f64>> $arguments,
+            Mode::Fma => $call::<Self, $scheme, In<Fused<Straight<f64>>>, In<Fused<f64>>> $arguments,
+            Mode::F32Drift => $call::<Self, $scheme, Narrowed<Straight<f64>, Straight<f32>>, Narrowed<f64, f32>> $arguments,
         }
     };
 }
 
-/// Flies with the scheme `$scheme`, which has no modes but those of the noise.
+/// Calls `$call` with the scheme `$scheme`, which has no modes but those of the noise.
 macro_rules! in_doubles {
-    ($experiment:ident, $members:ident, $control:ident, $scheme:ty) => {
+    ($experiment:ident: $call:ident $arguments:tt, $scheme:ty) => {
         match $experiment.mode {
-            Mode::Exact | Mode::F32Noise => fly::<Self, $scheme, In<f64>, In<f64>>($experiment, $members, $control),
+            Mode::Exact | Mode::F32Noise => $call::<Self, $scheme, In<f64>, In<f64>> $arguments,
             mode => Err(MonteCarloError::ModeOfScheme {
                 mode: mode.name(),
                 scheme: $experiment.scheme.name(),
+            }),
+        }
+    };
+}
+
+/// Calls `$call` with the experiment's scheme and mode.
+macro_rules! in_scheme {
+    ($experiment:ident: $call:ident $arguments:tt $(, $splitting:ident)?) => {
+        match $experiment.scheme {
+            $(Scheme::Splitting => in_mode!($experiment: $call $arguments, $splitting),)?
+            Scheme::Heun => in_mode!($experiment: $call $arguments, Heun),
+            Scheme::EulerMaruyama => in_mode!($experiment: $call $arguments, EulerMaruyama),
+            Scheme::StratonovichHeun => {
+                in_doubles!($experiment: $call $arguments, InStratonovichSense)
+            }
+            Scheme::Milstein => in_doubles!($experiment: $call $arguments, Milstein),
+            Scheme::Sra1 => in_doubles!($experiment: $call $arguments, Sra1),
+            Scheme::Dri1 => in_doubles!($experiment: $call $arguments, Dri1),
+            #[allow(unreachable_patterns, reason = "a model with coloured noise has every scheme")]
+            scheme => Err(MonteCarloError::Scheme {
+                scheme: scheme.name(),
+                reason: NoiseError::ColouredStates { expected: 3, found: 0 },
             }),
         }
     };
@@ -119,24 +157,16 @@ macro_rules! flown {
                 members: &[u64],
                 control: &Control,
             ) -> Result<Option<Vec<Seen<Self>>>, MonteCarloError> {
-                match experiment.scheme {
-                    $(Scheme::Splitting => {
-                        in_mode!(experiment, members, control, $splitting)
-                    })?
-                    Scheme::Heun => in_mode!(experiment, members, control, Heun),
-                    Scheme::EulerMaruyama => in_mode!(experiment, members, control, EulerMaruyama),
-                    Scheme::StratonovichHeun => {
-                        in_doubles!(experiment, members, control, InStratonovichSense)
-                    }
-                    Scheme::Milstein => in_doubles!(experiment, members, control, Milstein),
-                    Scheme::Sra1 => in_doubles!(experiment, members, control, Sra1),
-                    Scheme::Dri1 => in_doubles!(experiment, members, control, Dri1),
-                    #[allow(unreachable_patterns, reason = "a model with coloured noise has every scheme")]
-                    scheme => Err(MonteCarloError::Scheme {
-                        scheme: scheme.name(),
-                        reason: NoiseError::ColouredStates { expected: 3, found: 0 },
-                    }),
-                }
+                in_scheme!(experiment: fly(experiment, members, control) $(, $splitting)?)
+            }
+
+            fn pass(
+                experiment: &Experiment<Self>,
+                flying: &[Particle<Self>],
+                goal: &Goal,
+                control: &Control,
+            ) -> Result<Option<Vec<Passed<Self>>>, MonteCarloError> {
+                in_scheme!(experiment: pass(experiment, flying, goal, control) $(, $splitting)?)
             }
         }
     )+};
@@ -158,12 +188,10 @@ where
     E: Member<F>,
     S: Steps<F, A::Model> + Steps<F, E::Model>,
 {
-    if experiment.mode == Mode::Fma && !has_fma() {
-        return Err(MonteCarloError::NoFma);
-    }
-    let mut batch = experiment.batch::<S>(members)?;
+    let flying: Vec<_> = members.iter().map(|&member| experiment.particle(member)).collect();
+    let mut batch = experiment.batch::<S>(&flying)?;
     let count = members.len().min(LANES);
-    let mut states: Vec<Vec<F::State<f64>>> = vec![Vec::new(); count];
+    let mut at: Vec<Vec<_>> = vec![Vec::new(); count];
     let machine = pulp::Arch::new();
     for &snapshot in &experiment.snapshots {
         while batch.step < snapshot {
@@ -178,14 +206,14 @@ where
             });
             control.done.fetch_add((until - from) * count as u64, Ordering::Relaxed);
         }
-        for (lane, states) in states.iter_mut().enumerate() {
+        for (lane, at) in at.iter_mut().enumerate() {
             if let (x, true) = batch.member(lane) {
-                states.push(x);
+                at.push((x, F::map_input(&batch.u, |numbers| numbers.0[lane])));
             }
         }
     }
-    let seen = states.into_iter().enumerate().map(|(lane, states)| Seen {
-        states,
+    let seen = at.into_iter().enumerate().map(|(lane, at)| Seen {
+        at,
         last: batch.member(lane).0,
         lost: batch.lost[lane],
         left: batch.watches.iter().map(|watch| left(watch, lane)).collect(),
@@ -214,22 +242,28 @@ impl<F: Family> Experiment<F> {
         self.snapshots.last().copied().unwrap_or(0)
     }
 
-    fn batch<S: Stepping<F>>(&self, members: &[u64]) -> Result<Batch<F, S>, MonteCarloError> {
+    /// The batch of members that fly on from where they are; its steps count from there.
+    pub(super) fn batch<S: Stepping<F>>(
+        &self,
+        flying: &[Particle<F>],
+    ) -> Result<Batch<F, S>, MonteCarloError> {
+        if self.mode == Mode::Fma && !has_fma() {
+            return Err(MonteCarloError::NoFma);
+        }
         // Lanes without member repeat the last one.
-        let last = members.last().copied().unwrap_or(0);
-        let members: [u64; LANES] =
-            std::array::from_fn(|lane| members.get(lane).copied().unwrap_or(last));
-        let parameters = members.map(|member| match &self.dispersion {
-            Some(draws) => draws.member(member),
+        let last = flying.last().copied().unwrap_or_else(|| self.particle(0));
+        let flying: [Particle<F>; LANES] =
+            std::array::from_fn(|lane| flying.get(lane).copied().unwrap_or(last));
+        let parameters = flying.map(|particle| match &self.dispersion {
+            Some(draws) => draws.member(particle.origin),
             None => self.parameters,
         });
         let model = F::model(&parameters);
         let mut x = F::State::splat(Packed::ZERO);
         let mut u = F::Input::splat(Packed::ZERO);
-        for (lane, &member) in members.iter().enumerate() {
-            let (state, input) = self.start(member);
-            F::update_state(&mut x, state, |numbers, value| numbers.0[lane] = value);
-            F::update_input(&mut u, input, |numbers, value| numbers.0[lane] = value);
+        for (lane, particle) in flying.iter().enumerate() {
+            F::update_state(&mut x, particle.x, |numbers, value| numbers.0[lane] = value);
+            F::update_input(&mut u, particle.u, |numbers, value| numbers.0[lane] = value);
         }
         let scheme = S::new(&model, &x, &u, self.dt).map_err(|reason| MonteCarloError::Scheme {
             scheme: self.scheme.name(),
@@ -243,14 +277,14 @@ impl<F: Family> Experiment<F> {
         }
         used.iter_mut().skip(channels).take(S::EXTRA).for_each(|used| *used = true);
         let single = matches!(self.mode, Mode::F32Noise | Mode::F32Drift);
-        let noise = Noise::new(self.seed, members, &used, single);
+        let noise = Noise::new(self.seed, flying.map(|particle| particle.member), &used, single);
         let law = self.feedback.as_ref().map(|feedback| feedback.over(self.dt));
         let watches = self.watched.iter().map(|&bounds| Watch::new(bounds)).collect();
         Ok(Batch::new(Start { model, x, u }, scheme, self.dt, noise, law, watches))
     }
 
-    /// State and input at the start of a member.
-    fn start(&self, member: u64) -> (F::State<f64>, F::Input<f64>) {
+    /// A member at the start.
+    pub(super) fn particle(&self, member: u64) -> Particle<F> {
         let seed = self.seed.wrapping_add(START_SEED);
         let normal = |channel: usize| NormalStream::new(seed, member, channel as u64).normal(0);
         let ([mut x, x_std], [mut u, u_std]) = (self.state, self.input);
@@ -263,6 +297,12 @@ impl<F: Family> Experiment<F> {
         };
         F::update_state(&mut x, x_std, &mut about);
         F::update_input(&mut u, u_std, &mut about);
-        (x, u)
+        Particle {
+            member,
+            origin: member,
+            step: 0,
+            x,
+            u,
+        }
     }
 }

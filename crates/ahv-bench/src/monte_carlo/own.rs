@@ -1,30 +1,119 @@
 //! The product's ways to do it. A row more is a [`Runner`] more in [`runners`].
 
+use ahv_analysis::monte_carlo::{Control, Experiment, Flown as _, LANES, Mode, Scheme, Sdcom};
+use ahv_core::Vector as _;
 use ahv_integrate::{ItoEulerMaruyama, WienerSource};
-use ahv_models::sdcom::{Model, Noise};
+use ahv_models::sdcom::{Input, Model, Noise, State};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::{DT, Flight, MEMBERS, STATES, STEPS, UNITS};
+use crate::lanes::has_fma;
 use crate::moments;
 use crate::race::Runner;
 use crate::threads::pool;
 
+/// One member after the other.
+pub(crate) const PRODUCT: &str = "ahv, `ItoEulerMaruyama`";
+/// Modes of `mc`, as rows.
+pub(crate) const MODES: [(&str, Mode, &str); 4] = [
+    ("ahv, 8 lanes", Mode::Exact, "8 members side by side, f64"),
+    (
+        "ahv, 8 lanes, f32-noise",
+        Mode::F32Noise,
+        "the same, normal numbers in f32",
+    ),
+    (
+        "ahv, 8 lanes, f32-drift",
+        Mode::F32Drift,
+        "the same, and drift and noise in f32, state in f64",
+    ),
+    (
+        "ahv, 8 lanes, fma",
+        Mode::Fma,
+        "8 members side by side, f64, with a fused multiply-add",
+    ),
+];
+
 /// All of them on this number of threads.
 ///
 /// # Errors
-/// Threads that cannot be started.
+/// Threads that cannot be started, and members side by side that do not end where one ends alone.
 pub(crate) fn runners(flight: Flight, threads: usize) -> Result<Vec<Runner<'static>>, String> {
     let model = Model::new(&flight.parameters);
-    let pool = pool(threads)?;
-    let scalar = move |seed| scalar(&model, &flight, seed, &pool);
-    Ok(vec![Runner::new(
-        "ahv, `ItoEulerMaruyama`",
-        "one member after the other, `WienerSource` keyed by member, f64",
-        UNITS,
-        scalar,
-        |ends| moments::of_members::<STATES>(ends),
-    )])
+    let scalar = move |seed, pool: &ThreadPool| scalar(&model, &flight, seed, pool);
+    let exact = experiment(&flight, Mode::Exact);
+    let pool_of = || pool(threads);
+    let checked = pool_of()?;
+    if side_by_side(&exact, 0, &checked)? != scalar(0, &checked)? {
+        return Err("error: members side by side end elsewhere than alone".to_owned());
+    }
+    let values = |ends: &Vec<_>| moments::of_members::<STATES>(ends);
+    let how = "one member after the other, `WienerSource` keyed by member, f64";
+    let run = move |seed| scalar(seed, &checked);
+    let mut runners = vec![Runner::new(PRODUCT, how, UNITS, run, values)];
+    for (name, mode, how) in MODES {
+        if mode != Mode::Fma || has_fma() {
+            let (experiment, pool) = (experiment(&flight, mode), pool_of()?);
+            let run = move |seed| side_by_side(&experiment, seed, &pool);
+            runners.push(Runner::new(name, how, UNITS, run, values));
+        }
+    }
+    Ok(runners)
+}
+
+/// What members fly from a start at held inputs, by the method of the peers, with nothing watched.
+pub(crate) fn experiment(flight: &Flight, mode: Mode) -> Experiment<Sdcom> {
+    Experiment {
+        parameters: flight.parameters,
+        dispersion: None,
+        state: [flight.start, State::splat(0.0)],
+        input: [flight.input, Input::splat(0.0)],
+        feedback: None,
+        watched: Vec::new(),
+        scheme: Scheme::EulerMaruyama,
+        mode,
+        dt: DT,
+        snapshots: vec![STEPS as u64],
+        seed: 0,
+    }
+}
+
+/// The ends of members, [`LANES`] at a time.
+pub(crate) fn fly(
+    experiment: &Experiment<Sdcom>,
+    members: u64,
+    pool: &ThreadPool,
+) -> Result<Vec<[f64; STATES]>, String> {
+    let control = Control::default();
+    let batch = |first: u64| {
+        let first = first * LANES as u64;
+        let numbers: Vec<u64> = (first..members.min(first + LANES as u64)).collect();
+        let seen = Sdcom::fly(experiment, &numbers, &control);
+        let seen = seen.map_err(|it| format!("error: {it}"))?;
+        let ends = seen.into_iter().flatten().map(|it| match it.lost {
+            None => Ok(it.last.to_array()),
+            Some(_) => Err("error: a member is lost".to_owned()),
+        });
+        ends.collect::<Result<Vec<_>, String>>()
+    };
+    let batches = (0..members.div_ceil(LANES as u64))
+        .into_par_iter()
+        .map(batch);
+    let ends: Vec<_> = pool.install(|| batches.collect::<Result<_, String>>())?;
+    Ok(ends.concat())
+}
+
+fn side_by_side(
+    experiment: &Experiment<Sdcom>,
+    seed: u64,
+    pool: &ThreadPool,
+) -> Result<Vec<[f64; STATES]>, String> {
+    let experiment = Experiment {
+        seed,
+        ..experiment.clone()
+    };
+    fly(&experiment, MEMBERS as u64, pool)
 }
 
 /// Each member with a stream of its own.

@@ -83,7 +83,7 @@ pub(crate) fn measure(
             "rk4_diffrax",
         ));
     }
-    runners.extend(own::runners());
+    runners.extend(own::runners()?);
     let finishes = race(runners, 1, rounds)?;
     let difference = check(&finishes)?;
     Ok(Trajectories {
@@ -161,7 +161,7 @@ impl Trajectories {
             note: format!(
                 "Time of a trajectory of 10 000 steps on one thread, set 5.1: {FLIGHTS} flights of 1 s at held inputs from the same \
                  start, because the open-loop airframe runs away in 10 s. A turn takes {REPEATS} flights one after the other, \
-                 or one flight of {BATCH} members side by side, of which the time a member is given. {} rounds in \
+                 or of members side by side (JAX and diffrax {BATCH}, ahv 8 at a time), of which the time a member is given. {} rounds in \
                  which each has its turn, ratios to CasADi's C within each. Compilation is not part of the time. All ends agree \
                  to {:.0e}, relative to the component or to 1, if that is more.",
                 self.rounds, self.difference

@@ -4,6 +4,7 @@ use ahv_core::Vector;
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
 
 use super::Outcome;
+use crate::output::readable;
 use crate::vehicle::FlightModel;
 
 /// Panels in a row.
@@ -45,18 +46,4 @@ fn panel<M: FlightModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel
             ),
         ],
     })
-}
-
-/// Degrees in the place of radians.
-fn readable(unit: &str) -> (String, f64) {
-    let factor = if unit.starts_with("rad") {
-        1_f64.to_degrees()
-    } else {
-        1.0
-    };
-    let pretty = unit
-        .replace("rad", "deg")
-        .replace("(ft*slug)^0.5", "(ft·slug)^½")
-        .replace("(m*kg)^0.5", "(m·kg)^½");
-    (pretty, factor)
 }

@@ -38,11 +38,12 @@ const EXP: [f64; 10] = [
     2.500005928835836e-08,
 ];
 
-/// π/2 in parts of 33 bits, so that a whole multiple of a part below 2²⁰ is exact.
-const HALF_PI: [f64; 3] = [
+/// π/2 in parts of 33 bits and the rest, so that a whole multiple of a part below 2²⁰ is exact.
+const HALF_PI: [f64; 4] = [
     1.5707963267341256,
     6.077100506303966e-11,
-    2.0222662487959506e-21,
+    2.0222662487111665e-21,
+    8.4784276603689e-32,
 ];
 
 /// ln 2 in parts of 33 bits and the rest.
@@ -112,8 +113,12 @@ fn reduced_sin_cos(x: f64) -> (f64, f64) {
     let turns = shifted - ROUNDER;
     let coarse = x - turns * HALF_PI[0];
     let step = turns * HALF_PI[1];
-    let high = coarse - step;
-    let low = ((coarse - high) - step) - turns * HALF_PI[2];
+    let middle = coarse - step;
+    let low_step = turns * HALF_PI[2];
+    // Next to a multiple of π/2 both differences are exact, else what they lose joins the small terms.
+    let high = middle - low_step;
+    let lost = ((coarse - middle) - step) + ((middle - high) - low_step);
+    let low = lost - turns * HALF_PI[3];
     let rest = high + low;
     let (sin, cos) = kernel(rest, (high - rest) + low);
     // A quarter turn swaps the two and turns the sign of the new cosine; a half turn turns both signs.

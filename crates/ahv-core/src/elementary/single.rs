@@ -27,6 +27,9 @@ const EXP: [f32; 5] = [
     0.001_381_460_080_013_361_5,
 ];
 
+/// π/2 in doubles, the first of 33 bits, so that a whole multiple of it is exact.
+const HALF_PI: [f64; 2] = [1.5707963267341256, 6.077100506506192e-11];
+
 /// ln 2 in parts of 12 bits and the rest.
 const LN_2: [f32; 2] = [0.693_115_234_375, 3.194_618_494_530_941_5e-5];
 
@@ -62,7 +65,7 @@ impl Lane for f32 {
     fn moderate_sin_cos(self) -> (Self, Self) {
         let shifted = self * FRAC_2_PI + ROUNDER;
         let turns = f64::from(shifted - ROUNDER);
-        let exact = f64::from(self) - turns * core::f64::consts::FRAC_PI_2;
+        let exact = (f64::from(self) - turns * HALF_PI[0]) - turns * HALF_PI[1];
         let rest = exact as f32;
         let low = (exact - f64::from(rest)) as f32;
         let (sin, cos) = kernel(rest, low);

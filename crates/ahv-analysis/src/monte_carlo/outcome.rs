@@ -1,0 +1,331 @@
+//! What many members show together.
+
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use ahv_core::Vector;
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+
+use super::experiment::{Control, Experiment, Flown, Seen};
+use super::family::{Family, LANES};
+use super::spread::{Bin, QUANTILES, Spread};
+use super::{Loss, MonteCarloError};
+use crate::statistics::Estimate;
+
+/// Members whose flights one task flies.
+const CHUNK: u64 = 8 * LANES as u64;
+/// Tasks whose members are in memory at a time.
+const GROUP: u64 = 32;
+/// Losses that are told one by one.
+const TOLD: usize = 20;
+
+/// What members show together.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Members that were flown.
+    pub members: u64,
+    /// Members that were asked for; more than were flown if the work was stopped.
+    pub asked: u64,
+    /// What is seen at each snapshot.
+    pub snapshots: Vec<Snapshot>,
+    /// Members that were lost, and the first of them.
+    pub lost: u64,
+    /// The first that were lost, by number of the member.
+    pub losses: Vec<(u64, Loss)>,
+    /// SHA-256 of the bits of the members' last states: component by component, little end first, member by member.
+    pub digest: String,
+    /// Steps of members.
+    pub member_steps: u64,
+    /// Time that it took.
+    pub elapsed: Duration,
+}
+
+/// What is seen of the members at one time.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// Time, in s.
+    pub time: f64,
+    /// Members that still fly; of them are all that follows but `left`.
+    pub members: u64,
+    /// Each state.
+    pub states: Vec<StateSpread>,
+    /// Covariance of the states; infinite where numbers are too large.
+    pub covariance: Vec<Vec<f64>>,
+    /// For each set of watched intervals, how many members have left that of a state so far.
+    pub left: Vec<Vec<u64>>,
+    /// For each set of watched intervals, how many members have left any so far.
+    pub left_any: Vec<u64>,
+}
+
+/// How one state spreads over the members.
+#[derive(Clone, Debug)]
+pub struct StateSpread {
+    /// Mean with its interval of 95 %; `None` where numbers are too large, or members too few.
+    pub mean: Option<Estimate>,
+    /// Standard deviation with its interval of 95 % (of normal numbers).
+    pub std: Option<Estimate>,
+    /// Quantiles of [`QUANTILES`], each with its interval of 95 %.
+    pub quantiles: [Option<Estimate>; QUANTILES.len()],
+    /// What the bins of the quantiles add to their error, in the unit of the state.
+    pub resolution: f64,
+    /// Counts between the least and the greatest number.
+    pub histogram: Vec<Bin>,
+}
+
+/// Bins of the histograms that are told.
+const TOLD_BINS: usize = 60;
+
+impl<F: Flown> Experiment<F> {
+    /// Flies members 0 to `members` − 1 on `threads` threads.
+    ///
+    /// The same numbers whatever the threads. Stopped by `control`, it tells of the members that were flown till then.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError`].
+    pub fn run(
+        &self,
+        members: u64,
+        threads: usize,
+        control: &Control,
+    ) -> Result<Outcome, MonteCarloError> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
+        let started = Instant::now();
+        let mut collector = Collector::<F>::new(self);
+        let mut next = 0;
+        while next < members {
+            let end = members.min(next + GROUP * CHUNK);
+            let chunks: Vec<u64> = (next..end).step_by(CHUNK as usize).collect();
+            let fly = |&first: &u64| self.chunk(first..end.min(first + CHUNK), control);
+            let flown: Vec<Option<Vec<Seen<F>>>> =
+                pool.install(|| chunks.par_iter().map(fly).collect::<Result<_, _>>())?;
+            // All or none: what is told is always of members 0 to some number.
+            let Some(flown) = flown.into_iter().collect::<Option<Vec<_>>>() else {
+                break;
+            };
+            collector.add(next, flown.into_iter().flatten().collect());
+            next = end;
+        }
+        if next == 0 {
+            return Err(MonteCarloError::Stopped);
+        }
+        let member_steps = control.done.load(Ordering::Relaxed);
+        Ok(collector.outcome(members, member_steps, started.elapsed()))
+    }
+
+    fn chunk(
+        &self,
+        members: std::ops::Range<u64>,
+        control: &Control,
+    ) -> Result<Option<Vec<Seen<F>>>, MonteCarloError> {
+        let members: Vec<u64> = members.collect();
+        let mut seen = Vec::with_capacity(members.len());
+        for batch in members.chunks(LANES) {
+            match F::fly(self, batch, control)? {
+                Some(flown) => seen.extend(flown),
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(seen))
+    }
+
+    /// State and input of one member at the start and after every `stride` steps, as long as it is not lost, with the time
+    /// in s. The bits are those that the member has among others.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError`].
+    pub fn trajectory(
+        &self,
+        member: u64,
+        stride: u64,
+    ) -> Result<Vec<(f64, F::State<f64>, F::Input<f64>)>, MonteCarloError> {
+        let alone = Self {
+            snapshots: (0..=self.steps()).step_by(stride.max(1) as usize).collect(),
+            ..self.clone()
+        };
+        let seen = F::fly(&alone, &[member], &Control::default())?.unwrap_or_default();
+        let at = seen.into_iter().next().map(|seen| seen.at).unwrap_or_default();
+        let timed = alone.snapshots.iter().zip(at);
+        Ok(timed
+            .map(|(&step, (x, u))| (step as f64 * self.dt, x, u))
+            .collect())
+    }
+}
+
+/// Sums over members, in their order.
+struct Collector<'e, F: Family> {
+    experiment: &'e Experiment<F>,
+    /// Number that sums are taken about, state by state.
+    origin: Vec<f64>,
+    sums: Vec<Sums>,
+    members: u64,
+    lost: u64,
+    losses: Vec<(u64, Loss)>,
+    hash: Sha256,
+}
+
+/// What is summed at a snapshot.
+struct Sums {
+    count: u64,
+    first: Vec<f64>,
+    /// Products of the deviations from the origin, by rows.
+    second: Vec<Vec<f64>>,
+    spreads: Vec<Spread>,
+    left: Vec<Vec<u64>>,
+    left_any: Vec<u64>,
+}
+
+fn components<T: Copy>(x: &impl Vector<T>, len: usize) -> Vec<T> {
+    (0..len).filter_map(|index| x.get(index)).collect()
+}
+
+impl<'e, F: Family> Collector<'e, F> {
+    fn new(experiment: &'e Experiment<F>) -> Self {
+        let states = F::State::<f64>::LEN;
+        let sums = experiment.snapshots.iter().map(|_| Sums {
+            count: 0,
+            first: vec![0.0; states],
+            second: vec![vec![0.0; states]; states],
+            spreads: Vec::new(),
+            left: vec![vec![0; states]; experiment.watched.len()],
+            left_any: vec![0; experiment.watched.len()],
+        });
+        Self {
+            origin: components(&experiment.state[0], states),
+            sums: sums.collect(),
+            experiment,
+            members: 0,
+            lost: 0,
+            losses: Vec::new(),
+            hash: Sha256::new(),
+        }
+    }
+
+    /// Members from number `first` on.
+    fn add(&mut self, first: u64, seen: Vec<Seen<F>>) {
+        let states = F::State::<f64>::LEN;
+        for (member, seen) in (first..).zip(&seen) {
+            for value in components(&seen.last, states) {
+                self.hash.update(value.to_le_bytes());
+            }
+            if let Some(loss) = seen.lost {
+                self.lost += 1;
+                if self.losses.len() < TOLD {
+                    self.losses.push((member, loss));
+                }
+            }
+        }
+        self.members += seen.len() as u64;
+        for (index, (sums, &step)) in
+            self.sums.iter_mut().zip(&self.experiment.snapshots).enumerate()
+        {
+            let values: Vec<Vec<f64>> = seen
+                .iter()
+                .filter_map(|seen| seen.at.get(index))
+                .map(|(x, _)| components(x, states))
+                .collect();
+            sums.add(&self.origin, &values);
+            for seen in &seen {
+                for ((left, counts), any) in
+                    seen.left.iter().zip(&mut sums.left).zip(&mut sums.left_any)
+                {
+                    let by_then = components(left, states)
+                        .into_iter()
+                        .map(|left| left.is_some_and(|left| left <= step));
+                    let mut some = false;
+                    for (count, left) in counts.iter_mut().zip(by_then) {
+                        *count += u64::from(left);
+                        some |= left;
+                    }
+                    *any += u64::from(some);
+                }
+            }
+        }
+    }
+
+    fn outcome(self, asked: u64, member_steps: u64, elapsed: Duration) -> Outcome {
+        let dt = self.experiment.dt;
+        let snapshots = self.sums.into_iter().zip(&self.experiment.snapshots);
+        Outcome {
+            members: self.members,
+            asked,
+            snapshots: snapshots
+                .map(|(sums, &step)| sums.snapshot(&self.origin, step as f64 * dt))
+                .collect(),
+            lost: self.lost,
+            losses: self.losses,
+            digest: self
+                .hash
+                .finalize()
+                .iter()
+                .map(|byte| format!("{byte:02x}"))
+                .collect(),
+            member_steps,
+            elapsed,
+        }
+    }
+}
+
+impl Sums {
+    fn add(&mut self, origin: &[f64], members: &[Vec<f64>]) {
+        if self.spreads.is_empty() {
+            let column = |state| members.iter().filter_map(|x| x.get(state).copied()).collect();
+            self.spreads = (0..origin.len()).map(|state| Spread::new(column(state))).collect();
+        } else {
+            for x in members {
+                for (spread, &value) in self.spreads.iter_mut().zip(x) {
+                    spread.add(value);
+                }
+            }
+        }
+        for x in members {
+            let deviation: Vec<f64> = x.iter().zip(origin).map(|(x, origin)| x - origin).collect();
+            self.count += 1;
+            for ((first, row), &a) in self.first.iter_mut().zip(&mut self.second).zip(&deviation) {
+                *first += a;
+                for (second, &b) in row.iter_mut().zip(&deviation) {
+                    *second += a * b;
+                }
+            }
+        }
+    }
+
+    fn snapshot(self, origin: &[f64], time: f64) -> Snapshot {
+        let n = self.count as f64;
+        let means: Vec<f64> = self.first.iter().map(|sum| sum / n).collect();
+        let covariance: Vec<Vec<f64>> = self
+            .second
+            .iter()
+            .zip(&means)
+            .map(|(row, a)| {
+                let entry = |(sum, b): (&f64, &f64)| (sum - n * a * b) / (n - 1.0);
+                row.iter().zip(&means).map(entry).collect()
+            })
+            .collect();
+        let states = self.spreads.iter().enumerate().map(|(state, spread)| {
+            let variance = covariance.get(state).and_then(|row| row.get(state));
+            let std = variance.map_or(f64::NAN, |variance| variance.max(0.0).sqrt());
+            let mean = origin.get(state).zip(means.get(state)).map_or(f64::NAN, |(o, m)| o + m);
+            StateSpread {
+                mean: Some(Estimate::of_mean(mean, std, n)).filter(Estimate::is_finite),
+                std: Some(Estimate::of_std(std, n)).filter(Estimate::is_finite),
+                quantiles: QUANTILES.map(|share| spread.quantile(share)),
+                resolution: spread.resolution(),
+                histogram: spread.histogram(TOLD_BINS),
+            }
+        });
+        Snapshot {
+            time,
+            members: self.count,
+            states: states.collect(),
+            covariance,
+            left: self.left,
+            left_any: self.left_any,
+        }
+    }
+}

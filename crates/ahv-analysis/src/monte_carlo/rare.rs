@@ -1,0 +1,383 @@
+//! Probabilities of rare events, by splitting.
+//!
+//! Levels stand between the start and a limit. Whoever passes a level is copied, and the copies fly on from there with noise
+//! of their own, so that each level is passed by a fair share of those before it (Kahn and Harris 1951). As many members start
+//! from each level (fixed effort, Garvels 2000): the product of the shares is an unbiased estimate of the probability for any
+//! levels that were chosen beforehand. Here a pilot chooses them, as quantiles of how far its members come (Cérou and Guyader
+//! 2007), and its members are not counted. Independent repetitions give the interval.
+
+mod passage;
+
+use ahv_core::Vector;
+use ahv_integrate::NormalStream;
+use rayon::prelude::*;
+
+pub use passage::{Goal, Particle, Passed};
+pub(super) use passage::{Passage, pass};
+
+use super::MonteCarloError;
+use super::experiment::{Control, Experiment, Flown};
+use super::family::LANES;
+use crate::statistics::{Estimate, Z_95, mean_and_std};
+
+/// Fewest repetitions: from there on, Student's quantile is right to four digits.
+pub const FEWEST_REPETITIONS: u64 = 10;
+/// Share of its members by which the pilot lets a level be passed.
+const SHARE: f64 = 0.2;
+/// Levels that the pilot sets at most.
+const MOST_LEVELS: usize = 200;
+
+/// A state passes a limit before the flight ends.
+///
+/// It is looked at after every step, and at the start: the event is that of the sampled path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RareEvent {
+    /// Number of the state.
+    pub state: usize,
+    /// Limit, in the unit of the state, above or below where the members start.
+    pub limit: f64,
+    /// Members that start from each level.
+    pub effort: u64,
+    /// Levels between start and limit, in the order in which they are passed; `None` if a pilot shall choose them.
+    pub levels: Option<Vec<f64>>,
+    /// Independent repetitions.
+    pub repetitions: u64,
+}
+
+/// Why a rare event cannot be looked for.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RareError {
+    /// A state that the model does not have.
+    #[error("there is no state number {state}; there are {states} of them, from 0 on")]
+    State {
+        /// Its number.
+        state: usize,
+        /// How many states there are.
+        states: usize,
+    },
+    /// A limit that is met at the start, or no number.
+    #[error("the limit {limit} of {state} must be a number other than {start}, where the flight starts")]
+    Limit {
+        /// The state.
+        state: &'static str,
+        /// The limit.
+        limit: f64,
+        /// Where the flight starts.
+        start: f64,
+    },
+    /// Levels that do not lie between the start and the limit, in order.
+    #[error("the level {level} does not lie between {after} and the limit {limit}")]
+    Level {
+        /// The level.
+        level: f64,
+        /// The level before, or the start.
+        after: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// No members.
+    #[error("no members start from each level; it takes 1 at least")]
+    Effort,
+    /// Too few repetitions for an interval.
+    #[error("{repetitions} repetitions are too few for an interval; it takes {FEWEST_REPETITIONS} at least")]
+    Repetitions {
+        /// How many.
+        repetitions: u64,
+    },
+    /// A flight that does not go anywhere.
+    #[error("a flight of {steps} steps of {dt} s is none")]
+    Flight {
+        /// Steps.
+        steps: u64,
+        /// Step size, in s.
+        dt: f64,
+    },
+    /// Members that do not come nearer to the limit.
+    #[error("the members come no nearer to the limit than {level}; more members from each level may")]
+    OutOfReach {
+        /// The level that was not passed, or beyond which none could be set.
+        level: f64,
+    },
+}
+
+/// A level, and how it was passed.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Level {
+    /// The level, in the unit of the state.
+    pub value: f64,
+    /// Share by which it was passed, of all that started from the one before.
+    pub share: f64,
+}
+
+/// The probability of a rare event.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct RareEstimate {
+    /// The probability with its interval of 95 %, by Student's distribution of the mean of the repetitions.
+    ///
+    /// It is right for a mean that is nearly normal: with few members from each level the repetitions spread to one side, and
+    /// more of them are needed.
+    pub probability: Estimate,
+    /// The levels; the limit is the last.
+    pub levels: Vec<Level>,
+    /// Steps of members, the pilot's included.
+    pub member_steps: u64,
+    /// Steps of members that plain sampling needs for an interval as wide: p (1 − p) (z/half)² flights.
+    pub plain_member_steps: f64,
+    /// Members of the repetitions that were lost before the limit; they count as not having passed it.
+    pub lost: u64,
+}
+
+impl<F: Flown> Experiment<F> {
+    /// The probability that a state passes a limit before the flight ends, on `threads` threads.
+    ///
+    /// The same numbers whatever the threads. The limit may be some standard deviations away, and the probability 10⁻¹⁰: the
+    /// work grows with the logarithm of the probability.
+    ///
+    /// # Errors
+    ///
+    /// [`RareError`], [`MonteCarloError`].
+    pub fn first_passage(
+        &self,
+        event: &RareEvent,
+        threads: usize,
+        control: &Control,
+    ) -> Result<RareEstimate, MonteCarloError> {
+        let heights = event.check(self)?;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
+        let mut search = Search {
+            experiment: self,
+            event,
+            control,
+            goal: event.goal(self),
+            next: 0,
+            member_steps: 0,
+            lost: 0,
+        };
+        pool.install(|| {
+            let heights = match heights {
+                Some(heights) => heights,
+                None => search.pilot()?,
+            };
+            search.repeat(&heights)
+        })
+    }
+}
+
+impl RareEvent {
+    /// Where the members start, in the mean.
+    fn start<F: Flown>(&self, experiment: &Experiment<F>) -> Option<f64> {
+        experiment.state[0].get(self.state)
+    }
+
+    /// The limit.
+    fn goal<F: Flown>(&self, experiment: &Experiment<F>) -> Goal {
+        let start = self.start(experiment).unwrap_or(0.0);
+        let sign = if self.limit > start { 1.0 } else { -1.0 };
+        Goal {
+            state: self.state,
+            sign,
+            height: sign * self.limit,
+        }
+    }
+
+    /// Heights of the levels that are given, that of the limit included.
+    fn check<F: Flown>(&self, experiment: &Experiment<F>) -> Result<Option<Vec<f64>>, RareError> {
+        let (steps, dt) = (experiment.steps(), experiment.dt);
+        if steps == 0 || !(dt > 0.0 && dt.is_finite()) {
+            return Err(RareError::Flight { steps, dt });
+        }
+        let names = F::State::<f64>::NAMES;
+        let Some((start, name)) = self.start(experiment).zip(names.get(self.state)) else {
+            return Err(RareError::State {
+                state: self.state,
+                states: names.len(),
+            });
+        };
+        let limit = self.limit;
+        if !(limit.is_finite() && start.is_finite() && limit != start) {
+            return Err(RareError::Limit {
+                state: name,
+                limit,
+                start,
+            });
+        }
+        if self.effort == 0 {
+            return Err(RareError::Effort);
+        }
+        if self.repetitions < FEWEST_REPETITIONS {
+            return Err(RareError::Repetitions {
+                repetitions: self.repetitions,
+            });
+        }
+        let Some(levels) = &self.levels else {
+            return Ok(None);
+        };
+        let Goal { sign, height, .. } = self.goal(experiment);
+        let mut after = start;
+        for &level in levels {
+            if !(sign * level > sign * after && sign * level < height) {
+                return Err(RareError::Level { level, after, limit });
+            }
+            after = level;
+        }
+        let heights = levels.iter().map(|level| sign * level).chain([height]);
+        Ok(Some(heights.collect()))
+    }
+}
+
+/// Splitting at work.
+struct Search<'e, F: Flown> {
+    experiment: &'e Experiment<F>,
+    event: &'e RareEvent,
+    control: &'e Control,
+    /// The limit.
+    goal: Goal,
+    /// Number of the member that comes next: no two have the same noise.
+    next: u64,
+    member_steps: u64,
+    lost: u64,
+}
+
+impl<F: Flown> Search<'_, F> {
+    /// Heights of levels that a fair share of the members passes, that of the limit included.
+    ///
+    /// Members fly twice with the same noise: to find the level, and to pass it.
+    fn pilot(&mut self) -> Result<Vec<f64>, MonteCarloError> {
+        let Goal { sign, height: limit, .. } = self.goal;
+        let start = self.event.start(self.experiment).unwrap_or(0.0);
+        let (mut heights, mut last) = (Vec::new(), sign * start);
+        let mut flying = self.starts();
+        while heights.len() < MOST_LEVELS {
+            let flown = self.fly(&flying, limit)?;
+            let mut most: Vec<f64> = flown.iter().map(|passed| passed.most).collect();
+            most.sort_by(|a, b| b.total_cmp(a));
+            let place = (SHARE * most.len() as f64).ceil() as usize;
+            let height = most.get(place.min(most.len() - 1)).copied().unwrap_or(last);
+            if height >= limit {
+                heights.push(limit);
+                self.lost = 0;
+                return Ok(heights);
+            }
+            if height <= last {
+                break;
+            }
+            let entrances = entrances(&self.fly(&flying, height)?);
+            flying = self.copies(&entrances);
+            heights.push(height);
+            last = height;
+        }
+        Err(RareError::OutOfReach { level: sign * last }.into())
+    }
+
+    /// The estimate by independent repetitions with these levels.
+    fn repeat(mut self, heights: &[f64]) -> Result<RareEstimate, MonteCarloError> {
+        // Those that start to each level, and those that pass it.
+        let mut counts = vec![[0_u64; 2]; heights.len()];
+        let mut values = Vec::new();
+        for _ in 0..self.event.repetitions {
+            let mut flying = self.starts();
+            let mut value = 1.0;
+            for (&height, [started, passed]) in heights.iter().zip(&mut counts) {
+                let entrances = entrances(&self.fly(&flying, height)?);
+                *started += flying.len() as u64;
+                *passed += entrances.len() as u64;
+                value *= entrances.len() as f64 / flying.len() as f64;
+                if entrances.is_empty() {
+                    break;
+                }
+                flying = self.copies(&entrances);
+            }
+            values.push(value);
+        }
+        let levels = heights.iter().zip(&counts).map(|(height, [started, passed])| Level {
+            value: self.goal.sign * height,
+            share: *passed as f64 / (*started).max(1) as f64,
+        });
+        let levels: Vec<Level> = levels.collect();
+        if let Some(level) = levels.iter().find(|level| level.share == 0.0) {
+            return Err(RareError::OutOfReach { level: level.value }.into());
+        }
+        let (mean, half) = mean_and_half(&values);
+        let flights = mean * (1.0 - mean) * (Z_95 / half).powi(2);
+        Ok(RareEstimate {
+            probability: Estimate {
+                value: mean,
+                low: (mean - half).max(0.0),
+                high: (mean + half).min(1.0),
+            },
+            levels,
+            member_steps: self.member_steps,
+            plain_member_steps: flights * self.experiment.steps() as f64,
+            lost: self.lost,
+        })
+    }
+
+    /// Members at the start.
+    fn starts(&mut self) -> Vec<Particle<F>> {
+        let first = self.next;
+        self.next += self.event.effort;
+        (first..self.next).map(|member| self.experiment.particle(member)).collect()
+    }
+
+    /// As many members as start from a level, each from one of the entrances: from every one equally many, but for rounding,
+    /// which one number decides for all (systematic resampling).
+    fn copies(&mut self, entrances: &[Particle<F>]) -> Vec<Particle<F>> {
+        let effort = self.event.effort;
+        let normal = NormalStream::new(self.experiment.seed, self.next, 0).normal(0);
+        let uniform = 0.5 * libm::erfc(-normal / std::f64::consts::SQRT_2);
+        let first = self.next + 1;
+        self.next = first + effort;
+        let spacing = entrances.len() as f64 / effort as f64;
+        let copy = |index: u64| {
+            let place = ((index as f64 + uniform) * spacing) as usize;
+            let entrance = entrances.get(place.min(entrances.len() - 1))?;
+            Some(Particle {
+                member: first + index,
+                ..*entrance
+            })
+        };
+        (0..effort).filter_map(copy).collect()
+    }
+
+    /// Flies members until they pass this height.
+    fn fly(&mut self, flying: &[Particle<F>], height: f64) -> Result<Vec<Passed<F>>, MonteCarloError> {
+        let goal = Goal { height, ..self.goal };
+        let flown: Vec<Option<Vec<Passed<F>>>> = flying
+            .par_chunks(LANES)
+            .map(|batch| F::pass(self.experiment, batch, &goal, self.control))
+            .collect::<Result<_, _>>()?;
+        let flown: Option<Vec<Vec<_>>> = flown.into_iter().collect();
+        let flown: Vec<_> = flown.ok_or(MonteCarloError::Stopped)?.into_iter().flatten().collect();
+        self.member_steps += flown.iter().map(|passed| passed.steps).sum::<u64>();
+        self.lost += flown.iter().filter(|passed| passed.lost).count() as u64;
+        Ok(flown)
+    }
+}
+
+/// Where a level was passed, by time: those that fly on side by side then have about as long to go.
+fn entrances<F: Flown>(flown: &[Passed<F>]) -> Vec<Particle<F>> {
+    let mut entrances: Vec<_> = flown.iter().filter_map(|passed| passed.at).collect();
+    entrances.sort_by_key(|entrance| entrance.step);
+    entrances
+}
+
+/// Mean, and half the width of its interval of 95 % by Student's distribution.
+fn mean_and_half(values: &[f64]) -> (f64, f64) {
+    let (mean, std) = mean_and_std(values);
+    let count = values.len() as f64;
+    (mean, student_95(count - 1.0) * std / count.sqrt())
+}
+
+/// 97.5 % point of Student's distribution, by the expansion about the normal one (Abramowitz and Stegun 1964, 26.7.5).
+fn student_95(freedom: f64) -> f64 {
+    let z = Z_95;
+    let [z_3, z_5, z_7, z_9] = [3, 5, 7, 9].map(|power| z.powi(power));
+    z + (z_3 + z) / (4.0 * freedom)
+        + (5.0 * z_5 + 16.0 * z_3 + 3.0 * z) / (96.0 * freedom.powi(2))
+        + (3.0 * z_7 + 19.0 * z_5 + 17.0 * z_3 - 15.0 * z) / (384.0 * freedom.powi(3))
+        + (79.0 * z_9 + 776.0 * z_7 + 1482.0 * z_5 - 1920.0 * z_3 - 945.0 * z)
+            / (92160.0 * freedom.powi(4))
+}

@@ -1,0 +1,173 @@
+//! Members that fly on from where they are, until they pass a level.
+
+use std::marker::PhantomData;
+use std::sync::atomic::Ordering;
+
+use ahv_core::Vector;
+
+use super::super::MonteCarloError;
+use super::super::batch::{Advance, Member, NEVER};
+use super::super::experiment::{Control, Experiment};
+use super::super::family::{Family, LANES, Packed};
+use super::super::scheme::Steps;
+
+/// Steps between two looks at whether members still have to fly.
+const STRETCH: u64 = 16;
+
+/// A member on its way.
+#[derive(Clone, Copy)]
+pub struct Particle<F: Family> {
+    /// Number of the member whose noise it has from here on.
+    pub(in super::super) member: u64,
+    /// Number of the member whose parameters it has.
+    pub(in super::super) origin: u64,
+    /// Steps since the start.
+    pub(in super::super) step: u64,
+    /// State.
+    pub(in super::super) x: F::State<f64>,
+    /// Input.
+    pub(in super::super) u: F::Input<f64>,
+}
+
+/// A level of a state, passed where `sign` times the state is beyond `height`.
+#[derive(Clone, Copy)]
+pub struct Goal {
+    /// Number of the state.
+    pub(super) state: usize,
+    /// 1 for a level that is passed upwards, −1 downwards.
+    pub(super) sign: f64,
+    /// `sign` times the level.
+    pub(super) height: f64,
+}
+
+/// What became of a member.
+#[derive(Clone, Copy)]
+pub struct Passed<F: Family> {
+    /// Greatest height until it passed the goal, was lost, or time was over.
+    pub(super) most: f64,
+    /// Where it passed the goal.
+    pub(super) at: Option<Particle<F>>,
+    /// Whether it was lost before.
+    pub(super) lost: bool,
+    /// Steps that it was computed for, beyond its passage included.
+    pub(super) steps: u64,
+}
+
+/// Where the lanes of a batch pass a goal.
+pub(in super::super) struct Passage<F: Family> {
+    goal: Goal,
+    /// Step from which on nothing is looked for: time is over, or the lane is done.
+    until: [u64; LANES],
+    most: [f64; LANES],
+    /// Steps after which the goal was passed, with state and input.
+    step: [u64; LANES],
+    x: F::State<Packed>,
+    u: F::Input<Packed>,
+}
+
+impl<F: Family> Passage<F> {
+    /// Looks at the states after `step` steps. Not inlined, so that flights without a goal step as if there were none.
+    #[inline(never)]
+    pub(in super::super) fn look(
+        &mut self,
+        x: &F::State<Packed>,
+        u: &F::Input<Packed>,
+        step: u64,
+    ) {
+        let Some(values) = x.get(self.goal.state) else {
+            return;
+        };
+        for lane in 0..LANES {
+            let height = self.goal.sign * values.0[lane];
+            if step >= self.until[lane] || height <= self.most[lane] {
+                continue;
+            }
+            self.most[lane] = height;
+            if height > self.goal.height {
+                (self.step[lane], self.until[lane]) = (step, 0);
+                F::update_state(&mut self.x, *x, |place, value| {
+                    place.0[lane] = value.0[lane];
+                });
+                F::update_input(&mut self.u, *u, |place, value| {
+                    place.0[lane] = value.0[lane];
+                });
+            }
+        }
+    }
+
+    /// Looks at this lane no more.
+    pub(in super::super) fn close(&mut self, lane: usize) {
+        self.until[lane] = 0;
+    }
+
+    /// Last step that is looked at.
+    fn end(&self) -> u64 {
+        self.until.into_iter().max().unwrap_or(0).saturating_sub(1)
+    }
+}
+
+/// Flies members, at most [`LANES`], until each has passed the goal or its time is over; `None` if the work was stopped.
+///
+/// Who is beyond the goal already passes it at once: a step may lead past several levels.
+pub(in super::super) fn pass<F, S, A, E>(
+    experiment: &Experiment<F>,
+    flying: &[Particle<F>],
+    goal: &Goal,
+    control: &Control,
+) -> Result<Option<Vec<Passed<F>>>, MonteCarloError>
+where
+    F: Family,
+    A: Member<F>,
+    E: Member<F>,
+    S: Steps<F, A::Model> + Steps<F, E::Model>,
+{
+    let mut batch = experiment.batch::<S>(flying)?;
+    let mut until = [0; LANES];
+    for (until, particle) in until.iter_mut().zip(flying) {
+        *until = experiment.steps().saturating_sub(particle.step) + 1;
+    }
+    let mut passage = Passage {
+        goal: *goal,
+        until,
+        most: [f64::NEG_INFINITY; LANES],
+        step: [NEVER; LANES],
+        x: batch.x,
+        u: batch.u,
+    };
+    passage.look(&batch.x, &batch.u, 0);
+    let count = flying.len().min(LANES) as u64;
+    let mut end = passage.end();
+    batch.passage = Some(passage);
+    let machine = pulp::Arch::new();
+    while batch.step < end {
+        if control.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let (from, until) = (batch.step, end.min(batch.step + STRETCH));
+        machine.dispatch(Advance {
+            batch: &mut batch,
+            until,
+            arithmetic: PhantomData::<(A, E)>,
+        });
+        control.done.fetch_add((until - from) * count, Ordering::Relaxed);
+        end = batch.passage.as_ref().map_or(0, Passage::end);
+    }
+    let Some(passage) = batch.passage else {
+        return Ok(Some(Vec::new()));
+    };
+    let passed = flying.iter().take(LANES).enumerate().map(|(lane, particle)| {
+        let step = Some(passage.step[lane]).filter(|&step| step != NEVER);
+        Passed {
+            most: passage.most[lane],
+            at: step.map(|step| Particle {
+                step: particle.step + step,
+                x: F::map_state(&passage.x, |numbers| numbers.0[lane]),
+                u: F::map_input(&passage.u, |numbers| numbers.0[lane]),
+                ..*particle
+            }),
+            lost: step.is_none() && batch.lost[lane].is_some(),
+            steps: batch.step,
+        }
+    });
+    Ok(Some(passed.collect()))
+}

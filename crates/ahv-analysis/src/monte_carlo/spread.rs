@@ -1,0 +1,161 @@
+//! How a number spreads over the members, in memory that does not grow with them.
+
+use crate::statistics::{Estimate, Z_95, quantile};
+
+/// Bins between the outer two.
+const BINS: usize = 2000;
+/// What the bins reach beyond the first numbers, in units of their range, on either side.
+const MARGIN: f64 = 0.5;
+
+/// Shares of the members at whose quantiles is looked.
+pub const QUANTILES: [f64; 7] = [0.005, 0.05, 0.25, 0.5, 0.75, 0.95, 0.995];
+
+/// The numbers of the first members as they are, and the counts of all in bins that are chosen by the first.
+#[derive(Clone, Debug)]
+pub(super) struct Spread {
+    /// `None` once there are more.
+    exact: Option<Vec<f64>>,
+    low: f64,
+    width: f64,
+    /// The first and the last bin are open.
+    counts: Vec<u64>,
+    count: u64,
+    min: f64,
+    max: f64,
+}
+
+/// Numbers that lie between two edges.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Bin {
+    /// Lower edge.
+    pub low: f64,
+    /// Upper edge.
+    pub high: f64,
+    /// How many.
+    pub count: u64,
+}
+
+impl Spread {
+    /// Of the first numbers; there may be more.
+    pub(super) fn new(first: Vec<f64>) -> Self {
+        let min = first.iter().copied().fold(f64::INFINITY, f64::min);
+        let max = first.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let range = max - min;
+        let low = min - MARGIN * range;
+        let width = (1.0 + 2.0 * MARGIN) * range / BINS as f64;
+        let mut spread = Self {
+            exact: None,
+            low,
+            width,
+            counts: vec![0; BINS + 2],
+            count: 0,
+            min,
+            max,
+        };
+        first.iter().for_each(|&value| spread.add(value));
+        spread.exact = Some(first);
+        spread
+    }
+
+    /// One number more.
+    pub(super) fn add(&mut self, value: f64) {
+        self.exact = None;
+        self.count += 1;
+        (self.min, self.max) = (self.min.min(value), self.max.max(value));
+        // Infinite for bins without width: then what is not equal lies in the outer ones.
+        let place = ((value - self.low) / self.width).floor();
+        let bin = if place < 0.0 {
+            0
+        } else if place < BINS as f64 {
+            1 + place as usize
+        } else if value == self.low {
+            1
+        } else {
+            BINS + 1
+        };
+        if let Some(count) = self.counts.get_mut(bin) {
+            *count += 1;
+        }
+    }
+
+    /// The quantile of this share, with its interval of 95 % by the ranks (binomial); wider by a bin where there are bins.
+    ///
+    /// `None` if it lies in an outer bin, or of no numbers.
+    pub(super) fn quantile(&self, share: f64) -> Option<Estimate> {
+        let spread = Z_95 * (share * (1.0 - share) / self.count as f64).sqrt();
+        let ends = [share, share - spread, share + spread].map(|share| share.clamp(0.0, 1.0));
+        let [value, low, high] = match &self.exact {
+            Some(numbers) => {
+                let mut sorted = numbers.clone();
+                sorted.sort_by(f64::total_cmp);
+                ends.map(|share| quantile(&sorted, share))
+            }
+            None => {
+                let [value, low, high] = ends.map(|share| self.binned(share));
+                [
+                    value,
+                    low.map(|low| (low - self.width).max(self.min)),
+                    high.map(|high| (high + self.width).min(self.max)),
+                ]
+            }
+        };
+        Some(Estimate {
+            value: value?,
+            low: low?,
+            high: high?,
+        })
+    }
+
+    /// The quantile by straight lines within bins.
+    fn binned(&self, share: f64) -> Option<f64> {
+        let wanted = share * self.count as f64;
+        let mut below = 0.0;
+        for (bin, &count) in self.counts.iter().enumerate() {
+            let count = count as f64;
+            if count > 0.0 && below + count >= wanted {
+                let inner = (1..=BINS).contains(&bin);
+                let part = ((wanted - below) / count).clamp(0.0, 1.0);
+                let value = self.low + ((bin as f64 - 1.0) + part) * self.width;
+                return inner.then(|| value.clamp(self.min, self.max));
+            }
+            below += count;
+        }
+        None
+    }
+
+    /// Half of the greatest error that bins add to a quantile; 0 while the numbers are there as they are.
+    pub(super) fn resolution(&self) -> f64 {
+        if self.exact.is_some() { 0.0 } else { self.width }
+    }
+
+    /// `bins` bins of equal width from the least number to the greatest.
+    pub(super) fn histogram(&self, bins: usize) -> Vec<Bin> {
+        if self.count == 0 {
+            return Vec::new();
+        }
+        let edge = |index: usize| self.min + (self.max - self.min) * index as f64 / bins as f64;
+        let mut histogram: Vec<Bin> = (0..bins)
+            .map(|index| Bin {
+                low: edge(index),
+                high: edge(index + 1),
+                count: 0,
+            })
+            .collect();
+        let range = self.max - self.min;
+        let mut put = |value: f64, count: u64| {
+            let place = ((value - self.min) / range * bins as f64).max(0.0) as usize;
+            if let Some(bin) = histogram.get_mut(place.min(bins.saturating_sub(1))) {
+                bin.count += count;
+            }
+        };
+        match &self.exact {
+            Some(numbers) => numbers.iter().for_each(|&value| put(value, 1)),
+            None => {
+                for (bin, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+                    put(self.low + (bin as f64 - 0.5) * self.width, count);
+                }
+            }
+        }
+        histogram
+    }
+}

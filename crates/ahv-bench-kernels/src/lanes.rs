@@ -1,0 +1,261 @@
+//! The generated functions for [`LANES`] members side by side, as the Monte Carlo flies them.
+//!
+//! Numbers lie member by member. A call is a loop over members around code without branches, and `pulp` runs it with the
+//! vector instructions of the machine.
+
+use std::hint::black_box;
+use std::marker::PhantomData;
+
+use ahv_core::{Fused, Lanes, Real, Straight, Vector as _};
+use ahv_integrate::Rk4;
+use ahv_models::{dcom, sdcom};
+
+/// Members side by side.
+pub const LANES: usize = 8;
+
+/// A number of each member.
+pub type Packed = Lanes<f64, LANES>;
+
+/// What a member's results become among those of all.
+pub trait Side {
+    /// The results of all members.
+    type Packed: Copy;
+
+    /// Before there are any.
+    fn empty() -> Self::Packed;
+
+    /// Puts those of one member to their places.
+    fn put(self, places: &mut Self::Packed, lane: usize);
+
+    /// Appends those of one member to `numbers`, row by row.
+    fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>);
+}
+
+/// A scalar that members are computed with.
+pub trait Scalar: Real + Side<Packed = Packed> {
+    /// The scalar of this value.
+    fn of(value: f64) -> Self;
+}
+
+impl Scalar for Straight<f64> {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        Self(value)
+    }
+}
+
+impl Side for Straight<f64> {
+    type Packed = Packed;
+
+    fn empty() -> Packed {
+        Packed::ZERO
+    }
+
+    #[inline(always)]
+    fn put(self, places: &mut Packed, lane: usize) {
+        places.0[lane] = self.0;
+    }
+
+    fn tell(places: &Packed, lane: usize, numbers: &mut Vec<f64>) {
+        numbers.push(places.0[lane]);
+    }
+}
+
+impl Scalar for Fused<Straight<f64>> {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        Self::new(Straight(value))
+    }
+}
+
+impl Side for Fused<Straight<f64>> {
+    type Packed = Packed;
+
+    fn empty() -> Packed {
+        Packed::ZERO
+    }
+
+    #[inline(always)]
+    fn put(self, places: &mut Packed, lane: usize) {
+        self.value().put(places, lane);
+    }
+
+    fn tell(places: &Packed, lane: usize, numbers: &mut Vec<f64>) {
+        numbers.push(places.0[lane]);
+    }
+}
+
+impl<T: Side, const N: usize> Side for [T; N] {
+    type Packed = [T::Packed; N];
+
+    fn empty() -> Self::Packed {
+        [T::empty(); N]
+    }
+
+    #[inline(always)]
+    fn put(self, places: &mut Self::Packed, lane: usize) {
+        for (place, value) in places.iter_mut().zip(self) {
+            value.put(place, lane);
+        }
+    }
+
+    fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>) {
+        places.iter().for_each(|it| T::tell(it, lane, numbers));
+    }
+}
+
+impl<A: Side, B: Side> Side for (A, B) {
+    type Packed = (A::Packed, B::Packed);
+
+    fn empty() -> Self::Packed {
+        (A::empty(), B::empty())
+    }
+
+    #[inline(always)]
+    fn put(self, places: &mut Self::Packed, lane: usize) {
+        self.0.put(&mut places.0, lane);
+        self.1.put(&mut places.1, lane);
+    }
+
+    fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>) {
+        A::tell(&places.0, lane, numbers);
+        B::tell(&places.1, lane, numbers);
+    }
+}
+
+impl<A: Side, B: Side, C: Side> Side for (A, B, C) {
+    type Packed = (A::Packed, B::Packed, C::Packed);
+
+    fn empty() -> Self::Packed {
+        (A::empty(), B::empty(), C::empty())
+    }
+
+    #[inline(always)]
+    fn put(self, places: &mut Self::Packed, lane: usize) {
+        self.0.put(&mut places.0, lane);
+        self.1.put(&mut places.1, lane);
+        self.2.put(&mut places.2, lane);
+    }
+
+    fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>) {
+        A::tell(&places.0, lane, numbers);
+        B::tell(&places.1, lane, numbers);
+        C::tell(&places.2, lane, numbers);
+    }
+}
+
+macro_rules! vectors {
+    ($($module:ident::$vector:ident;)+) => {$(
+        impl<T: Side> Side for $module::$vector<T> {
+            type Packed = $module::$vector<T::Packed>;
+
+            fn empty() -> Self::Packed {
+                $module::$vector::splat(T::empty())
+            }
+
+            #[inline(always)]
+            fn put(self, places: &mut Self::Packed, lane: usize) {
+                places.update(self, |place, value| value.put(place, lane));
+            }
+
+            fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>) {
+                let mut tell = |it: &T::Packed| T::tell(it, lane, numbers);
+                places.map_ref(&mut tell);
+            }
+        }
+    )+};
+}
+
+vectors! {
+    dcom::State;
+    sdcom::State;
+    sdcom::Noise;
+}
+
+macro_rules! functions {
+    ($($(#[$doc:meta])+ $name:ident = $module:ident::$function:ident -> $results:ty;)+) => {$(
+        $(#[$doc])+
+        pub struct $name<'a, R: Scalar> {
+            /// The model, with parameters of its own in every member.
+            pub model: &'a $module::Model<Packed>,
+            /// States of eight members after eight members.
+            pub states: &'a [$module::State<Packed>],
+            /// Their inputs.
+            pub inputs: &'a [$module::Input<Packed>],
+            /// Where the results of each eight go: one place for all stays in the cache.
+            pub results: &'a mut <$results as Side>::Packed,
+            /// What they are computed with.
+            pub scalar: PhantomData<R>,
+        }
+
+        impl<R: Scalar> pulp::WithSimd for $name<'_, R> {
+            type Output = ();
+
+            #[inline(always)]
+            fn with_simd<V: pulp::Simd>(self, _: V) {
+                // Local copies, of which the compiler knows that no store to a result changes them.
+                let prepared = self.model.prepared;
+                for (&x, &u) in self.states.iter().zip(self.inputs) {
+                    for lane in 0..LANES {
+                        let pick = |numbers: &Packed| R::of(numbers.0[lane]);
+                        let (x, u, p) = (x.map_ref(pick), u.map_ref(pick), prepared.map_ref(pick));
+                        $module::$function(&x, &u, &p).put(self.results, lane);
+                    }
+                    black_box(&mut *self.results);
+                }
+            }
+        }
+    )+};
+}
+
+functions! {
+    /// Drift of DCOM.
+    DcomDrift = dcom::drift -> dcom::State<R>;
+    /// Drift of DCOM, and the entries of both Jacobians that are not 0 by structure.
+    DcomDriftJacobians = dcom::drift_and_jacobians_values -> (dcom::State<R>, [R; 48], [R; 18]);
+    /// Drift and diffusion of SDCOM.
+    SdcomDriftDiffusion = sdcom::drift_and_diffusion -> (sdcom::State<R>, sdcom::Diffusion<R>);
+}
+
+/// Flights of DCOM by [`Rk4`] at held inputs.
+pub struct DcomRk4<'a, R: Scalar> {
+    /// The model, with parameters of its own in every member.
+    pub model: &'a dcom::Model<Packed>,
+    /// Where the members are, and where they get to.
+    pub state: &'a mut dcom::State<Packed>,
+    /// Their inputs.
+    pub input: &'a dcom::Input<Packed>,
+    /// Step size, in s.
+    pub dt: f64,
+    /// Number of steps.
+    pub steps: usize,
+    /// What they are computed with.
+    pub scalar: PhantomData<R>,
+}
+
+impl<R: Scalar> pulp::WithSimd for DcomRk4<'_, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: pulp::Simd>(self, _: V) {
+        let dt = self.dt;
+        // Known to hold from here on, it costs nothing in the loop.
+        if !(dt > 0.0 && dt.is_finite()) {
+            return;
+        }
+        let stepper = Rk4::new(dt);
+        let (model, mut x, u) = (*self.model, *self.state, *self.input);
+        let mut next = x;
+        for _ in 0..self.steps {
+            for lane in 0..LANES {
+                let pick = |numbers: &Packed| R::of(numbers.0[lane]);
+                let mut member = x.map_ref(pick);
+                // A scalar without branches has no failure.
+                let _ = stepper.step(&model.map_ref(pick), &mut member, &u.map_ref(pick));
+                member.put(&mut next, lane);
+            }
+            x = next;
+        }
+        *self.state = x;
+    }
+}

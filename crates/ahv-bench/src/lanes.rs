@@ -1,0 +1,136 @@
+//! The generated functions for members side by side.
+
+use std::marker::PhantomData;
+use std::time::Instant;
+
+use ahv_bench_kernels::lanes::{
+    DcomDrift, DcomDriftJacobians, LANES, Packed, Scalar, SdcomDriftDiffusion, Side,
+};
+use ahv_core::{Fused, Lanes, Straight, Vector};
+use ahv_models::{dcom, sdcom};
+
+use crate::candidates::layout;
+use crate::kernel::{Evaluate, PASSES};
+use crate::points::Points;
+use crate::subject::SUBJECTS;
+
+/// The exact mode, and the one with a fused multiply-add.
+pub(crate) type Exact = Straight<f64>;
+/// Asks for a processor with the instruction.
+pub(crate) type Fma = Fused<Straight<f64>>;
+
+/// How they are built, for people.
+pub(crate) const EXACT: &str = "rustc -O, thin LTO, baseline target, x86-64-v3 chosen at run time";
+/// The same in the mode with a fused multiply-add.
+pub(crate) const FMA: &str = "the same, with a fused multiply-add";
+
+/// Whether this processor multiplies and adds in one rounding.
+pub(crate) fn has_fma() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return std::arch::is_x86_feature_detected!("fma");
+    #[cfg(not(target_arch = "x86_64"))]
+    return false;
+}
+
+/// Evaluates at points of which each [`LANES`] lie side by side, and leaves the results of the last of them.
+type Call<M, X, U, Y> = fn(&M, &[X], &[U], &mut Y);
+
+/// A function with its points and its results in place.
+struct SideBySide<M, X, U, Y> {
+    call: Call<M, X, U, Y>,
+    /// Appends the results of a member to numbers.
+    tell: fn(&Y, usize, &mut Vec<f64>),
+    model: M,
+    /// States and inputs, once they are known.
+    packed: Option<(Vec<X>, Vec<U>)>,
+    results: Y,
+    /// Where each result stands in the dense outputs, one after the other.
+    positions: Vec<usize>,
+    dense: usize,
+}
+
+impl<M, X: Vector<Packed>, U: Vector<Packed>, Y> SideBySide<M, X, U, Y> {
+    fn pack(points: &Points) -> (Vec<X>, Vec<U>) {
+        let all: Vec<_> = points.iter().collect();
+        let blocks = all.chunks(LANES).map(|block| {
+            // Lanes without point repeat the last one.
+            let at = |lane: usize| block[lane.min(block.len() - 1)];
+            let number = |i| Lanes(std::array::from_fn(|lane| at(lane).0[i]));
+            let input = |i| Lanes(std::array::from_fn(|lane| at(lane).1[i]));
+            (X::from_fn(number), U::from_fn(input))
+        });
+        blocks.unzip()
+    }
+}
+
+impl<M, X: Vector<Packed>, U: Vector<Packed>, Y> Evaluate for SideBySide<M, X, U, Y> {
+    fn values(&mut self, points: &Points) -> Result<Vec<Vec<f64>>, String> {
+        let mut all = Vec::new();
+        let (states, inputs) = Self::pack(points);
+        for (x, u) in states.iter().zip(&inputs) {
+            let (x, u) = (std::slice::from_ref(x), std::slice::from_ref(u));
+            (self.call)(&self.model, x, u, &mut self.results);
+            for lane in 0..LANES {
+                let (mut numbers, mut dense) = (Vec::new(), vec![0.0; self.dense]);
+                (self.tell)(&self.results, lane, &mut numbers);
+                for (&position, number) in self.positions.iter().zip(numbers) {
+                    dense[position] = number;
+                }
+                all.push(dense);
+            }
+        }
+        all.truncate(points.len());
+        Ok(all)
+    }
+
+    fn turn(&mut self, points: &Points, _: u32) -> Result<f64, String> {
+        let (states, inputs) = self.packed.get_or_insert_with(|| Self::pack(points));
+        let start = Instant::now();
+        for _ in 0..PASSES {
+            (self.call)(&self.model, states, inputs, &mut self.results);
+        }
+        let evaluations = PASSES as usize * LANES * states.len();
+        Ok(start.elapsed().as_secs_f64() / evaluations as f64)
+    }
+}
+
+macro_rules! kernel {
+    ($call:ident, $module:ident, $results:ty, $subject:expr) => {
+        Box::new(SideBySide {
+            call: |model, states, inputs, results| {
+                pulp::Arch::new().dispatch($call::<R> {
+                    model,
+                    states,
+                    inputs,
+                    results,
+                    scalar: PhantomData,
+                });
+            },
+            tell: <$results as Side>::tell,
+            model: $module::Model::new(&$module::NOMINAL).map_ref(|&it| Packed::splat(it)),
+            packed: None,
+            results: <$results as Side>::empty(),
+            positions: layout(&$subject).concat(),
+            dense: $subject.dense(),
+        })
+    };
+}
+
+/// The kernels of all subjects.
+pub(crate) fn kernels<R: Scalar>() -> Vec<Box<dyn Evaluate>> {
+    vec![
+        kernel!(DcomDrift, dcom, dcom::State<R>, SUBJECTS[0]),
+        kernel!(
+            DcomDriftJacobians,
+            dcom,
+            (dcom::State<R>, [R; 48], [R; 18]),
+            SUBJECTS[1]
+        ),
+        kernel!(
+            SdcomDriftDiffusion,
+            sdcom,
+            (sdcom::State<R>, sdcom::Diffusion<R>),
+            SUBJECTS[2]
+        ),
+    ]
+}

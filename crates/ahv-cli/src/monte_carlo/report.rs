@@ -1,0 +1,226 @@
+//! What is told of the flights: as JSON, and in words.
+
+use std::fmt::Write;
+
+use ahv_analysis::monte_carlo::{Flown, QUANTILES, Snapshot};
+use ahv_analysis::statistics::Estimate;
+use ahv_core::Vector;
+use serde::Serialize;
+
+use super::{Pair, Told};
+use crate::assignment::show;
+use crate::condition::Heading;
+use crate::output::Pairs;
+
+/// The outcome as JSON. Means, standard deviations and quantiles are of the members that fly at the end.
+#[derive(Serialize)]
+pub(super) struct Json<'a> {
+    #[serde(flatten)]
+    heading: Heading<'a>,
+    units: Pairs<&'static str>,
+    members: u64,
+    asked: u64,
+    complete: bool,
+    lost: u64,
+    losses: Vec<JsonLoss>,
+    member_steps: u64,
+    member_steps_per_second: f64,
+    seconds: f64,
+    threads: usize,
+    scheme: &'static str,
+    mode: &'static str,
+    seed: u64,
+    dt: f64,
+    steps: u64,
+    dispersed: bool,
+    feedback: bool,
+    mean: Pairs<Option<f64>>,
+    std: Pairs<Option<f64>>,
+    digest: &'a str,
+    left_validity_box: Estimate,
+    snapshots: Vec<JsonSnapshot>,
+}
+
+#[derive(Serialize)]
+struct JsonLoss {
+    member: u64,
+    time: f64,
+    state: &'static str,
+}
+
+#[derive(Serialize)]
+struct JsonSnapshot {
+    time: f64,
+    members: u64,
+    mean: Pairs<Option<Estimate>>,
+    std: Pairs<Option<Estimate>>,
+    quantiles: Pairs<Vec<JsonQuantile>>,
+    quantile_resolution: Pairs<f64>,
+    covariance: Vec<Vec<Option<f64>>>,
+    left_validity_box: Estimate,
+    left_validity_box_by_state: Pairs<Estimate>,
+    left_limits: Option<Estimate>,
+    left_limits_by_state: Option<Pairs<Estimate>>,
+}
+
+#[derive(Clone, Serialize)]
+struct JsonQuantile {
+    share: f64,
+    #[serde(flatten)]
+    value: Option<Estimate>,
+}
+
+/// Names of the states, each with its value.
+fn by_state<X: Vector<f64>, V>(values: impl Iterator<Item = V>) -> Pairs<V> {
+    Pairs(X::NAMES.iter().copied().zip(values).collect())
+}
+
+impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
+    pub(super) fn json(&self) -> Json<'_> {
+        let outcome = &self.outcome;
+        let value = |estimate: &Option<Estimate>| estimate.map(|it| it.value);
+        let last = || self.outcome.snapshots.last().into_iter().flat_map(|it| &it.states);
+        Json {
+            heading: self.vehicle.heading(),
+            units: Pairs::units::<M::State>(self.vehicle.units),
+            members: outcome.members,
+            asked: outcome.asked,
+            complete: outcome.members == outcome.asked,
+            lost: outcome.lost,
+            losses: outcome
+                .losses
+                .iter()
+                .map(|(member, loss)| JsonLoss {
+                    member: *member,
+                    time: loss.step as f64 * self.experiment.dt,
+                    state: loss.state,
+                })
+                .collect(),
+            member_steps: outcome.member_steps,
+            member_steps_per_second: self.rate(),
+            seconds: outcome.elapsed.as_secs_f64(),
+            threads: self.threads,
+            scheme: self.experiment.scheme.name(),
+            mode: self.experiment.mode.name(),
+            seed: self.experiment.seed,
+            dt: self.experiment.dt,
+            steps: self.experiment.steps(),
+            dispersed: self.experiment.dispersion.is_some(),
+            feedback: self.experiment.feedback.is_some(),
+            mean: by_state::<M::State, _>(last().map(|it| value(&it.mean))),
+            std: by_state::<M::State, _>(last().map(|it| value(&it.std))),
+            digest: &outcome.digest,
+            left_validity_box: self.left_any(outcome.snapshots.last(), 0),
+            snapshots: outcome.snapshots.iter().map(|it| self.snapshot(it)).collect(),
+        }
+    }
+
+    fn snapshot(&self, snapshot: &Snapshot) -> JsonSnapshot {
+        let states = || snapshot.states.iter();
+        let finite = |value: &f64| Some(*value).filter(|value| value.is_finite());
+        let quantiles = states().map(|it| {
+            let shares = QUANTILES.iter().zip(&it.quantiles);
+            let quantile = |(&share, &value): (&f64, &Option<Estimate>)| JsonQuantile { share, value };
+            shares.map(quantile).collect()
+        });
+        JsonSnapshot {
+            time: snapshot.time,
+            members: snapshot.members,
+            mean: by_state::<M::State, _>(states().map(|it| it.mean)),
+            std: by_state::<M::State, _>(states().map(|it| it.std)),
+            quantiles: by_state::<M::State, _>(quantiles),
+            quantile_resolution: by_state::<M::State, _>(states().map(|it| it.resolution)),
+            covariance: snapshot
+                .covariance
+                .iter()
+                .map(|row| row.iter().map(finite).collect())
+                .collect(),
+            left_validity_box: self.left_any(Some(snapshot), 0),
+            left_validity_box_by_state: self.left(snapshot, 0),
+            left_limits: self.has_limits().then(|| self.left_any(Some(snapshot), 1)),
+            left_limits_by_state: self.has_limits().then(|| self.left(snapshot, 1)),
+        }
+    }
+
+    pub(super) fn has_limits(&self) -> bool {
+        self.experiment.watched.len() > 1
+    }
+
+    /// Probability that a member has left any interval of a set by then.
+    pub(super) fn left_any(&self, snapshot: Option<&Snapshot>, set: usize) -> Estimate {
+        let count = snapshot.and_then(|it| it.left_any.get(set).copied());
+        Estimate::of_share(count.unwrap_or(0), self.outcome.members)
+    }
+
+    /// The same state by state.
+    pub(super) fn left(&self, snapshot: &Snapshot, set: usize) -> Pairs<Estimate> {
+        let counts = snapshot.left.get(set).into_iter().flatten();
+        by_state::<M::State, _>(counts.map(|&it| Estimate::of_share(it, self.outcome.members)))
+    }
+
+    fn rate(&self) -> f64 {
+        self.outcome.member_steps as f64 / self.outcome.elapsed.as_secs_f64().max(1e-9)
+    }
+
+    pub(super) fn text(&self) -> String {
+        let (outcome, experiment) = (&self.outcome, &self.experiment);
+        let mut text = format!(
+            "{}: {}, {}\n{} flights of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second on {} threads\n\
+             at the end, mean and standard deviation with intervals of 95 %, 0.5 % and 99.5 % points",
+            M::NAME,
+            self.place,
+            self.vehicle.described(),
+            outcome.members,
+            experiment.steps() as f64 * experiment.dt,
+            experiment.scheme.name(),
+            experiment.dt,
+            experiment.mode.name(),
+            experiment.seed,
+            if experiment.dispersion.is_some() { ", dispersed" } else { "" },
+            if experiment.feedback.is_some() { ", feedback" } else { "" },
+            self.rate(),
+            self.threads,
+        );
+        let units = self.vehicle.units.labels::<M::State>();
+        let last = outcome.snapshots.last();
+        let states = last.into_iter().flat_map(|it| &it.states);
+        // Writing into a String cannot fail.
+        for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(states) {
+            let shown = |value: f64| show(value, unit);
+            let range = |estimate: &Option<Estimate>| match estimate {
+                Some(it) => format!("{} [{}, {}]", shown(it.value), shown(it.low), shown(it.high)),
+                None => "beyond numbers".to_owned(),
+            };
+            let point = |estimate: Option<&Option<Estimate>>| match estimate.copied().flatten() {
+                Some(it) => shown(it.value),
+                None => "-".to_owned(),
+            };
+            let _ = write!(
+                text,
+                "\n  {name:<12} {}; {}; {} .. {}",
+                range(&state.mean),
+                range(&state.std),
+                point(state.quantiles.first()),
+                point(state.quantiles.last()),
+            );
+        }
+        let percent = |it: Estimate| {
+            format!(
+                "{:.4} % [{:.4}, {:.4}]",
+                100.0 * it.value,
+                100.0 * it.low,
+                100.0 * it.high
+            )
+        };
+        let _ = write!(text, "\nleft the validity box: {}", percent(self.left_any(last, 0)));
+        if self.has_limits() {
+            let _ = write!(text, "\nleft the limits: {}", percent(self.left_any(last, 1)));
+        }
+        let _ = write!(
+            text,
+            "\nlost, with a state that was no longer finite: {} of {}\ndigest of the last states: {}",
+            outcome.lost, outcome.members, outcome.digest
+        );
+        text
+    }
+}
