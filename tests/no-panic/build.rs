@@ -50,7 +50,7 @@ fn calls(module: &Path) -> String {
         "fn {model}<R: Real>() {{
     let nominal = black_box({model}::NOMINAL.map_into(R::from_f64));
     let (x, u, p): ({model}::State<R>, {model}::Input<R>, _) = (unknown(), unknown(), {model}::prepare(&nominal));
-{}{}    let model = black_box({model}::Model::new(&nominal));
+{}{}    let model = black_box({model}::Model::new(&nominal)).map_ref(|&value| black_box(value));
     differentiable(&model, &{model}::STATE_BOUNDS, &{model}::INPUT_BOUNDS);
 {noise}    vector::<R, {model}::Parameters<R>>();
 }}
@@ -74,6 +74,7 @@ fn call(model: &str, text: &str) -> String {
         "&Parameters<R>" => "&nominal",
         "&Noise<R>" => "&unknown()",
         "R" => "black_box(R::ONE)",
+        values if values.starts_with("&[R; ") => "&black_box([R::ONE; _])",
         other => {
             panic!("{model}::{function} has an argument of type {other}: say here how it is called")
         }

@@ -8,6 +8,9 @@ pub mod vectors;
 /// The Rust in the documentation must compile and run.
 #[cfg(doctest)]
 mod docs {
+    #[doc = include_str!("../../docs/integrators.md")]
+    mod integrators {}
+
     #[doc = include_str!("../../docs/link.md")]
     mod link {}
 

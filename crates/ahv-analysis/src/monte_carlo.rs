@@ -47,7 +47,9 @@ pub enum MonteCarloError {
         scheme: &'static str,
     },
     /// The mode `fma` on a processor without the instruction.
-    #[error("the mode fma asks for a processor with a fused multiply-add, which this one is without")]
+    #[error(
+        "the mode fma asks for a processor with a fused multiply-add, which this one is without"
+    )]
     NoFma,
     /// Stopped before a member had flown.
     #[error("stopped before the first members had flown")]

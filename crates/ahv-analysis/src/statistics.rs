@@ -47,8 +47,8 @@ impl Estimate {
         let (n, share) = (of as f64, count as f64 / of as f64);
         let z_2 = Z_95 * Z_95;
         let middle = (share + z_2 / (2.0 * n)) / (1.0 + z_2 / n);
-        let half = Z_95 / (1.0 + z_2 / n)
-            * (share * (1.0 - share) / n + z_2 / (4.0 * n * n)).sqrt();
+        let half =
+            Z_95 / (1.0 + z_2 / n) * (share * (1.0 - share) / n + z_2 / (4.0 * n * n)).sqrt();
         // Rounding must not push the ends past what they are for none and for all.
         Self {
             value: share,

@@ -3,16 +3,41 @@
 
 use std::env;
 use std::hint::black_box;
+use std::marker::PhantomData;
 use std::process::ExitCode;
 
+use ahv_bench_kernels::lanes::{
+    DcomDrift, DcomDriftJacobians, DcomRk4, Packed, SdcomDriftDiffusion, Side,
+};
+use ahv_core::Straight;
 use ahv_integrate::{ItoEulerMaruyama, Rk4};
 use ahv_models::{dcom, sdcom};
+use pulp::WithSimd;
 
 /// Makes as many calls.
 type Calls = fn(u32);
 
+/// Evaluates as many times, a multiple of [`BLOCKS`], for all lanes.
+macro_rules! lanes {
+    ($count:ident, $call:ident, $module:ident, $results:ty, $x:expr, $u:expr) => {
+        let model = $module::Model::new(&$module::NOMINAL).map_ref(packed);
+        let (states, inputs) = ([$x.map_ref(packed); BLOCKS], [$u.map_ref(packed); BLOCKS]);
+        let mut results = <$results as Side>::empty();
+        for _ in 0..$count as usize / BLOCKS {
+            with_avx2($call::<R> {
+                model: see(&model),
+                states: see(&states),
+                inputs: see(&inputs),
+                results: &mut results,
+                scalar: PhantomData,
+            });
+            see(&results);
+        }
+    };
+}
+
 /// What is counted. An entry more is a figure more in instructions.json.
-const COUNTED: [(&str, Calls); 6] = [
+const COUNTED: [(&str, Calls); 10] = [
     ("dcom::drift", |count| {
         let (p, x, u) = (dcom::prepare(&dcom::NOMINAL), DCOM, DCOM_INPUT);
         calls(count, || dcom::drift(see(&x), see(&u), see(&p)));
@@ -54,7 +79,60 @@ const COUNTED: [(&str, Calls); 6] = [
             stepped
         });
     }),
+    ("dcom::drift, 8 lanes, AVX2", |count| {
+        lanes!(count, DcomDrift, dcom, dcom::State<R>, DCOM, DCOM_INPUT);
+    }),
+    ("dcom::drift_and_jacobians, 8 lanes, AVX2", |count| {
+        lanes!(
+            count,
+            DcomDriftJacobians,
+            dcom,
+            (dcom::State<R>, [R; 48], [R; 18]),
+            DCOM,
+            DCOM_INPUT
+        );
+    }),
+    ("sdcom::drift_and_diffusion, 8 lanes, AVX2", |count| {
+        lanes!(
+            count,
+            SdcomDriftDiffusion,
+            sdcom,
+            (sdcom::State<R>, sdcom::Diffusion<R>),
+            SDCOM,
+            SDCOM_INPUT
+        );
+    }),
+    ("dcom, Rk4::step, 8 lanes, AVX2", |count| {
+        with_avx2(DcomRk4::<R> {
+            model: &dcom::Model::new(&dcom::NOMINAL).map_ref(packed),
+            state: &mut DCOM.map_ref(packed),
+            input: &DCOM_INPUT.map_ref(packed),
+            dt: DT,
+            steps: count as usize,
+            scalar: PhantomData,
+        });
+    }),
 ];
+
+/// Members in lanes that one call evaluates, one block after the other.
+const BLOCKS: usize = 100;
+
+/// The scalar of the lanes.
+type R = Straight<f64>;
+
+fn packed(value: &f64) -> Packed {
+    Packed::splat(*value)
+}
+
+/// Runs what is done for members side by side as most machines do; on others nothing.
+fn with_avx2(work: impl WithSimd) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(machine) = pulp::x86::V3::try_new() {
+        pulp::Simd::vectorize(machine, work);
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    drop(work);
+}
 
 /// Step size in s.
 const DT: f64 = 1e-3;
@@ -103,7 +181,7 @@ const NOISE: sdcom::Noise<f64> = sdcom::Noise {
 };
 
 /// The value as if it were another at each call.
-fn see<T>(value: &T) -> &T {
+fn see<T: ?Sized>(value: &T) -> &T {
     black_box(value)
 }
 

@@ -182,7 +182,7 @@ macro_rules! functions {
             pub states: &'a [$module::State<Packed>],
             /// Their inputs.
             pub inputs: &'a [$module::Input<Packed>],
-            /// Where the results of each eight go: one place for all stays in the cache.
+            /// Where the results of the last eight go.
             pub results: &'a mut <$results as Side>::Packed,
             /// What they are computed with.
             pub scalar: PhantomData<R>,
@@ -195,14 +195,18 @@ macro_rules! functions {
             fn with_simd<V: pulp::Simd>(self, _: V) {
                 // Local copies, of which the compiler knows that no store to a result changes them.
                 let prepared = self.model.prepared;
-                for (&x, &u) in self.states.iter().zip(self.inputs) {
+                let mut results = <$results as Side>::empty();
+                for (x, u) in self.states.iter().zip(self.inputs) {
+                    let (x, u) = (*x, *u);
                     for lane in 0..LANES {
                         let pick = |numbers: &Packed| R::of(numbers.0[lane]);
                         let (x, u, p) = (x.map_ref(pick), u.map_ref(pick), prepared.map_ref(pick));
-                        $module::$function(&x, &u, &p).put(self.results, lane);
+                        $module::$function(&x, &u, &p).put(&mut results, lane);
                     }
-                    black_box(&mut *self.results);
+                    // One place for all stays in the cache; nobody may leave out what is overwritten there.
+                    black_box(&mut results);
                 }
+                *self.results = results;
             }
         }
     )+};

@@ -3,6 +3,7 @@
 
 mod agreement;
 mod arrays;
+mod bars;
 mod candidates;
 mod commands;
 mod compilation;
@@ -18,6 +19,7 @@ mod monte_carlo;
 mod operations;
 mod picture;
 mod points;
+mod ports;
 mod race;
 mod report;
 mod rk4;
@@ -28,6 +30,7 @@ mod subject;
 mod table;
 mod threads;
 mod timing;
+mod weak;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -138,6 +141,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     let trajectories = rk4::measure(&steps, arrays.as_ref(), races)?;
     let monte_carlo = monte_carlo::measure(ensembles, arrays.as_ref(), races)?;
     let modes = modes::measure(ensembles, arrays.as_ref(), races)?;
+    let weak = setting.peers.then(|| weak::measure(races)).transpose()?;
     let groups = [
         ("RK4 of DCOM", &trajectories.finishes),
         ("Monte Carlo of SDCOM", &monte_carlo.finishes),
@@ -145,7 +149,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     ];
     let compilation = compilation::all(&candidates, &ensembles, &groups);
     let generate = |program: &PathBuf| generation::measure(program, &setting.out);
-    Ok(Report {
+    let mut report = Report {
         machine: machine::describe(setting, &peers)?,
         compilation: setting.peers.then_some(compilation),
         generation: args.peers.as_ref().map(generate).transpose()?,
@@ -158,7 +162,12 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
         trajectories,
         monte_carlo,
         modes,
-    })
+        weak,
+        bound: ports::measure(&setting.root)?,
+        bars: Vec::new(),
+    };
+    report.bars = bars::all(&report);
+    Ok(report)
 }
 
 /// What the peers in Python are told.

@@ -38,6 +38,7 @@ pub(crate) fn compare(root: &Path, peers: &Peers) -> Result<Vec<Operations>, Str
         let sum = counts.iter().fold(Count::default(), |sum, it| Count {
             operations: sum.operations + it.operations,
             divisions: sum.divisions + it.divisions,
+            ..sum
         });
         found.push(Operations {
             wrenfold: peers.wrenfold["kernels"][subject.symbol]["operations"].as_u64(),
@@ -83,10 +84,24 @@ fn row(model: &str, function: &str, own: Count, casadi: &Value) -> Operations {
     }
 }
 
+/// The operations of a function by their kinds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Count {
+pub(crate) struct Count {
     operations: u64,
-    divisions: u64,
+    pub(crate) additions: u64,
+    pub(crate) multiplications: u64,
+    pub(crate) divisions: u64,
+    pub(crate) sin_cos: u64,
+    pub(crate) exp: u64,
+}
+
+/// The operations of a generated function.
+///
+/// # Errors
+/// A function whose header does not say them.
+pub(crate) fn of(root: &Path, model: &str, function: &str) -> Result<Count, String> {
+    let count = headers(root, model)?.get(function).copied();
+    count.ok_or_else(|| missing(model, function))
 }
 
 /// What the headers of a model's functions say, by the function's name.
@@ -124,13 +139,21 @@ fn header(line: &str) -> Option<Count> {
     let operations = total
         .strip_suffix("operations")
         .or(total.strip_suffix("operation"))?;
-    let divisions = kinds.trim_end_matches('.').split(", ").find_map(|kind| {
-        let (count, name) = kind.split_once(' ')?;
-        name.starts_with("division").then(|| count.parse().ok())?
-    });
+    let of = |kind: &str| {
+        let mut kinds = kinds.trim_end_matches('.').split(", ");
+        let count = kinds.find_map(|it| {
+            let (count, name) = it.split_once(' ')?;
+            name.starts_with(kind).then(|| count.parse().ok())?
+        });
+        count.unwrap_or_default()
+    };
     Some(Count {
         operations: operations.trim().parse().ok()?,
-        divisions: divisions.unwrap_or_default(),
+        additions: of("addition"),
+        multiplications: of("multiplication"),
+        divisions: of("division"),
+        sin_cos: of("sin_cos"),
+        exp: of("exp"),
     })
 }
 
@@ -145,7 +168,9 @@ mod tests {
                     /// No operations.\npub fn none(x: f64) {}\n";
         let drift = Count {
             operations: 141,
+            additions: 140,
             divisions: 1,
+            ..Count::default()
         };
         let expected = [
             ("drift".to_owned(), drift),

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::agreement::Agreement;
+use crate::bars::{self, Bar};
+use crate::candidates::LANES;
 use crate::compilation::{self, Compilation};
 use crate::generation::Generation;
 use crate::machine::Machine;
@@ -12,11 +14,13 @@ use crate::modes::Modes;
 use crate::monte_carlo::MonteCarlo;
 use crate::operations::Operations;
 use crate::picture;
+use crate::ports::Bound;
 use crate::rk4::Trajectories;
 use crate::steppers::Steppers;
 use crate::subject::SUBJECTS;
 use crate::table::Table;
 use crate::timing::{Spread, Timing};
+use crate::weak::Weak;
 
 /// Seconds that `generate` may take, and those of them that emission may.
 const GENERATION_GOALS: (f64, f64) = (3.0, 0.05);
@@ -38,6 +42,11 @@ pub(crate) struct Report {
     pub(crate) trajectories: Trajectories,
     pub(crate) monte_carlo: MonteCarlo,
     pub(crate) modes: Modes,
+    /// With peers alone: it takes minutes.
+    pub(crate) weak: Option<Weak>,
+    pub(crate) bound: Bound,
+    /// Of all that is above.
+    pub(crate) bars: Vec<Bar>,
 }
 
 impl Report {
@@ -86,16 +95,27 @@ impl Report {
 
     fn tables(&self) -> Vec<Table> {
         let mut tables = vec![
+            bars::table(&self.bars),
             self.times(),
             self.trajectories.table(),
             self.monte_carlo.table(),
             self.modes.table(),
         ];
+        tables.extend(self.weak.iter().flat_map(|it| [it.errors(), it.times()]));
+        let drift = self.lane_drift();
+        tables.extend(drift.map(|it| self.bound.table([it.median, it.min])));
         tables.extend(self.steppers.tables());
         tables.extend(self.compilation.iter().map(|it| compilation::table(it)));
         tables.push(self.counts());
         tables.extend(self.generation.as_ref().map(generation));
         tables
+    }
+
+    /// Time of a member's drift in lanes.
+    pub(crate) fn lane_drift(&self) -> Option<Spread> {
+        let mut timings = self.timings.iter();
+        let drift = |it: &&Timing| it.function == SUBJECTS[0].symbol && it.candidate == LANES;
+        timings.find(drift).map(|it| it.nanoseconds)
     }
 
     fn agreed(&self) -> String {

@@ -94,7 +94,12 @@ pub(crate) struct Arguments {
     feedback: feedback::Arguments,
 
     /// Limits of states whose violation is told, e.g. alpha=-2deg..6deg
-    #[arg(long, value_name = "NAME=LOW..HIGH", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "NAME=LOW..HIGH",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
     limit: Vec<String>,
 
     /// Times at which the spread is told, in equal parts of the flight
@@ -184,7 +189,9 @@ fn fly<M: Pair<F>, F: Flown>(arguments: &Arguments) -> Result<(), Failure> {
         // Before the work: a folder that cannot be made is not told after it.
         output::folder(folder)?;
     }
-    let threads = arguments.threads.or_else(|| std::thread::available_parallelism().ok());
+    let threads = arguments
+        .threads
+        .or_else(|| std::thread::available_parallelism().ok());
     let threads = threads.map_or(1, NonZeroUsize::get);
     let outcome = with_progress(&experiment, arguments.members, |control| {
         experiment.run(arguments.members, threads, control)
@@ -223,8 +230,14 @@ fn experiment<M: Pair<F>, F: Flown>(
     let dispersion = arguments.disperse.then(|| {
         let seed = arguments.seed ^ DISPERSION_SEED;
         let (nominal, uncertainty) = (vehicle.parameters, vehicle.uncertainty);
-        Draws::new(nominal, uncertainty, Distribution::Uniform, Vec::new(), seed)
-            .map_err(|error| Failure::Request(format!("--disperse: {error}")))
+        Draws::new(
+            nominal,
+            uncertainty,
+            Distribution::Uniform,
+            Vec::new(),
+            seed,
+        )
+        .map_err(|error| Failure::Request(format!("--disperse: {error}")))
     });
     let steps = (arguments.t_end / arguments.dt).round();
     if !(1.0..=1e12).contains(&steps) {
@@ -235,15 +248,31 @@ fn experiment<M: Pair<F>, F: Flown>(
     let feedback = arguments.feedback.read::<M, F>(vehicle)?;
     let limits = limits::<M, F>(&arguments.limit, vehicle)?;
     let named = |name: &str| Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);
-    let default = if F::NAME == Dcom::NAME { Scheme::Heun } else { Scheme::Splitting };
+    let default = if F::NAME == Dcom::NAME {
+        Scheme::Heun
+    } else {
+        Scheme::Splitting
+    };
     Ok(Experiment {
         parameters: vehicle.parameters,
         dispersion: dispersion.transpose()?,
-        state: [state, deviations("--state-std", &arguments.state_std, vehicle)?],
-        input: [input, deviations("--input-std", &arguments.input_std, vehicle)?],
+        state: [
+            state,
+            deviations("--state-std", &arguments.state_std, vehicle)?,
+        ],
+        input: [
+            input,
+            deviations("--input-std", &arguments.input_std, vehicle)?,
+        ],
         feedback,
-        watched: std::iter::once(vehicle.state_bounds).chain(limits).collect(),
-        scheme: arguments.scheme.as_deref().and_then(named).unwrap_or(default),
+        watched: std::iter::once(vehicle.state_bounds)
+            .chain(limits)
+            .collect(),
+        scheme: arguments
+            .scheme
+            .as_deref()
+            .and_then(named)
+            .unwrap_or(default),
         mode: Mode::ALL
             .into_iter()
             .find(|mode| mode.name() == arguments.mode)
@@ -303,7 +332,10 @@ fn limits<M: Pair<F>, F: Flown>(
         Assignments::parse::<F::State<f64>>("--limit", texts, vehicle.units)?.apply(&mut ends, &[]);
         Ok(ends)
     };
-    let (low, high) = (parse(&low, f64::NEG_INFINITY)?, parse(&high, f64::INFINITY)?);
+    let (low, high) = (
+        parse(&low, f64::NEG_INFINITY)?,
+        parse(&high, f64::INFINITY)?,
+    );
     let bounds = F::State::from_fn(|index| {
         let end = |ends: &F::State<f64>| ends.get(index).unwrap_or(f64::NAN);
         Bounds::new(end(&low), end(&high))
@@ -341,7 +373,8 @@ fn with_progress<F: Flown>(
         }
         worker.join()
     });
-    let outcome = outcome.map_err(|_| Failure::Numeric("a thread of the flights failed".to_owned()))?;
+    let outcome =
+        outcome.map_err(|_| Failure::Numeric("a thread of the flights failed".to_owned()))?;
     outcome.map_err(|error| match error {
         MonteCarloError::Stopped => Failure::Interrupted(format!("interrupted: {error}")),
         MonteCarloError::Scheme { .. } | MonteCarloError::ModeOfScheme { .. } => {

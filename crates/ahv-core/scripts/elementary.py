@@ -1,4 +1,4 @@
-"""Computes the polynomials of src/elementary.rs with mpmath: near-minimax by Remez exchange, then rounded.
+"""Computes the polynomials of src/elementary and of ahv-integrate/src/noise: near-minimax by Remez exchange, rounded.
 
 Run with the project's development environment; prints Rust constants and the error of each approximation.
 """

@@ -134,7 +134,10 @@ impl<T: Lane, const N: usize> Real for Lanes<T, N> {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         if self.all(T::is_small_angle) {
-            (self.map(|x| x.small_sin_cos().0), self.map(|x| x.small_sin_cos().1))
+            (
+                self.map(|x| x.small_sin_cos().0),
+                self.map(|x| x.small_sin_cos().1),
+            )
         } else {
             reduced_sin_cos(self)
         }

@@ -5,6 +5,7 @@
 //!   by the feature `std`, `Fused`: a scalar that multiplies and adds in one rounding.
 //! * [`Vector`]: a vector whose components have names and units (a state, an input, a row of a Jacobian).
 //! * [`Model`], [`DifferentiableModel`], [`StochasticModel`]: what a generated model can do.
+//! * [`Outlined`]: a model whose functions are called where others are inlined.
 //! * [`ItoCorrected`], [`DifferentiableNoise`], [`AdditiveNoise`], [`CommutativeNoise`], [`ColouredNoise`]: what schemes
 //!   for stochastic equations ask for.
 //! * [`Bounds`]: an interval of validity.
@@ -26,6 +27,7 @@ mod lanes;
 mod model;
 mod nalgebra;
 mod noise;
+mod outlined;
 mod pattern;
 mod provenance;
 mod real;
@@ -41,6 +43,7 @@ pub use model::{
     ItoCorrected, Model, StochasticModel,
 };
 pub use noise::NoiseClass;
+pub use outlined::Outlined;
 pub use pattern::Pattern;
 pub use provenance::{Provenance, Status};
 pub use real::Real;

@@ -60,7 +60,11 @@ impl<T: Lane> Real for Straight<T> {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let angle = if self.0.is_small_angle() { self.0 } else { T::NAN };
+        let angle = if self.0.is_small_angle() {
+            self.0
+        } else {
+            T::NAN
+        };
         let (sin, cos) = angle.small_sin_cos();
         (Self(sin), Self(cos))
     }
@@ -77,7 +81,11 @@ impl<T: Lane> Real for Straight<T> {
 
     #[inline(always)]
     fn exp(self) -> Self {
-        let exponent = if self.0.is_moderate_exponent() { self.0 } else { T::NAN };
+        let exponent = if self.0.is_moderate_exponent() {
+            self.0
+        } else {
+            T::NAN
+        };
         Self(exponent.moderate_exp())
     }
 

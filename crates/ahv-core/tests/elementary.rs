@@ -177,7 +177,11 @@ fn sine_and_cosine_are_within_an_ulp() {
 #[test]
 fn exponential_is_within_an_ulp() {
     let mut worst = Worst::default();
-    let ranges = [(-3.0, 3.0, 500_000), (-708.0, 708.0, 400_000), (-1e-3, 1e-3, 100_000)];
+    let ranges = [
+        (-3.0, 3.0, 500_000),
+        (-708.0, 708.0, 400_000),
+        (-1e-3, 1e-3, 100_000),
+    ];
     for (low, high, count) in ranges {
         spread(low, high, count).for_each(|x| meet_exp(&mut worst, x));
     }
@@ -191,8 +195,13 @@ fn mpmath_gives_the_same() {
     let (mut worst, mut oracle) = (<[Worst; 3]>::default(), 0.0_f64);
     for line in text.lines().skip(1) {
         let (name, numbers) = line.split_once(',').expect("function,x,nearest,missing");
-        let numbers: Vec<f64> = numbers.split(',').map(|n| n.parse().expect("a number")).collect();
-        let [x, nearest, missing] = numbers[..] else { panic!("three numbers") };
+        let numbers: Vec<f64> = numbers
+            .split(',')
+            .map(|n| n.parse().expect("a number"))
+            .collect();
+        let [x, nearest, missing] = numbers[..] else {
+            panic!("three numbers")
+        };
         let (place, found, (Pair(high, low), doublings)) = match name {
             "sin" => (0, Real::sin(x), (sin_cos(x)[0], 0.0)),
             "cos" => (1, Real::cos(x), (sin_cos(x)[1], 0.0)),
@@ -207,7 +216,10 @@ fn mpmath_gives_the_same() {
     }
     // The file's last number has six decimals.
     assert!(oracle < 1e-6, "the series are off by {oracle} ulp");
-    println!("sin {}, cos {}, exp {}; series {oracle:.1e}", worst[0], worst[1], worst[2]);
+    println!(
+        "sin {}, cos {}, exp {}; series {oracle:.1e}",
+        worst[0], worst[1], worst[2]
+    );
 }
 
 #[test]
@@ -239,7 +251,10 @@ fn edges_are_those_of_ieee() {
 fn ways_meet_within_an_ulp() {
     let (mut worst, mut worst_exp) = (<[Worst; 2]>::default(), Worst::default());
     let meetings = [core::f64::consts::FRAC_PI_4, 1e6];
-    meetings.into_iter().flat_map(around).for_each(|x| meet_sin_cos(&mut worst, x));
+    meetings
+        .into_iter()
+        .flat_map(around)
+        .for_each(|x| meet_sin_cos(&mut worst, x));
     around(708.0).for_each(|x| meet_exp(&mut worst_exp, x));
     println!("sin {}, cos {}, exp {worst_exp}", worst[0], worst[1]);
 }

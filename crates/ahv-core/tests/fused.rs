@@ -5,11 +5,6 @@ mod common;
 
 use ahv_core::{Fused, MulAdd, Real, Straight};
 
-/// What a double misses of a·b + c·d, for a, b, c, d of 26 bits, whose products are exact.
-fn coarse(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & !((1 << 27) - 1))
-}
-
 fn quadruples() -> impl Iterator<Item = [f64; 4]> {
     let numbers: Vec<f64> = common::spread(-2.0, 2.0, 4001).collect();
     (0..100_000).map(move |k| [1, 3, 7, 13].map(|stride| numbers[k * stride % numbers.len()]))
@@ -27,7 +22,10 @@ fn products_are_added_in_one_rounding() {
         assert_eq!(bits(-(x * y) + z), (z.value() + -(a * b)).to_bits());
         assert_eq!(bits(z + -(x * y)), (-a).mul_add(b, c).to_bits());
         let [x, y, z, w] = [a, b, c, d].map(|value| Fused::new(Straight(value)));
-        assert_eq!((x * y + z * w).value().0.to_bits(), c.mul_add(d, a * b).to_bits());
+        assert_eq!(
+            (x * y + z * w).value().0.to_bits(),
+            c.mul_add(d, a * b).to_bits()
+        );
     }
 }
 
@@ -40,11 +38,22 @@ fn sums_and_products_alone_are_those_of_doubles() {
         assert_eq!(values.map(f64::to_bits), expected.map(f64::to_bits));
         let product = x * y;
         let (sin, cos) = product.sin_cos();
-        let values = [sin, cos, product.sin(), product.cos(), product.exp(), product.abs(), product.recip()];
+        let values = [
+            sin,
+            cos,
+            product.sin(),
+            product.cos(),
+            product.exp(),
+            product.abs(),
+            product.recip(),
+        ];
         let p = a * b;
         let (sin, cos) = Real::sin_cos(p);
         let expected = [sin, cos, sin, cos, Real::exp(p), p.abs(), 1.0 / p];
-        assert_eq!(values.map(|v| v.value().to_bits()), expected.map(f64::to_bits));
+        assert_eq!(
+            values.map(|v| v.value().to_bits()),
+            expected.map(f64::to_bits)
+        );
         assert_eq!(product.abs().sqrt().value(), p.abs().sqrt());
         assert_eq!((product.to_f64(), product.is_finite()), (p, true));
         assert_eq!(product, Fused::from_f64(p));
@@ -63,13 +72,11 @@ fn fewer_roundings_leave_smaller_errors() {
     for [a, b, c, d] in quadruples() {
         let [x, y, z, w] = [a, b, c, d].map(Fused::new);
         let (fused, plain) = ((x * y + z * w).value(), a * b + c * d);
-        // The exact sum is p + q + (what p and q lost).
+        // The exact sum is the plain one and what it, p and q lost.
         let (p, q) = (a * b, c * d);
-        let lost = a.mul_add(b, -p) + c.mul_add(d, -q);
-        let error = |sum: f64| {
-            let back = sum - p;
-            ((p - (sum - back)) + (q - back) + lost).abs()
-        };
+        let back = plain - p;
+        let lost = (p - (plain - back)) + (q - back) + a.mul_add(b, -p) + c.mul_add(d, -q);
+        let error = |sum: f64| ((plain - sum) + lost).abs();
         let bound = f64::EPSILON / 2.0 * (p.abs() + fused.abs());
         assert!(error(fused) <= bound * 1.0001, "{a} {b} {c} {d}");
         fused_errors += error(fused);
@@ -78,11 +85,10 @@ fn fewer_roundings_leave_smaller_errors() {
     let ratio = fused_errors / plain_errors;
     println!("mean error of a·b + c·d, fused to plain: {ratio:.3}");
     assert!(ratio < 0.9);
-    // Exact products are added exactly, where a rounded one would have lost the smaller.
-    let (a, b) = (coarse(1.234_567_89), 1.0 + f64::EPSILON);
-    let [x, y] = [a, b].map(Fused::new);
-    assert_eq!((x * y - x * y).value(), a.mul_add(-b, a * b));
-    assert_eq!((Fused::new(b) * Fused::new(b) - Fused::new(1.0 + 2.0 * f64::EPSILON)).value(), 0.0);
-    assert_eq!((Fused::new(-1.0 - 2.0 * f64::EPSILON) + Fused::new(b) * Fused::new(b)).value(), f64::EPSILON * f64::EPSILON);
-    assert_eq!(MulAdd::mul_add(b, b, -1.0 - 2.0 * f64::EPSILON), f64::EPSILON * f64::EPSILON);
+    // (1 + ε)² = 1 + 2ε + ε², of which a rounded product has lost the last term.
+    let (x, known) = (1.0 + f64::EPSILON, 1.0 + 2.0 * f64::EPSILON);
+    let square = Fused::new(x) * Fused::new(x);
+    assert_eq!((Fused::new(-known) + square).value(), f64::EPSILON.powi(2));
+    assert_eq!((square - Fused::new(known)).value(), 0.0);
+    assert_eq!(MulAdd::mul_add(x, x, -known), f64::EPSILON.powi(2));
 }

@@ -9,13 +9,27 @@ const WIDTH: usize = 4;
 
 /// Bits of a number, of which all that are NaN count as one.
 fn bits(x: f64) -> u64 {
-    if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() }
+    if x.is_nan() {
+        f64::NAN.to_bits()
+    } else {
+        x.to_bits()
+    }
 }
 
 /// Every function of one number.
 fn functions<R: Real>(x: R) -> [R; 9] {
     let (sin, cos) = x.sin_cos();
-    [sin, cos, x.sin(), x.cos(), x.exp(), x.sqrt(), x.recip(), x.abs(), -x]
+    [
+        sin,
+        cos,
+        x.sin(),
+        x.cos(),
+        x.exp(),
+        x.sqrt(),
+        x.recip(),
+        x.abs(),
+        -x,
+    ]
 }
 
 /// Every function of two numbers.
@@ -25,7 +39,17 @@ fn operations<R: Real>(x: R, y: R) -> [R; 4] {
 
 /// Numbers for which the functions go different ways, and those next to where the ways part.
 fn varied<T: Real>(parting: &[f64]) -> Vec<T> {
-    let edges = [0.0, -0.0, 1e-310, 5e-324, 1e-40, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300];
+    let edges = [
+        0.0,
+        -0.0,
+        1e-310,
+        5e-324,
+        1e-40,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        1e300,
+    ];
     let ranges = [1e-6, 0.7, 3.0, 90.0, 1e3, 2e6, 1e15];
     edges
         .into_iter()
@@ -41,7 +65,9 @@ fn mixed<T: Copy>(numbers: &[T]) -> Vec<[T; WIDTH]> {
     let at = |index: usize| numbers[index % length];
     [1, 7, 61, 113]
         .into_iter()
-        .flat_map(|stride| (0..length).map(move |first| [0, 1, 2, 3].map(|lane| at(first + lane * stride))))
+        .flat_map(|stride| {
+            (0..length).map(move |first| [0, 1, 2, 3].map(|lane| at(first + lane * stride)))
+        })
         .collect()
 }
 
@@ -53,9 +79,19 @@ fn lanes_have_the_bits_of_their_numbers<T: Lane>(parting: &[f64]) {
         for lane in 0..WIDTH {
             let shown = |lanes: &Lanes<T, WIDTH>| bits(lanes.0[lane].to_f64());
             let alone = functions(x[lane]).map(|value| bits(value.to_f64()));
-            assert_eq!(of_one.each_ref().map(shown), alone, "{:?} in {x:?}", x[lane]);
+            assert_eq!(
+                of_one.each_ref().map(shown),
+                alone,
+                "{:?} in {x:?}",
+                x[lane]
+            );
             let alone = operations(x[lane], y[lane]).map(|value| bits(value.to_f64()));
-            assert_eq!(of_two.each_ref().map(shown), alone, "{:?} in {x:?}", x[lane]);
+            assert_eq!(
+                of_two.each_ref().map(shown),
+                alone,
+                "{:?} in {x:?}",
+                x[lane]
+            );
         }
         assert_eq!(a.is_finite(), x.iter().all(|x| x.is_finite()));
         assert_eq!(a.is_finite(), Real::is_finite(a.to_f64()));
@@ -78,8 +114,14 @@ fn lanes_show_what_is_wrong_with_them() {
     assert!(Lanes([1.0, f64::NAN]).to_f64().is_nan());
     assert_eq!(Lanes([1.0, 2.0, f64::INFINITY]).to_f64(), f64::INFINITY);
     assert_eq!(Lanes::<f64, 3>::from_f64(0.5), Lanes::splat(0.5));
-    assert_eq!([Lanes::ZERO, Lanes::ONE, Lanes::TWO, Lanes::HALF], [0.0, 1.0, 2.0, 0.5].map(Lanes::<f64, 3>::splat));
-    assert_eq!(Lanes::<usize, 3>::from_fn(|lane| 2 * lane), Lanes([0, 2, 4]));
+    assert_eq!(
+        [Lanes::ZERO, Lanes::ONE, Lanes::TWO, Lanes::HALF],
+        [0.0, 1.0, 2.0, 0.5].map(Lanes::<f64, 3>::splat)
+    );
+    assert_eq!(
+        Lanes::<usize, 3>::from_fn(|lane| 2 * lane),
+        Lanes([0, 2, 4])
+    );
 }
 
 /// The numbers for which a straight function has a result.
@@ -93,9 +135,15 @@ fn straight_numbers_have_the_bits_of_theirs<T: Lane>(range: &Range, parting: &[f
     let (mut inside, mut outside) = (0, 0);
     for (index, &x) in numbers.iter().enumerate() {
         let magnitude = x.to_f64().abs();
-        let known = [magnitude <= range.angle; 4].into_iter().chain([magnitude <= range.exponent]);
+        let known = [magnitude <= range.angle; 4]
+            .into_iter()
+            .chain([magnitude <= range.exponent]);
         let known = known.chain([true; 4]);
-        for ((found, exact), known) in functions(Straight(x)).into_iter().zip(functions(x)).zip(known) {
+        for ((found, exact), known) in functions(Straight(x))
+            .into_iter()
+            .zip(functions(x))
+            .zip(known)
+        {
             if known {
                 assert_eq!(bits(found.to_f64()), bits(exact.to_f64()), "{x:?}");
                 inside += 1;

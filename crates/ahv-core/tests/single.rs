@@ -51,7 +51,10 @@ fn sine_and_cosine_are_within_an_ulp() {
         worst.meet_sin_cos(x);
         points += 1;
     }
-    println!("sin, cos: {:?} in ulp and where, of {points} points", &worst.0[..2]);
+    println!(
+        "sin, cos: {:?} in ulp and where, of {points} points",
+        &worst.0[..2]
+    );
     assert!(points > 1_000_000);
 }
 
@@ -97,7 +100,9 @@ fn ways_meet_within_an_ulp() {
     let mut worst = Worst::default();
     let around = |x: f32| {
         let (up, down) = (x.next_up(), x.next_down());
-        [x, up, up.next_up(), down, down.next_down()].into_iter().flat_map(|x| [x, -x])
+        [x, up, up.next_up(), down, down.next_down()]
+            .into_iter()
+            .flat_map(|x| [x, -x])
     };
     for x in [FRAC_PI_4, 1e4].into_iter().flat_map(around) {
         worst.meet_sin_cos(x);

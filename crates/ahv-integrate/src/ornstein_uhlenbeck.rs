@@ -269,10 +269,7 @@ fn applied<R: Real, const N: usize>(m: &Matrix<R, N>, x: &[R; N]) -> [R; N] {
 }
 
 #[inline(always)]
-fn mapped<R: Real, U: Real, const N: usize>(
-    m: &Matrix<R, N>,
-    f: impl Fn(&R) -> U,
-) -> Matrix<U, N> {
+fn mapped<R: Real, U: Real, const N: usize>(m: &Matrix<R, N>, f: impl Fn(&R) -> U) -> Matrix<U, N> {
     let mut result = [[U::ZERO; N]; N];
     for (places, row) in result.iter_mut().zip(m) {
         for (place, entry) in places.iter_mut().zip(row) {

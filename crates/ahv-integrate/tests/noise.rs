@@ -1,12 +1,12 @@
-//! Sources of noise, and the path that can be refined.
+//! Sources of noise, and the path that can be refined. Their law: `noise_law.rs`.
 #![forbid(unsafe_code)]
 
 mod common;
 
 use ahv_core::Vector;
 use ahv_integrate::{
-    BrownianPath, KeyedNormals, NormalSource, NormalStream, RandNormals, WeakIncrements,
-    WienerIntegrals, WienerSource, bisect,
+    BrownianPath, KeyedNormals, NormalLanes, NormalSource, NormalStream, RandNormals,
+    WeakIncrements, WienerIntegrals, WienerSource, bisect,
 };
 use ahv_models::sdcom::Noise;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
@@ -19,28 +19,107 @@ vector!(Two, w_1, w_2);
 const SOURCE: KeyedNormals = KeyedNormals { seed: 1, member: 2 };
 const CHANNELS: usize = Noise::<()>::LEN;
 
-/// A value that differs in its last bit on another machine would change every recorded run. Computed apart from this project's code, in Python: ChaCha8 after RFC 8439's layout, then Box–Muller; seed 1, member 2,
-/// step 3, channels 0 to 5.
-const FIXED: [u64; 6] = [
-    0x3FF3_672B_6EBA_0FB1,
-    0x3FF7_D82B_DE0B_C1D8,
-    0xBFF0_FA72_90E1_F3B7,
-    0xBFFF_BA5D_F99D_F3D9,
-    0x3FD3_0379_4BBF_91FA,
-    0x3FA3_A2BA_6850_60B4,
-];
+/// A number of `tests/vectors/normals.txt`: bits and values computed apart from this project's Rust, in Python, by
+/// `generator/ahv_oracle/normals.py`.
+struct Reference {
+    precision: &'static str,
+    /// Seed, member, channel, step.
+    key: [u64; 4],
+    bits: u64,
+    exact: f64,
+}
+
+fn references() -> Vec<Reference> {
+    let text = include_str!("../../../tests/vectors/normals.txt");
+    let rows = text.lines().skip(1).map(|line| {
+        let fields: Vec<&'static str> = line.split(',').collect();
+        let [precision, key @ .., bits, exact] = &fields[..] else {
+            panic!("precision,seed,member,channel,step,bits,hi");
+        };
+        let key: Vec<u64> = key
+            .iter()
+            .map(|word| word.parse().expect("a word"))
+            .collect();
+        Reference {
+            precision,
+            key: key.try_into().expect("four words"),
+            bits: u64::from_str_radix(bits, 16).expect("bits"),
+            exact: exact.parse().expect("a number"),
+        }
+    });
+    rows.collect()
+}
+
+/// A value that differs in its last bit on another machine would change every recorded run.
+#[test]
+fn keyed_numbers_have_the_bits_that_python_gives_them() {
+    let references = references();
+    assert!(references.len() > 90);
+    for Reference {
+        precision,
+        key: [seed, member, channel, step],
+        bits,
+        exact,
+    } in references
+    {
+        let members = [member ^ 1, member, member.wrapping_add(5)];
+        if precision == "f64" {
+            let found = NormalStream::new(seed, member, channel).normal(step);
+            assert_eq!(found.to_bits(), bits);
+            assert_abs_diff_eq!(found, exact, epsilon = 2f64.powi(-40));
+            let lanes = NormalLanes::<f64, 3>::new(seed, members, channel).normal(step);
+            assert_eq!(lanes.0[1].to_bits(), bits);
+            assert_eq!(
+                lanes.0[0],
+                NormalStream::new(seed, members[0], channel).normal(step)
+            );
+        } else {
+            let [_, found, _] = NormalLanes::<f32, 3>::new(seed, members, channel)
+                .normal(step)
+                .0;
+            assert_eq!(u64::from(found.to_bits()), bits);
+            assert_abs_diff_eq!(f64::from(found), exact, epsilon = 2f64.powi(-18));
+        }
+    }
+}
 
 #[test]
-fn keyed_numbers_are_fixed_and_do_not_depend_on_order() {
-    for (channel, bits) in FIXED.iter().enumerate() {
-        assert_eq!({ SOURCE }.normal(3, channel).to_bits(), *bits);
+fn keyed_numbers_do_not_depend_on_order() {
+    for channel in 0..CHANNELS {
         let mut stream = NormalStream::new(1, 2, channel as u64);
-        for step in [3, 0, 3, 2, 3, 1000, 3] {
+        for step in [3, 0, 3, 2, 3, 1000, 3, 9, 10, 1 << 60] {
             assert_eq!(stream.normal(step), { SOURCE }.normal(step, channel));
         }
     }
     let dw: Noise<f64> = WienerSource::<CHANNELS>::new(1, 2).increments(3, 1.0);
-    assert_eq!(dw.to_array().map(f64::to_bits), FIXED);
+    let alone = [0, 1, 2, 3, 4, 5].map(|channel| { SOURCE }.normal(3, channel));
+    assert_eq!(dw.to_array(), alone);
+}
+
+/// Every lane has the bits of the stream of its member, whatever the width.
+#[test]
+fn lanes_are_the_streams_of_their_members() {
+    fn width<const N: usize>() {
+        let members: [u64; N] = std::array::from_fn(|lane| (lane as u64) << (5 * lane));
+        let mut single = members.map(|member| NormalLanes::<f32, 1>::new(9, [member], 4));
+        let mut double = members.map(|member| NormalStream::new(9, member, 4));
+        let mut lanes = NormalLanes::<f64, N>::new(9, members, 4);
+        let mut narrow = NormalLanes::<f32, N>::new(9, members, 4);
+        for step in 0..200 {
+            let alone = double
+                .each_mut()
+                .map(|stream| stream.normal(step).to_bits());
+            assert_eq!(lanes.normal(step).0.map(f64::to_bits), alone);
+            let alone = single
+                .each_mut()
+                .map(|stream| stream.normal(step).0[0].to_bits());
+            assert_eq!(narrow.normal(step).0.map(f32::to_bits), alone);
+        }
+    }
+    width::<1>();
+    width::<2>();
+    width::<5>();
+    width::<8>();
 }
 
 #[test]

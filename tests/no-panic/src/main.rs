@@ -65,6 +65,7 @@ where
 
 fn stochastic<M: DifferentiableNoise>(model: &M) {
     let (x, u) = (unknown(), unknown());
+    black_box(model.drift_and_noise_increment(&x, &u, &unknown()));
     black_box(model.iterated_increment(&x, &u, |_, _| black_box(M::Scalar::ONE)));
     vector::<M::Scalar, M::Noise>();
 }

@@ -6,9 +6,9 @@ use ahv_core::{
 };
 use ahv_integrate::{
     AdditiveChannels, BrownianPath, CommutativeChannels, ItoDri1, ItoEulerMaruyama, ItoHeun,
-    ItoMilstein, ItoSra1, ItoStrangSplitting, KeyedNormals, LinearTransition, NormalSource,
-    NormalStream, RandNormals, Rk4, StratonovichHeun, WeakIncrements, WienerIntegrals,
-    WienerSource, bisect,
+    ItoMilstein, ItoSra1, ItoStrangSplitting, KeyedNormals, LinearTransition, NormalLanes,
+    NormalSource, NormalStream, RandNormals, Rk4, StratonovichHeun, WeakIncrements,
+    WienerIntegrals, WienerSource, bisect,
 };
 use ahv_models::flexible_mode;
 use core::array::from_fn;
@@ -55,6 +55,22 @@ where
             NormalStream::new(seed, member, index as u64).normal(step)
         });
         ItoDri1::new(dt).step(m, x, u, &weak).is_ok()
+    });
+    let others = black_box([3, member, 4]);
+    let mut lanes: [_; N] =
+        from_fn(|channel| NormalLanes::<f64, 3>::new(seed, others, channel as u64));
+    let mut narrow: [_; N] =
+        from_fn(|channel| NormalLanes::<f32, 3>::new(seed, others, channel as u64));
+    at.visit(visitor, "ItoEulerMaruyama", "NormalLanes", |x, step| {
+        let dw = M::Noise::from_fn(|channel| {
+            let (Some(lanes), Some(narrow)) = (lanes.get_mut(channel), narrow.get_mut(channel))
+            else {
+                return M::Scalar::ZERO;
+            };
+            let ([_, wide, _], [_, single, _]) = (lanes.normal(step).0, narrow.normal(step).0);
+            root * M::Scalar::from_f64(wide + f64::from(single))
+        });
+        ItoEulerMaruyama::new(dt).step(m, x, u, &dw).is_ok()
     });
     at.visit(visitor, "ItoDri1", "from_signs", |x, step| {
         let sign = |number: u64| 1.0 - 2.0 * (number % 2) as f64;

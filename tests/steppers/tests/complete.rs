@@ -12,7 +12,7 @@ const SOURCES: [&str; 4] = [
 
 /// Exports of `ahv-integrate` that do nothing by themselves: what is handed over, what comes back, and traits that a type
 /// above fulfils.
-const PASSIVE: [&str; 13] = [
+const PASSIVE: [&str; 14] = [
     "Anywhere",
     "Attempt",
     "EmbeddedPair",
@@ -20,6 +20,7 @@ const PASSIVE: [&str; 13] = [
     "Failure",
     "HeldColoured",
     "NoiseError",
+    "Precision",
     "RosenbrockTableau",
     "Start",
     "StepError",

@@ -1,7 +1,7 @@
 //! Members side by side in the lanes of a scalar get the bits that each of them gets by itself.
 #![forbid(unsafe_code)]
 
-use ahv_core::{Bounds, Real, Vector};
+use ahv_core::{Bounds, Lanes, Real, Vector};
 use ahv_models::{com, com_rigid, dcom, flexible_mode, sdcom, sdcom_gust, sdcom_printed};
 use ahv_steppers::{Advance, Label, Visitor};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -9,81 +9,96 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 const WIDTH: usize = 4;
 const STEPS: u64 = 6;
 
+/// [`Lanes`] whose operations are calls. Inlined, as they are by themselves, every stepper on every model would be minutes
+/// of compiling.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Lanes([f64; WIDTH]);
+struct Called(Lanes<f64, WIDTH>);
 
-macro_rules! operator {
+macro_rules! call {
     ($($name:ident, $method:ident;)+) => {$(
-        impl $name for Lanes {
+        impl $name for Called {
             type Output = Self;
 
+            #[inline(never)]
             fn $method(self, other: Self) -> Self {
-                Self(std::array::from_fn(|lane| self.0[lane].$method(other.0[lane])))
+                Self(self.0.$method(other.0))
             }
         }
     )+};
 }
-operator! {
+call! {
     Add, add;
     Sub, sub;
     Mul, mul;
     Div, div;
 }
 
-impl Neg for Lanes {
+impl Neg for Called {
     type Output = Self;
 
+    #[inline(never)]
     fn neg(self) -> Self {
-        Self(self.0.map(Neg::neg))
+        Self(-self.0)
     }
 }
 
-impl Real for Lanes {
-    const ZERO: Self = Self([0.0; WIDTH]);
-    const ONE: Self = Self([1.0; WIDTH]);
-    const TWO: Self = Self([2.0; WIDTH]);
-    const HALF: Self = Self([0.5; WIDTH]);
+impl Real for Called {
+    const ZERO: Self = Self(Lanes::ZERO);
+    const ONE: Self = Self(Lanes::ONE);
+    const TWO: Self = Self(Lanes::TWO);
+    const HALF: Self = Self(Lanes::HALF);
 
     fn from_f64(value: f64) -> Self {
-        Self([value; WIDTH])
+        Self(Lanes::from_f64(value))
     }
 
     fn to_f64(self) -> f64 {
-        let shown = self.0.into_iter().find(|lane| !lane.is_finite());
-        shown.unwrap_or(self.0[0])
+        self.0.to_f64()
     }
 
+    #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
-        (self.sin(), self.cos())
+        let (sin, cos) = self.0.sin_cos();
+        (Self(sin), Self(cos))
     }
 
+    #[inline(never)]
     fn sin(self) -> Self {
-        Self(self.0.map(Real::sin))
+        Self(self.0.sin())
     }
 
+    #[inline(never)]
     fn cos(self) -> Self {
-        Self(self.0.map(Real::cos))
+        Self(self.0.cos())
     }
 
+    #[inline(never)]
     fn exp(self) -> Self {
-        Self(self.0.map(Real::exp))
+        Self(self.0.exp())
     }
 
+    #[inline(never)]
     fn sqrt(self) -> Self {
-        Self(self.0.map(Real::sqrt))
+        Self(self.0.sqrt())
     }
 
+    #[inline(never)]
     fn recip(self) -> Self {
-        Self(self.0.map(Real::recip))
+        Self(self.0.recip())
     }
 
     fn abs(self) -> Self {
-        Self(self.0.map(Real::abs))
+        Self(self.0.abs())
     }
 
     fn is_finite(self) -> bool {
-        self.0.into_iter().all(f64::is_finite)
+        self.0.is_finite()
     }
+}
+
+/// Lanes from their numbers.
+fn called(lanes: [f64; WIDTH]) -> Called {
+    Called(Lanes(lanes))
 }
 
 /// SplitMix64.
@@ -152,7 +167,7 @@ fn fly<R: Real>(seed: u64, pick: fn([f64; WIDTH]) -> R, show: fn(R) -> f64) -> V
 }
 
 fn lane_of<const LANE: usize>(seed: u64) {
-    let together = fly::<Lanes>(seed, Lanes, |scalar| scalar.0[LANE]);
+    let together = fly::<Called>(seed, called, |scalar| scalar.0.0[LANE]);
     let alone = fly::<f64>(seed, |lanes| lanes[LANE], |scalar| scalar);
     assert!(alone.len() > 90, "{} steppers", alone.len());
     for (one, other) in together.iter().zip(&alone) {
@@ -177,7 +192,7 @@ macro_rules! bits {
         $vector.map_into(f64::to_bits)
     };
     ($vector:expr, $lane:expr) => {
-        $vector.map_into(|lanes| lanes.0[$lane].to_bits())
+        $vector.map_into(|lanes| lanes.0.0[$lane].to_bits())
     };
 }
 
@@ -187,22 +202,22 @@ fn every_function_gives_each_lane_its_own_bits() {
         ($($module:ident: $($noise:ident)?;)+) => {$({
             use $module::*;
             let mut random = Random(5);
-            let p: Parameters<_> = NOMINAL.map_into(|nominal| Lanes(random.parameters(nominal)));
-            let x: State<_> = STATE_BOUNDS.map_into(|bounds| Lanes(random.within(bounds)));
-            let u: Input<_> = INPUT_BOUNDS.map_into(|bounds| Lanes(random.within(bounds)));
+            let p: Parameters<_> = NOMINAL.map_into(|nominal| called(random.parameters(nominal)));
+            let x: State<_> = STATE_BOUNDS.map_into(|bounds| called(random.within(bounds)));
+            let u: Input<_> = INPUT_BOUNDS.map_into(|bounds| called(random.within(bounds)));
             let prepared = prepare(&p);
             let (a, b) = jacobians(&x, &u, &prepared);
             for lane in 0..WIDTH {
-                let (x1, u1) = (x.map_into(|x| x.0[lane]), u.map_into(|u| u.0[lane]));
-                let prepared1 = prepare(&p.map_into(|p| p.0[lane]));
+                let (x1, u1) = (x.map_into(|x| x.0.0[lane]), u.map_into(|u| u.0.0[lane]));
+                let prepared1 = prepare(&p.map_into(|p| p.0.0[lane]));
                 let (a1, b1) = jacobians(&x1, &u1, &prepared1);
                 let (together, alone) = (drift(&x, &u, &prepared), drift(&x1, &u1, &prepared1));
                 assert_eq!(bits!(together, lane), bits!(alone));
                 assert_eq!(a.map_into(|row| bits!(row, lane)), a1.map_into(|row| bits!(row)));
                 assert_eq!(b.map_into(|row| bits!(row, lane)), b1.map_into(|row| bits!(row)));
                 $(
-                    let dw: $noise<_> = Vector::from_fn(|_| Lanes(random.units()));
-                    let dw1 = dw.map_into(|dw| dw.0[lane]);
+                    let dw: $noise<_> = Vector::from_fn(|_| called(random.units()));
+                    let dw1 = dw.map_into(|dw| dw.0.0[lane]);
                     let together = noise_increment(&x, &u, &prepared, &dw);
                     let alone = noise_increment(&x1, &u1, &prepared1, &dw1);
                     assert_eq!(bits!(together, lane), bits!(alone));

@@ -3,7 +3,8 @@
 use std::marker::PhantomData;
 
 use ahv_core::{
-    ColouredNoise, Fused, ItoCorrected, Model, NoiseClass, Real, StochasticModel, Straight,
+    ColouredNoise, Fused, ItoCorrected, Model, NoiseClass, Outlined, Real, StochasticModel,
+    Straight,
 };
 
 use super::batch::Member;
@@ -128,6 +129,20 @@ impl<F: Family, R: Arithmetic> Member<F> for In<R> {
     #[inline(always)]
     fn model(model: &F::Model<Packed>, lane: usize) -> Self::Model {
         F::map_model(model, |numbers: &Packed| R::of(numbers.0[lane]))
+    }
+}
+
+/// As `K`, with models that are called, not inlined.
+#[derive(Clone, Copy)]
+pub(super) struct Called<K>(PhantomData<K>);
+
+impl<F: Family, K: Member<F>> Member<F> for Called<K> {
+    type Scalar = K::Scalar;
+    type Model = Outlined<K::Model>;
+
+    #[inline(always)]
+    fn model(model: &F::Model<Packed>, lane: usize) -> Self::Model {
+        Outlined(K::model(model, lane))
     }
 }
 

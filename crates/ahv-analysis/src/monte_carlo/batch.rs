@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use ahv_core::{Bounds, Real, Vector};
 use ahv_integrate::{NormalLanes, Precision, StepError};
 
-use super::arithmetic::Arithmetic;
+use super::arithmetic::{Arithmetic, Called};
 use super::family::{Family, LANES, Packed};
 use super::feedback::Law;
 use super::rare::Passage;
@@ -177,12 +177,12 @@ impl<F: Family> Watch<F> {
 }
 
 /// Steps a batch with the instructions of the machine that it runs on.
-pub(super) struct Advance<'b, F: Family, S, A> {
-    pub(super) batch: &'b mut Batch<F, S>,
+struct Advance<'b, F: Family, S, A> {
+    batch: &'b mut Batch<F, S>,
     /// Step to stop before.
-    pub(super) until: u64,
+    until: u64,
     /// Fast, and for what is stepped again.
-    pub(super) arithmetic: PhantomData<A>,
+    arithmetic: PhantomData<A>,
 }
 
 /// Makes a member's model of the batch's.
@@ -203,7 +203,7 @@ where
     F: Family,
     A: Member<F>,
     E: Member<F>,
-    S: Steps<F, A::Model> + Steps<F, E::Model>,
+    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
 {
     type Output = ();
 
@@ -240,7 +240,7 @@ where
                 sound &= sum == 0.0;
             }
             if !sound {
-                batch.repair::<E>(&x, &u, &normals, &mut next);
+                batch.repair::<Called<E>>(&x, &u, &normals, &mut next);
             }
             x = next;
             batch.step += 1;
@@ -284,7 +284,14 @@ pub(super) struct Start<F: Family> {
 
 impl<F: Family, S> Batch<F, S> {
     /// The batch before its first step.
-    pub(super) fn new(start: Start<F>, scheme: S, dt: f64, noise: Noise, law: Option<Law<F>>, watches: Vec<Watch<F>>) -> Self {
+    pub(super) fn new(
+        start: Start<F>,
+        scheme: S,
+        dt: f64,
+        noise: Noise,
+        law: Option<Law<F>>,
+        watches: Vec<Watch<F>>,
+    ) -> Self {
         Self {
             model: start.model,
             scheme,
@@ -300,6 +307,44 @@ impl<F: Family, S> Batch<F, S> {
             watches,
             passage: None,
         }
+    }
+
+    /// Flies until before this step, with the instructions of the machine.
+    ///
+    /// On x86 without AVX2 and FMA members are stepped one by one: a second copy of every loop for machines of the past would
+    /// double the time that it takes to compile this.
+    #[inline(never)]
+    pub(super) fn advance<A, E>(&mut self, until: u64)
+    where
+        A: Member<F>,
+        E: Member<F>,
+        S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
+    {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        match pulp::x86::V3::try_new() {
+            Some(machine) => pulp::Simd::vectorize(
+                machine,
+                Advance {
+                    batch: self,
+                    until,
+                    arithmetic: PhantomData::<(A, E)>,
+                },
+            ),
+            None => pulp::WithSimd::with_simd(
+                Advance {
+                    batch: self,
+                    until,
+                    arithmetic: PhantomData::<(Called<E>, E)>,
+                },
+                pulp::Scalar,
+            ),
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        pulp::Arch::new().dispatch(Advance {
+            batch: self,
+            until,
+            arithmetic: PhantomData::<(A, E)>,
+        });
     }
 
     /// The state of a member, and whether it still flies; else it is the last one that was finite.

@@ -1,19 +1,18 @@
 //! Which members are flown, and how.
 
-use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use ahv_core::{Bounds, Fused, Real, StochasticModel, Straight, Vector};
 use ahv_integrate::{NoiseError, NormalStream};
 
-use super::arithmetic::{In, Mode, Narrowed};
-use super::batch::{Advance, Batch, Member, NEVER, Noise, Start, Watch};
+use super::arithmetic::{Called, In, Mode, Narrowed};
+use super::batch::{Batch, Member, NEVER, Noise, Start, Watch};
 use super::family::{Dcom, Family, LANES, Packed, Sdcom};
 use super::feedback::Feedback;
 use super::rare::{Goal, Particle, Passed, pass};
 use super::scheme::{
-    Dri1, EulerMaruyama, Heun, InStratonovichSense, MOST_NORMALS, Milstein, Scheme, Splitting, Sra1,
-    Stepping, Steps,
+    Dri1, EulerMaruyama, Heun, InStratonovichSense, MOST_NORMALS, Milstein, Scheme, Splitting,
+    Sra1, Stepping, Steps,
 };
 use super::{Loss, MonteCarloError};
 use crate::disperse::Draws;
@@ -118,7 +117,7 @@ macro_rules! in_mode {
 macro_rules! in_doubles {
     ($experiment:ident: $call:ident $arguments:tt, $scheme:ty) => {
         match $experiment.mode {
-            Mode::Exact | Mode::F32Noise => $call::<Self, $scheme, In<f64>, In<f64>> $arguments,
+            Mode::Exact | Mode::F32Noise => $call::<Self, $scheme, Called<In<f64>>, In<f64>> $arguments,
             mode => Err(MonteCarloError::ModeOfScheme {
                 mode: mode.name(),
                 scheme: $experiment.scheme.name(),
@@ -186,25 +185,25 @@ where
     F: Family,
     A: Member<F>,
     E: Member<F>,
-    S: Steps<F, A::Model> + Steps<F, E::Model>,
+    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
 {
-    let flying: Vec<_> = members.iter().map(|&member| experiment.particle(member)).collect();
+    let flying: Vec<_> = members
+        .iter()
+        .map(|&member| experiment.particle(member))
+        .collect();
     let mut batch = experiment.batch::<S>(&flying)?;
     let count = members.len().min(LANES);
     let mut at: Vec<Vec<_>> = vec![Vec::new(); count];
-    let machine = pulp::Arch::new();
     for &snapshot in &experiment.snapshots {
         while batch.step < snapshot {
             if control.stop.load(Ordering::Relaxed) {
                 return Ok(None);
             }
             let (from, until) = (batch.step, snapshot.min(batch.step + PATIENCE));
-            machine.dispatch(Advance {
-                batch: &mut batch,
-                until,
-                arithmetic: PhantomData::<(A, E)>,
-            });
-            control.done.fetch_add((until - from) * count as u64, Ordering::Relaxed);
+            batch.advance::<A, E>(until);
+            control
+                .done
+                .fetch_add((until - from) * count as u64, Ordering::Relaxed);
         }
         for (lane, at) in at.iter_mut().enumerate() {
             if let (x, true) = batch.member(lane) {
@@ -216,7 +215,11 @@ where
         at,
         last: batch.member(lane).0,
         lost: batch.lost[lane],
-        left: batch.watches.iter().map(|watch| left(watch, lane)).collect(),
+        left: batch
+            .watches
+            .iter()
+            .map(|watch| left(watch, lane))
+            .collect(),
     });
     Ok(Some(seen.collect()))
 }
@@ -272,15 +275,43 @@ impl<F: Family> Experiment<F> {
         let mut used = [false; MOST_NORMALS];
         let channels = F::Noise::<Packed>::LEN;
         for (channel, used) in used.iter_mut().enumerate().take(channels) {
-            let unit = F::Noise::from_fn(|index| if index == channel { Packed::ONE } else { Packed::ZERO });
+            let unit = F::Noise::from_fn(|index| {
+                if index == channel {
+                    Packed::ONE
+                } else {
+                    Packed::ZERO
+                }
+            });
             *used = S::uses(&model, &model.noise_increment(&x, &u, &unit));
         }
-        used.iter_mut().skip(channels).take(S::EXTRA).for_each(|used| *used = true);
+        used.iter_mut()
+            .skip(channels)
+            .take(S::EXTRA)
+            .for_each(|used| *used = true);
         let single = matches!(self.mode, Mode::F32Noise | Mode::F32Drift);
-        let noise = Noise::new(self.seed, flying.map(|particle| particle.member), &used, single);
-        let law = self.feedback.as_ref().map(|feedback| feedback.over(self.dt));
-        let watches = self.watched.iter().map(|&bounds| Watch::new(bounds)).collect();
-        Ok(Batch::new(Start { model, x, u }, scheme, self.dt, noise, law, watches))
+        let noise = Noise::new(
+            self.seed,
+            flying.map(|particle| particle.member),
+            &used,
+            single,
+        );
+        let law = self
+            .feedback
+            .as_ref()
+            .map(|feedback| feedback.over(self.dt));
+        let watches = self
+            .watched
+            .iter()
+            .map(|&bounds| Watch::new(bounds))
+            .collect();
+        Ok(Batch::new(
+            Start { model, x, u },
+            scheme,
+            self.dt,
+            noise,
+            law,
+            watches,
+        ))
     }
 
     /// A member at the start.

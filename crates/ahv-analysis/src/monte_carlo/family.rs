@@ -49,10 +49,16 @@ pub trait Family: Copy + Debug + Send + Sync + 'static {
     fn model(parameters: &[Self::Parameters<f64>; LANES]) -> Self::Model<Packed>;
 
     /// The model with another scalar.
-    fn map_model<R: Real, U: Real>(model: &Self::Model<R>, f: impl FnMut(&R) -> U) -> Self::Model<U>;
+    fn map_model<R: Real, U: Real>(
+        model: &Self::Model<R>,
+        f: impl FnMut(&R) -> U,
+    ) -> Self::Model<U>;
 
     /// The state with other components.
-    fn map_state<T: Component, U: Component>(x: &Self::State<T>, f: impl FnMut(&T) -> U) -> Self::State<U>;
+    fn map_state<T: Component, U: Component>(
+        x: &Self::State<T>,
+        f: impl FnMut(&T) -> U,
+    ) -> Self::State<U>;
 
     /// Tells `f` of each component and the one of `y` in its place.
     fn zip_state<T: Component, U: Component>(
@@ -69,10 +75,16 @@ pub trait Family: Copy + Debug + Send + Sync + 'static {
     );
 
     /// The input with other components.
-    fn map_input<T: Component, U: Component>(u: &Self::Input<T>, f: impl FnMut(&T) -> U) -> Self::Input<U>;
+    fn map_input<T: Component, U: Component>(
+        u: &Self::Input<T>,
+        f: impl FnMut(&T) -> U,
+    ) -> Self::Input<U>;
 
     /// The increments with other components.
-    fn map_noise<T: Component, U: Component>(w: &Self::Noise<T>, f: impl FnMut(&T) -> U) -> Self::Noise<U>;
+    fn map_noise<T: Component, U: Component>(
+        w: &Self::Noise<T>,
+        f: impl FnMut(&T) -> U,
+    ) -> Self::Noise<U>;
 
     /// Applies `f` to each component and the one of `v` in its place.
     fn update_input<T: Component, U: Component>(

@@ -149,7 +149,11 @@ impl<F: Flown> Experiment<F> {
             ..self.clone()
         };
         let seen = F::fly(&alone, &[member], &Control::default())?.unwrap_or_default();
-        let at = seen.into_iter().next().map(|seen| seen.at).unwrap_or_default();
+        let at = seen
+            .into_iter()
+            .next()
+            .map(|seen| seen.at)
+            .unwrap_or_default();
         let timed = alone.snapshots.iter().zip(at);
         Ok(timed
             .map(|(&step, (x, u))| (step as f64 * self.dt, x, u))
@@ -221,8 +225,11 @@ impl<'e, F: Family> Collector<'e, F> {
             }
         }
         self.members += seen.len() as u64;
-        for (index, (sums, &step)) in
-            self.sums.iter_mut().zip(&self.experiment.snapshots).enumerate()
+        for (index, (sums, &step)) in self
+            .sums
+            .iter_mut()
+            .zip(&self.experiment.snapshots)
+            .enumerate()
         {
             let values: Vec<Vec<f64>> = seen
                 .iter()
@@ -274,8 +281,15 @@ impl<'e, F: Family> Collector<'e, F> {
 impl Sums {
     fn add(&mut self, origin: &[f64], members: &[Vec<f64>]) {
         if self.spreads.is_empty() {
-            let column = |state| members.iter().filter_map(|x| x.get(state).copied()).collect();
-            self.spreads = (0..origin.len()).map(|state| Spread::new(column(state))).collect();
+            let column = |state| {
+                members
+                    .iter()
+                    .filter_map(|x| x.get(state).copied())
+                    .collect()
+            };
+            self.spreads = (0..origin.len())
+                .map(|state| Spread::new(column(state)))
+                .collect();
         } else {
             for x in members {
                 for (spread, &value) in self.spreads.iter_mut().zip(x) {
@@ -310,7 +324,10 @@ impl Sums {
         let states = self.spreads.iter().enumerate().map(|(state, spread)| {
             let variance = covariance.get(state).and_then(|row| row.get(state));
             let std = variance.map_or(f64::NAN, |variance| variance.max(0.0).sqrt());
-            let mean = origin.get(state).zip(means.get(state)).map_or(f64::NAN, |(o, m)| o + m);
+            let mean = origin
+                .get(state)
+                .zip(means.get(state))
+                .map_or(f64::NAN, |(o, m)| o + m);
             StateSpread {
                 mean: Some(Estimate::of_mean(mean, std, n)).filter(Estimate::is_finite),
                 std: Some(Estimate::of_std(std, n)).filter(Estimate::is_finite),

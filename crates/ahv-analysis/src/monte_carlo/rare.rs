@@ -12,8 +12,7 @@ use ahv_core::Vector;
 use ahv_integrate::NormalStream;
 use rayon::prelude::*;
 
-pub use passage::{Goal, Particle, Passed};
-pub(super) use passage::{Passage, pass};
+pub(super) use passage::{Goal, Particle, Passage, Passed, pass};
 
 use super::MonteCarloError;
 use super::experiment::{Control, Experiment, Flown};
@@ -56,7 +55,9 @@ pub enum RareError {
         states: usize,
     },
     /// A limit that is met at the start, or no number.
-    #[error("the limit {limit} of {state} must be a number other than {start}, where the flight starts")]
+    #[error(
+        "the limit {limit} of {state} must be a number other than {start}, where the flight starts"
+    )]
     Limit {
         /// The state.
         state: &'static str,
@@ -79,7 +80,9 @@ pub enum RareError {
     #[error("no members start from each level; it takes 1 at least")]
     Effort,
     /// Too few repetitions for an interval.
-    #[error("{repetitions} repetitions are too few for an interval; it takes {FEWEST_REPETITIONS} at least")]
+    #[error(
+        "{repetitions} repetitions are too few for an interval; it takes {FEWEST_REPETITIONS} at least"
+    )]
     Repetitions {
         /// How many.
         repetitions: u64,
@@ -93,10 +96,20 @@ pub enum RareError {
         dt: f64,
     },
     /// Members that do not come nearer to the limit.
-    #[error("the members come no nearer to the limit than {level}; more members from each level may")]
+    #[error(
+        "the members come no nearer to the limit than {level}; more members from each level may"
+    )]
     OutOfReach {
         /// The level that was not passed, or beyond which none could be set.
         level: f64,
+    },
+    /// Repetitions that say nothing of their error.
+    #[error(
+        "every repetition gave {value}; more members from each level, or more repetitions, tell them apart"
+    )]
+    NoSpread {
+        /// What they gave.
+        value: f64,
     },
 }
 
@@ -219,7 +232,11 @@ impl RareEvent {
         let mut after = start;
         for &level in levels {
             if !(sign * level > sign * after && sign * level < height) {
-                return Err(RareError::Level { level, after, limit });
+                return Err(RareError::Level {
+                    level,
+                    after,
+                    limit,
+                });
             }
             after = level;
         }
@@ -246,7 +263,11 @@ impl<F: Flown> Search<'_, F> {
     ///
     /// Members fly twice with the same noise: to find the level, and to pass it.
     fn pilot(&mut self) -> Result<Vec<f64>, MonteCarloError> {
-        let Goal { sign, height: limit, .. } = self.goal;
+        let Goal {
+            sign,
+            height: limit,
+            ..
+        } = self.goal;
         let start = self.event.start(self.experiment).unwrap_or(0.0);
         let (mut heights, mut last) = (Vec::new(), sign * start);
         let mut flying = self.starts();
@@ -265,6 +286,10 @@ impl<F: Flown> Search<'_, F> {
                 break;
             }
             let entrances = entrances(&self.fly(&flying, height)?);
+            // Copies that came no further than where they started share one height.
+            if entrances.is_empty() {
+                break;
+            }
             flying = self.copies(&entrances);
             heights.push(height);
             last = height;
@@ -292,15 +317,21 @@ impl<F: Flown> Search<'_, F> {
             }
             values.push(value);
         }
-        let levels = heights.iter().zip(&counts).map(|(height, [started, passed])| Level {
-            value: self.goal.sign * height,
-            share: *passed as f64 / (*started).max(1) as f64,
-        });
+        let levels = heights
+            .iter()
+            .zip(&counts)
+            .map(|(height, [started, passed])| Level {
+                value: self.goal.sign * height,
+                share: *passed as f64 / (*started).max(1) as f64,
+            });
         let levels: Vec<Level> = levels.collect();
         if let Some(level) = levels.iter().find(|level| level.share == 0.0) {
             return Err(RareError::OutOfReach { level: level.value }.into());
         }
         let (mean, half) = mean_and_half(&values);
+        if half == 0.0 {
+            return Err(RareError::NoSpread { value: mean }.into());
+        }
         let flights = mean * (1.0 - mean) * (Z_95 / half).powi(2);
         Ok(RareEstimate {
             probability: Estimate {
@@ -319,7 +350,9 @@ impl<F: Flown> Search<'_, F> {
     fn starts(&mut self) -> Vec<Particle<F>> {
         let first = self.next;
         self.next += self.event.effort;
-        (first..self.next).map(|member| self.experiment.particle(member)).collect()
+        (first..self.next)
+            .map(|member| self.experiment.particle(member))
+            .collect()
     }
 
     /// As many members as start from a level, each from one of the entrances: from every one equally many, but for rounding,
@@ -343,14 +376,25 @@ impl<F: Flown> Search<'_, F> {
     }
 
     /// Flies members until they pass this height.
-    fn fly(&mut self, flying: &[Particle<F>], height: f64) -> Result<Vec<Passed<F>>, MonteCarloError> {
-        let goal = Goal { height, ..self.goal };
+    fn fly(
+        &mut self,
+        flying: &[Particle<F>],
+        height: f64,
+    ) -> Result<Vec<Passed<F>>, MonteCarloError> {
+        let goal = Goal {
+            height,
+            ..self.goal
+        };
         let flown: Vec<Option<Vec<Passed<F>>>> = flying
             .par_chunks(LANES)
             .map(|batch| F::pass(self.experiment, batch, &goal, self.control))
             .collect::<Result<_, _>>()?;
         let flown: Option<Vec<Vec<_>>> = flown.into_iter().collect();
-        let flown: Vec<_> = flown.ok_or(MonteCarloError::Stopped)?.into_iter().flatten().collect();
+        let flown: Vec<_> = flown
+            .ok_or(MonteCarloError::Stopped)?
+            .into_iter()
+            .flatten()
+            .collect();
         self.member_steps += flown.iter().map(|passed| passed.steps).sum::<u64>();
         self.lost += flown.iter().filter(|passed| passed.lost).count() as u64;
         Ok(flown)

@@ -2,8 +2,9 @@
 
 use ahv_core::{ColouredNoise, DifferentiableNoise, ItoCorrected, Real, StochasticModel, Vector};
 use ahv_integrate::{
-    CommutativeChannels, AdditiveChannels, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1,
-    ItoStrangSplitting, NoiseError, StepError, StratonovichHeun, WeakIncrements, WienerIntegrals,
+    AdditiveChannels, CommutativeChannels, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein,
+    ItoSra1, ItoStrangSplitting, NoiseError, StepError, StratonovichHeun, WeakIncrements,
+    WienerIntegrals,
 };
 
 use super::arithmetic::Arithmetic;

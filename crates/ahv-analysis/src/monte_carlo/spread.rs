@@ -125,7 +125,11 @@ impl Spread {
 
     /// Half of the greatest error that bins add to a quantile; 0 while the numbers are there as they are.
     pub(super) fn resolution(&self) -> f64 {
-        if self.exact.is_some() { 0.0 } else { self.width }
+        if self.exact.is_some() {
+            0.0
+        } else {
+            self.width
+        }
     }
 
     /// `bins` bins of equal width from the least number to the greatest.
@@ -151,7 +155,12 @@ impl Spread {
         match &self.exact {
             Some(numbers) => numbers.iter().for_each(|&value| put(value, 1)),
             None => {
-                for (bin, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+                for (bin, &count) in self
+                    .counts
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, count)| **count > 0)
+                {
                     put(self.low + (bin as f64 - 0.5) * self.width, count);
                 }
             }

@@ -2,6 +2,8 @@
 
 mod own;
 
+pub(crate) use own::SIDE_BY_SIDE;
+
 use ahv_core::{Model as _, StochasticModel as _, Vector as _};
 use ahv_models::flexible_mode::{Input, Model, Noise, Parameters, SETS, State};
 use serde::Serialize;

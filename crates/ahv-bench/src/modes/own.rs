@@ -18,7 +18,7 @@ use crate::threads::pool;
 const CHUNK: usize = 80;
 
 /// One run after the other.
-pub(crate) const PRODUCT: &str = "ahv, `ItoEulerMaruyama`";
+const PRODUCT: &str = "ahv, `ItoEulerMaruyama`";
 /// Runs side by side.
 pub(crate) const SIDE_BY_SIDE: [&str; 2] = ["ahv, 8 lanes", "ahv, 8 lanes, f32-noise"];
 

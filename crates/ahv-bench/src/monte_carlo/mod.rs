@@ -2,6 +2,8 @@
 
 mod own;
 
+pub(crate) use own::{SIDE_BY_SIDE, experiment, fly};
+
 use ahv_core::Vector as _;
 use ahv_models::sdcom::{Input, NOMINAL, Noise, Parameters, State};
 use serde::Serialize;

@@ -14,22 +14,22 @@ use crate::race::Runner;
 use crate::threads::pool;
 
 /// One member after the other.
-pub(crate) const PRODUCT: &str = "ahv, `ItoEulerMaruyama`";
-/// Modes of `mc`, as rows.
-pub(crate) const MODES: [(&str, Mode, &str); 4] = [
-    ("ahv, 8 lanes", Mode::Exact, "8 members side by side, f64"),
+const PRODUCT: &str = "ahv, `ItoEulerMaruyama`";
+/// Members side by side, in each mode.
+pub(crate) const SIDE_BY_SIDE: [&str; 4] = [
+    "ahv, 8 lanes",
+    "ahv, 8 lanes, f32-noise",
+    "ahv, 8 lanes, f32-drift",
+    "ahv, 8 lanes, fma",
+];
+const MODES: [(Mode, &str); 4] = [
+    (Mode::Exact, "8 members side by side, f64"),
+    (Mode::F32Noise, "the same, normal numbers in f32"),
     (
-        "ahv, 8 lanes, f32-noise",
-        Mode::F32Noise,
-        "the same, normal numbers in f32",
-    ),
-    (
-        "ahv, 8 lanes, f32-drift",
         Mode::F32Drift,
         "the same, and drift and noise in f32, state in f64",
     ),
     (
-        "ahv, 8 lanes, fma",
         Mode::Fma,
         "8 members side by side, f64, with a fused multiply-add",
     ),
@@ -52,7 +52,7 @@ pub(crate) fn runners(flight: Flight, threads: usize) -> Result<Vec<Runner<'stat
     let how = "one member after the other, `WienerSource` keyed by member, f64";
     let run = move |seed| scalar(seed, &checked);
     let mut runners = vec![Runner::new(PRODUCT, how, UNITS, run, values)];
-    for (name, mode, how) in MODES {
+    for (name, (mode, how)) in SIDE_BY_SIDE.into_iter().zip(MODES) {
         if mode != Mode::Fma || has_fma() {
             let (experiment, pool) = (experiment(&flight, mode), pool_of()?);
             let run = move |seed| side_by_side(&experiment, seed, &pool);

@@ -2,6 +2,8 @@
 
 mod own;
 
+pub(crate) use own::PRODUCT;
+
 use serde::Serialize;
 use serde_json::{Value, json};
 

@@ -32,7 +32,12 @@ pub(super) struct Arguments {
     actuator_bandwidth: f64,
 
     /// Largest rates of the inputs per second, e.g. phi=1,delta_e=60deg [default: 1 per s, 1 rad/s]
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', requires = "feedback")]
+    #[arg(
+        long,
+        value_name = "NAME=VALUE",
+        value_delimiter = ',',
+        requires = "feedback"
+    )]
     actuator_rate: Vec<String>,
 }
 
@@ -71,7 +76,10 @@ impl Arguments {
             let mut row = F::State::splat(0.0);
             for (column, &state) in columns.iter().enumerate() {
                 let value = gains["gain"][index][column].as_f64();
-                row.set(state, value.ok_or_else(|| fault("its gain lacks a number"))?);
+                row.set(
+                    state,
+                    value.ok_or_else(|| fault("its gain lacks a number"))?,
+                );
             }
             gain.set(input, row);
             let bounds = vehicle.input_bounds.get(input);
@@ -99,18 +107,23 @@ fn gains(path: &Path) -> Result<Value, String> {
 }
 
 fn texts(value: &Value) -> Vec<String> {
-    let texts = value.as_array().into_iter().flatten().filter_map(Value::as_str);
+    let texts = value
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str);
     texts.map(str::to_owned).collect()
 }
 
 /// Indices of the components with these names.
 fn positions<V: Vector<f64>>(kind: &str, names: &[String]) -> Result<Vec<usize>, String> {
     if names.is_empty() {
-        return Err(format!("it names no {kind}s; `ahv lqr --out` writes such a file"));
+        return Err(format!(
+            "it names no {kind}s; `ahv lqr --out` writes such a file"
+        ));
     }
-    let index = |name: &String| {
-        V::index_of(name).ok_or_else(|| names::unknown(kind, name, V::NAMES))
-    };
+    let index =
+        |name: &String| V::index_of(name).ok_or_else(|| names::unknown(kind, name, V::NAMES));
     names.iter().map(index).collect()
 }
 
@@ -119,7 +132,10 @@ fn named<V: Vector<f64>>(value: &Value) -> Result<V, String> {
     let mut vector = V::splat(0.0);
     for (index, name) in V::NAMES.iter().enumerate() {
         let number = value[*name].as_f64();
-        vector.set(index, number.ok_or_else(|| format!("it has no number for {name} of the trim"))?);
+        vector.set(
+            index,
+            number.ok_or_else(|| format!("it has no number for {name} of the trim"))?,
+        );
     }
     Ok(vector)
 }

@@ -80,7 +80,9 @@ fn distribution<F: Flown, M: Pair<F>>(
     factor: f64,
 ) -> Panel {
     let last = told.outcome.snapshots.last();
-    let bins = last.and_then(|it| it.states.get(index)).map(|it| it.histogram.as_slice());
+    let bins = last
+        .and_then(|it| it.states.get(index))
+        .map(|it| it.histogram.as_slice());
     let bins = bins.unwrap_or_default();
     let lows = bins.iter().map(|bin| factor * bin.low);
     let edges = lows.chain(bins.last().map(|bin| factor * bin.high));

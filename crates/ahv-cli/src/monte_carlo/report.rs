@@ -79,7 +79,13 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
     pub(super) fn json(&self) -> Json<'_> {
         let outcome = &self.outcome;
         let value = |estimate: &Option<Estimate>| estimate.map(|it| it.value);
-        let last = || self.outcome.snapshots.last().into_iter().flat_map(|it| &it.states);
+        let last = || {
+            self.outcome
+                .snapshots
+                .last()
+                .into_iter()
+                .flat_map(|it| &it.states)
+        };
         Json {
             heading: self.vehicle.heading(),
             units: Pairs::units::<M::State>(self.vehicle.units),
@@ -111,7 +117,11 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             std: by_state::<M::State, _>(last().map(|it| value(&it.std))),
             digest: &outcome.digest,
             left_validity_box: self.left_any(outcome.snapshots.last(), 0),
-            snapshots: outcome.snapshots.iter().map(|it| self.snapshot(it)).collect(),
+            snapshots: outcome
+                .snapshots
+                .iter()
+                .map(|it| self.snapshot(it))
+                .collect(),
         }
     }
 
@@ -120,7 +130,8 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
         let finite = |value: &f64| Some(*value).filter(|value| value.is_finite());
         let quantiles = states().map(|it| {
             let shares = QUANTILES.iter().zip(&it.quantiles);
-            let quantile = |(&share, &value): (&f64, &Option<Estimate>)| JsonQuantile { share, value };
+            let quantile =
+                |(&share, &value): (&f64, &Option<Estimate>)| JsonQuantile { share, value };
             shares.map(quantile).collect()
         });
         JsonSnapshot {
@@ -176,8 +187,16 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             experiment.dt,
             experiment.mode.name(),
             experiment.seed,
-            if experiment.dispersion.is_some() { ", dispersed" } else { "" },
-            if experiment.feedback.is_some() { ", feedback" } else { "" },
+            if experiment.dispersion.is_some() {
+                ", dispersed"
+            } else {
+                ""
+            },
+            if experiment.feedback.is_some() {
+                ", feedback"
+            } else {
+                ""
+            },
             self.rate(),
             self.threads,
         );
@@ -188,7 +207,12 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
         for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(states) {
             let shown = |value: f64| show(value, unit);
             let range = |estimate: &Option<Estimate>| match estimate {
-                Some(it) => format!("{} [{}, {}]", shown(it.value), shown(it.low), shown(it.high)),
+                Some(it) => format!(
+                    "{} [{}, {}]",
+                    shown(it.value),
+                    shown(it.low),
+                    shown(it.high)
+                ),
                 None => "beyond numbers".to_owned(),
             };
             let point = |estimate: Option<&Option<Estimate>>| match estimate.copied().flatten() {
@@ -212,9 +236,17 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                 100.0 * it.high
             )
         };
-        let _ = write!(text, "\nleft the validity box: {}", percent(self.left_any(last, 0)));
+        let _ = write!(
+            text,
+            "\nleft the validity box: {}",
+            percent(self.left_any(last, 0))
+        );
         if self.has_limits() {
-            let _ = write!(text, "\nleft the limits: {}", percent(self.left_any(last, 1)));
+            let _ = write!(
+                text,
+                "\nleft the limits: {}",
+                percent(self.left_any(last, 1))
+            );
         }
         let _ = write!(
             text,

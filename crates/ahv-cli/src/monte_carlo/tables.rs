@@ -24,7 +24,10 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
         let svg = figure::draw(self).map_err(|error| Failure::Numeric(error.to_string()))?;
         output::write(&folder.join("montecarlo.svg"), svg)?;
-        output::write(&folder.join("summary.json"), output::json(&self.json())? + "\n")?;
+        output::write(
+            &folder.join("summary.json"),
+            output::json(&self.json())? + "\n",
+        )?;
         self.snapshots(&folder.join("snapshots.csv"))?;
         self.histograms(&folder.join("histograms.csv"))?;
         self.limits(&folder.join("limits.csv"))?;
@@ -34,7 +37,9 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
     /// A row a snapshot and state.
     fn snapshots(&self, path: &Path) -> Result<(), Failure> {
         let mut file = CsvFile::create(path)?;
-        let mut heading: Vec<String> = ["time [s]", "members", "state", "unit"].map(str::to_owned).to_vec();
+        let mut heading: Vec<String> = ["time [s]", "members", "state", "unit"]
+            .map(str::to_owned)
+            .to_vec();
         let shares = QUANTILES.map(|share| format!("quantile_{share}"));
         for name in ["mean", "std"].map(str::to_owned).iter().chain(&shares) {
             heading.extend([name.clone(), format!("{name}_low"), format!("{name}_high")]);
@@ -49,7 +54,9 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                     (*name).to_owned(),
                     (*unit).to_owned(),
                 ];
-                let estimates = [&state.mean, &state.std].into_iter().chain(&state.quantiles);
+                let estimates = [&state.mean, &state.std]
+                    .into_iter()
+                    .chain(&state.quantiles);
                 row.extend(estimates.flat_map(cells));
                 file.row(&row)?;
             }
@@ -76,12 +83,26 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
     /// A row a snapshot and state: shares of members that have left by then.
     fn limits(&self, path: &Path) -> Result<(), Failure> {
         let mut file = CsvFile::create(path)?;
-        file.row(&["time [s]", "intervals", "state", "left", "left_low", "left_high"])?;
+        file.row(&[
+            "time [s]",
+            "intervals",
+            "state",
+            "left",
+            "left_low",
+            "left_high",
+        ])?;
         for snapshot in &self.outcome.snapshots {
             for (set, intervals) in ["validity box", "limits"].into_iter().enumerate() {
                 for (name, share) in self.left(snapshot, set).0 {
                     let [value, low, high] = cells(&Some(share));
-                    file.row(&[&snapshot.time.to_string(), intervals, name, &value, &low, &high])?;
+                    file.row(&[
+                        &snapshot.time.to_string(),
+                        intervals,
+                        name,
+                        &value,
+                        &low,
+                        &high,
+                    ])?;
                 }
             }
         }

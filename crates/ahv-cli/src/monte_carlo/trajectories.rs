@@ -45,7 +45,9 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
     let units = told.vehicle.units;
     let labels = |names: &[&str], units: &[&str]| -> Vec<String> {
         let named = names.iter().zip(units);
-        named.map(|(name, unit)| format!("{name} [{unit}]")).collect()
+        named
+            .map(|(name, unit)| format!("{name} [{unit}]"))
+            .collect()
     };
     let mut table = Table {
         names: [
@@ -59,7 +61,9 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
     };
     table.columns = vec![Vec::new(); table.names.len()];
     for &member in chosen {
-        let number = i64::try_from(member).ok().filter(|_| member < told.outcome.asked);
+        let number = i64::try_from(member)
+            .ok()
+            .filter(|_| member < told.outcome.asked);
         let number = number.ok_or_else(|| {
             Failure::Request(format!(
                 "--trajectories: there is no member {member}; they are 0 to {}",
@@ -73,7 +77,11 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
             let states = (0..M::State::LEN).filter_map(|index| x.get(index));
             let inputs = (0..M::Input::LEN).filter_map(|index| u.get(index));
             let values = std::iter::once(time).chain(states).chain(inputs);
-            table.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+            table
+                .columns
+                .iter_mut()
+                .zip(values)
+                .for_each(|(column, value)| column.push(value));
         }
     }
     match told.arguments.trajectory_format {
@@ -99,8 +107,9 @@ impl Table {
 
     fn parquet(&self, path: &Path) -> Result<(), Failure> {
         let mut output = Output::create(path)?;
-        self.parquet_to(&mut output)
-            .map_err(|error| Failure::Request(format!("cannot write {}: {error}", path.display())))?;
+        self.parquet_to(&mut output).map_err(|error| {
+            Failure::Request(format!("cannot write {}: {error}", path.display()))
+        })?;
         output.finish()
     }
 
@@ -115,18 +124,25 @@ impl Table {
         for name in &self.names {
             fields.push(field(name, Physical::DOUBLE)?);
         }
-        let schema = Type::group_type_builder("trajectories").with_fields(fields).build()?;
-        let properties = WriterProperties::builder().set_created_by("ahv".to_owned()).build();
-        let mut writer =
-            SerializedFileWriter::new(output, Arc::new(schema), Arc::new(properties))?;
+        let schema = Type::group_type_builder("trajectories")
+            .with_fields(fields)
+            .build()?;
+        let properties = WriterProperties::builder()
+            .set_created_by("ahv".to_owned())
+            .build();
+        let mut writer = SerializedFileWriter::new(output, Arc::new(schema), Arc::new(properties))?;
         let mut group = writer.next_row_group()?;
         if let Some(mut column) = group.next_column()? {
-            column.typed::<Int64Type>().write_batch(&self.members, None, None)?;
+            column
+                .typed::<Int64Type>()
+                .write_batch(&self.members, None, None)?;
             column.close()?;
         }
         for values in &self.columns {
             if let Some(mut column) = group.next_column()? {
-                column.typed::<DoubleType>().write_batch(values, None, None)?;
+                column
+                    .typed::<DoubleType>()
+                    .write_batch(values, None, None)?;
                 column.close()?;
             }
         }

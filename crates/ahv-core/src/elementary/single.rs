@@ -5,33 +5,25 @@ use core::f32::consts::{FRAC_2_PI, FRAC_PI_4, LOG2_E};
 use crate::Lane;
 
 /// (sin x − x)/x³ as a polynomial in x² for |x| ≤ π/4; relative error of sin x 2⁻²⁷.
-const SIN: [f32; 3] = [
-    -0.166_666_546_706_716_43,
-    0.008_332_100_707_925_72,
-    -0.000_195_039_296_616_189_93,
-];
+const SIN: [f32; 3] = [-0.166_666_55, 0.008_332_101, -0.000_195_039_29];
 
 /// (cos x − 1 + x²/2)/x⁴ as a polynomial in x² for |x| ≤ π/4; relative error of cos x 2⁻³¹.
-const COS: [f32; 3] = [
-    0.041_666_654_648_207_97,
-    -0.001_388_765_413_865_893_5,
-    2.446_380_388_533_358_8e-5,
-];
+const COS: [f32; 3] = [0.041_666_653, -0.001_388_765_4, 2.446_380_3e-5];
 
 /// (eʳ − 1 − r)/r² as a polynomial in r for |r| ≤ ln 2/2; relative error of eʳ 2⁻²⁸.
 const EXP: [f32; 5] = [
-    0.499_999_934_478_091_05,
-    0.166_665_206_313_053_1,
-    0.041_668_388_019_278_205,
-    0.008_368_716_921_037_998,
-    0.001_381_460_080_013_361_5,
+    0.499_999_94,
+    0.166_665_21,
+    0.041_668_39,
+    0.008_368_717,
+    0.001_381_460_1,
 ];
 
 /// π/2 in doubles, the first of 33 bits, so that a whole multiple of it is exact.
 const HALF_PI: [f64; 2] = [1.5707963267341256, 6.077100506506192e-11];
 
 /// ln 2 in parts of 12 bits and the rest.
-const LN_2: [f32; 2] = [0.693_115_234_375, 3.194_618_494_530_941_5e-5];
+const LN_2: [f32; 2] = [0.693_115_23, 3.194_618_3e-5];
 
 /// Adding 1.5·2²³ rounds to a whole number and leaves it in the low bits.
 const ROUNDER: f32 = 12_582_912.0;

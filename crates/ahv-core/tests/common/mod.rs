@@ -6,6 +6,7 @@ pub(crate) fn spread(low: f64, high: f64, count: u32) -> impl Iterator<Item = f6
 }
 
 /// A number, its neighbours and theirs, with both signs.
+#[allow(dead_code, reason = "not every test file has edges")]
 pub(crate) fn around(x: f64) -> impl Iterator<Item = f64> {
     let (up, down) = (x.next_up(), x.next_down());
     [x, up, up.next_up(), down, down.next_down()]

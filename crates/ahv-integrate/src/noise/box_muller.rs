@@ -5,7 +5,7 @@
 
 use core::f64::consts::{FRAC_PI_2, LN_2};
 
-use ahv_core::{Lane, Lanes, Real};
+use ahv_core::{Lane, Real};
 
 use super::chacha::WORDS;
 
@@ -46,28 +46,24 @@ const ARTANH: [f64; 5] = [
 
 /// As [`SINE`]; error 2⁻²⁷.
 const SINE_F32: [f32; 5] = [
-    0.999_999_995_730_707_3,
-    -0.166_666_579_885_026_9,
-    0.008_333_050_980_351_555,
-    -0.000_198_090_689_978_927_26,
-    2.605_210_327_016_194_8e-6,
+    1.0,
+    -0.166_666_58,
+    0.008_333_051,
+    -0.000_198_090_7,
+    2.605_210_3e-6,
 ];
 
 /// As [`COSINE`]; error 2⁻²⁴.
 const COSINE_F32: [f32; 5] = [
-    0.999_999_953_443_883_1,
-    -0.499_999_053_098_586_94,
-    0.041_663_583_785_618_11,
-    -0.001_385_369_743_337_397,
-    2.315_377_229_409_815_6e-5,
+    0.999_999_94,
+    -0.499_999_05,
+    0.041_663_583,
+    -0.001_385_369_7,
+    2.315_377_2e-5,
 ];
 
 /// As [`ARTANH`]; error 2⁻²⁹.
-const ARTANH_F32: [f32; 3] = [
-    0.333_333_891_463_561_85,
-    0.199_880_389_418_153_14,
-    0.149_627_962_549_892_94,
-];
+const ARTANH_F32: [f32; 3] = [0.333_333_88, 0.199_880_39, 0.149_627_97];
 
 /// The bits of √½.
 const ROOT_HALF: u64 = 0x3FE6_A09E_667F_3BCD;
@@ -88,9 +84,9 @@ pub trait Precision: Lane {
     #[doc(hidden)]
     const PER_BLOCK: u64;
 
-    /// Puts the numbers of a block, in each of `N` lanes, to the first [`Self::PER_BLOCK`] places.
+    /// Puts the numbers of a block, one a lane, to the first [`Self::PER_BLOCK`] places.
     #[doc(hidden)]
-    fn fill<const N: usize>(numbers: &mut [Lanes<Self, N>; MOST], words: &[[u32; N]; WORDS]);
+    fn fill<const N: usize>(numbers: &mut [[Self; N]; MOST], words: &[[u32; N]; WORDS]);
 }
 
 /// Three words make two numbers: 52 bits for the radius, 32 for the angle.
@@ -98,14 +94,13 @@ impl Precision for f64 {
     const PER_BLOCK: u64 = 10;
 
     #[inline(always)]
-    fn fill<const N: usize>(numbers: &mut [Lanes<Self, N>; MOST], words: &[[u32; N]; WORDS]) {
-        for (words, numbers) in words.chunks_exact(3).zip(numbers.chunks_exact_mut(2)) {
-            let ([low, high, angle], [first, second]) = (words, numbers) else {
-                continue;
-            };
+    fn fill<const N: usize>(numbers: &mut [[Self; N]; MOST], words: &[[u32; N]; WORDS]) {
+        let (threes, _) = words.as_chunks();
+        let (pairs, _) = numbers.as_chunks_mut();
+        for ([low, high, angle], [first, second]) in threes.iter().zip(pairs) {
             for lane in 0..N {
                 let radius = u64::from(low[lane]) | (u64::from(high[lane]) << 32);
-                [first.0[lane], second.0[lane]] = pair(radius, angle[lane]);
+                [first[lane], second[lane]] = pair(radius, angle[lane]);
             }
         }
     }
@@ -116,13 +111,12 @@ impl Precision for f32 {
     const PER_BLOCK: u64 = 16;
 
     #[inline(always)]
-    fn fill<const N: usize>(numbers: &mut [Lanes<Self, N>; MOST], words: &[[u32; N]; WORDS]) {
-        for (words, numbers) in words.chunks_exact(2).zip(numbers.chunks_exact_mut(2)) {
-            let ([radius, angle], [first, second]) = (words, numbers) else {
-                continue;
-            };
+    fn fill<const N: usize>(numbers: &mut [[Self; N]; MOST], words: &[[u32; N]; WORDS]) {
+        let (twos, _) = words.as_chunks();
+        let (pairs, _) = numbers.as_chunks_mut();
+        for ([radius, angle], [first, second]) in twos.iter().zip(pairs) {
             for lane in 0..N {
-                [first.0[lane], second.0[lane]] = pair_f32(radius[lane], angle[lane]);
+                [first[lane], second[lane]] = pair_f32(radius[lane], angle[lane]);
             }
         }
     }
@@ -149,8 +143,7 @@ fn pair(radius: u64, angle: u32) -> [f64; 2] {
     let [s0, s1, s2, s3, s4, s5, s6] = SINE;
     let sine = theta * (s0 + z * (s1 + z * (s2 + z * (s3 + z * (s4 + z * (s5 + z * s6))))));
     let [c0, c1, c2, c3, c4, c5, c6, c7] = COSINE;
-    let cosine =
-        c0 + z * (c1 + z * (c2 + z * (c3 + z * (c4 + z * (c5 + z * (c6 + z * c7))))));
+    let cosine = c0 + z * (c1 + z * (c2 + z * (c3 + z * (c4 + z * (c5 + z * (c6 + z * c7))))));
     [r * cosine, r * sine]
 }
 
@@ -176,3 +169,6 @@ fn pair_f32(radius: u32, angle: u32) -> [f32; 2] {
     let cosine = c0 + z * (c1 + z * (c2 + z * (c3 + z * c4)));
     [r * cosine, r * sine]
 }
+
+#[cfg(test)]
+mod tests;

@@ -32,7 +32,24 @@ pub(super) fn blocks<const N: usize>(keys: &[[u32; N]; KEY], counter: u64) -> [[
 
 #[inline(always)]
 fn double_round(state: [u32; WORDS]) -> [u32; WORDS] {
-    let [a0, a1, a2, a3, b0, b1, b2, b3, c0, c1, c2, c3, d0, d1, d2, d3] = state;
+    let [
+        a0,
+        a1,
+        a2,
+        a3,
+        b0,
+        b1,
+        b2,
+        b3,
+        c0,
+        c1,
+        c2,
+        c3,
+        d0,
+        d1,
+        d2,
+        d3,
+    ] = state;
     let [a0, b0, c0, d0] = quarter_round([a0, b0, c0, d0]);
     let [a1, b1, c1, d1] = quarter_round([a1, b1, c1, d1]);
     let [a2, b2, c2, d2] = quarter_round([a2, b2, c2, d2]);
@@ -58,3 +75,6 @@ fn quarter_round([a, b, c, d]: [u32; 4]) -> [u32; 4] {
     let b = (b ^ c).rotate_left(7);
     [a, b, c, d]
 }
+
+#[cfg(test)]
+mod tests;

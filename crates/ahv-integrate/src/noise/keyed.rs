@@ -17,8 +17,13 @@ pub struct NormalLanes<T, const N: usize> {
     key: [[u32; N]; KEY],
     /// `None` before the first.
     block: Option<u64>,
-    numbers: [Lanes<T, N>; MOST],
+    numbers: Numbers<T, N>,
 }
+
+/// The numbers of a block, aligned as a whole: single lanes take no room for others.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Numbers<T, const N: usize>([[T; N]; MOST]);
 
 impl<T: Precision, const N: usize> NormalLanes<T, N> {
     /// The streams of channel `channel` in runs `members` of the experiment `seed`.
@@ -37,7 +42,7 @@ impl<T: Precision, const N: usize> NormalLanes<T, N> {
                 [0; N],
             ],
             block: None,
-            numbers: [Lanes::ZERO; MOST],
+            numbers: Numbers([[T::ZERO; N]; MOST]),
         }
     }
 
@@ -46,11 +51,14 @@ impl<T: Precision, const N: usize> NormalLanes<T, N> {
     pub fn normal(&mut self, step: u64) -> Lanes<T, N> {
         let block = step / T::PER_BLOCK;
         if self.block != Some(block) {
-            T::fill(&mut self.numbers, &blocks(&self.key, block));
+            T::fill(&mut self.numbers.0, &blocks(&self.key, block));
             self.block = Some(block);
         }
         let place = (step % T::PER_BLOCK) as usize;
-        self.numbers.get(place).copied().unwrap_or(Lanes::ZERO)
+        self.numbers
+            .0
+            .get(place)
+            .map_or(Lanes::ZERO, |&numbers| Lanes(numbers))
     }
 }
 

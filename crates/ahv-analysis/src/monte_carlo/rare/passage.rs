@@ -1,12 +1,12 @@
 //! Members that fly on from where they are, until they pass a level.
 
-use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 
 use ahv_core::Vector;
 
 use super::super::MonteCarloError;
-use super::super::batch::{Advance, Member, NEVER};
+use super::super::arithmetic::Called;
+use super::super::batch::{Member, NEVER};
 use super::super::experiment::{Control, Experiment};
 use super::super::family::{Family, LANES, Packed};
 use super::super::scheme::Steps;
@@ -68,12 +68,7 @@ pub(in super::super) struct Passage<F: Family> {
 impl<F: Family> Passage<F> {
     /// Looks at the states after `step` steps. Not inlined, so that flights without a goal step as if there were none.
     #[inline(never)]
-    pub(in super::super) fn look(
-        &mut self,
-        x: &F::State<Packed>,
-        u: &F::Input<Packed>,
-        step: u64,
-    ) {
+    pub(in super::super) fn look(&mut self, x: &F::State<Packed>, u: &F::Input<Packed>, step: u64) {
         let Some(values) = x.get(self.goal.state) else {
             return;
         };
@@ -119,7 +114,7 @@ where
     F: Family,
     A: Member<F>,
     E: Member<F>,
-    S: Steps<F, A::Model> + Steps<F, E::Model>,
+    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
 {
     let mut batch = experiment.batch::<S>(flying)?;
     let mut until = [0; LANES];
@@ -138,36 +133,37 @@ where
     let count = flying.len().min(LANES) as u64;
     let mut end = passage.end();
     batch.passage = Some(passage);
-    let machine = pulp::Arch::new();
     while batch.step < end {
         if control.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         let (from, until) = (batch.step, end.min(batch.step + STRETCH));
-        machine.dispatch(Advance {
-            batch: &mut batch,
-            until,
-            arithmetic: PhantomData::<(A, E)>,
-        });
-        control.done.fetch_add((until - from) * count, Ordering::Relaxed);
+        batch.advance::<A, E>(until);
+        control
+            .done
+            .fetch_add((until - from) * count, Ordering::Relaxed);
         end = batch.passage.as_ref().map_or(0, Passage::end);
     }
     let Some(passage) = batch.passage else {
         return Ok(Some(Vec::new()));
     };
-    let passed = flying.iter().take(LANES).enumerate().map(|(lane, particle)| {
-        let step = Some(passage.step[lane]).filter(|&step| step != NEVER);
-        Passed {
-            most: passage.most[lane],
-            at: step.map(|step| Particle {
-                step: particle.step + step,
-                x: F::map_state(&passage.x, |numbers| numbers.0[lane]),
-                u: F::map_input(&passage.u, |numbers| numbers.0[lane]),
-                ..*particle
-            }),
-            lost: step.is_none() && batch.lost[lane].is_some(),
-            steps: batch.step,
-        }
-    });
+    let passed = flying
+        .iter()
+        .take(LANES)
+        .enumerate()
+        .map(|(lane, particle)| {
+            let step = Some(passage.step[lane]).filter(|&step| step != NEVER);
+            Passed {
+                most: passage.most[lane],
+                at: step.map(|step| Particle {
+                    step: particle.step + step,
+                    x: F::map_state(&passage.x, |numbers| numbers.0[lane]),
+                    u: F::map_input(&passage.u, |numbers| numbers.0[lane]),
+                    ..*particle
+                }),
+                lost: step.is_none() && batch.lost[lane].is_some(),
+                steps: batch.step,
+            }
+        });
     Ok(Some(passed.collect()))
 }

@@ -1,0 +1,424 @@
+//! Rare events against the transition kernel of a process, and against plain sampling.
+#![forbid(unsafe_code)]
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use ahv_analysis::linearize::linearize;
+use ahv_analysis::lqr::{Regulator, bryson, deviations};
+use ahv_analysis::monte_carlo::{
+    Control, Experiment, Feedback, Mode, MonteCarloError, RareError, RareEstimate, RareEvent,
+    Scheme, Sdcom,
+};
+use ahv_analysis::statistics::Estimate;
+use ahv_analysis::track::{ACTUATORS, silent};
+use ahv_analysis::trim::{SteadyFlight, Trim, trim};
+use ahv_core::{Bounds, ColouredNoise, StochasticModel, Vector};
+use ahv_models::sdcom::{Input, Model, NOMINAL, Noise, State};
+
+/// Steps of a flight, and their size in s.
+const STEPS: u64 = 100;
+const DT: f64 = 0.002;
+
+fn steady() -> Trim<State<f64>, Input<f64>> {
+    let at = SteadyFlight::new(7702.0808, 85_000.0);
+    trim(&Model::new(&NOMINAL), &at).expect("a trim")
+}
+
+/// SDCOM from its trim, with held inputs.
+fn open_loop(seed: u64) -> Experiment<Sdcom> {
+    let at = steady();
+    Experiment {
+        parameters: NOMINAL,
+        dispersion: None,
+        state: [at.state, State::splat(0.0)],
+        input: [at.input, Input::splat(0.0)],
+        feedback: None,
+        watched: Vec::new(),
+        scheme: Scheme::EulerMaruyama,
+        mode: Mode::Exact,
+        dt: DT,
+        snapshots: vec![STEPS],
+        seed,
+    }
+}
+
+/// SDCOM from its trim, with a linear-quadratic regulator through actuators.
+fn closed_loop(seed: u64) -> Experiment<Sdcom> {
+    let at = steady();
+    let system = linearize(
+        &Model::new(&NOMINAL),
+        &at.state,
+        &at.input,
+        &["phi", "delta_e"],
+        &[],
+    )
+    .expect("a linear system");
+    let efforts = deviations::<Input<f64>>();
+    let q = bryson(&deviations::<State<f64>>().to_array());
+    let r = bryson(&[efforts.phi, efforts.delta_e]);
+    let regulator = Regulator::new(&system.a, &system.b, &q, &r).expect("a regulator");
+    let row = |row| State::from_fn(|state| regulator.gain[(row, state)]);
+    Experiment {
+        feedback: Some(Feedback {
+            state: at.state,
+            input: at.input,
+            gain: Input {
+                phi: row(0),
+                delta_e: row(1),
+                delta_c: State::splat(0.0),
+            },
+            actuators: Input {
+                phi: Some(ACTUATORS[0]),
+                delta_e: Some(ACTUATORS[1]),
+                delta_c: None,
+            },
+        }),
+        scheme: Scheme::Splitting,
+        ..open_loop(seed)
+    }
+}
+
+fn index(name: &str) -> usize {
+    State::<f64>::index_of(name).expect("a state")
+}
+
+/// chi_1 as a process of its own, sampled: x becomes factor · x + spread · normal number.
+#[derive(Clone, Copy)]
+struct Chain {
+    factor: f64,
+    spread: f64,
+}
+
+impl Chain {
+    fn of(scheme: Scheme) -> Self {
+        let (model, at) = (Model::new(&NOMINAL), steady());
+        let rate = model.decay(index("chi_1")).expect("coloured noise");
+        let unit = Noise {
+            xi_1: 1.0,
+            ..Noise::splat(0.0)
+        };
+        let intensity = model.noise_increment(&at.state, &at.input, &unit).chi_1;
+        let (factor, variance) = match scheme {
+            Scheme::EulerMaruyama => (1.0 - rate * DT, DT),
+            _ => (
+                (-rate * DT).exp(),
+                (1.0 - (-2.0 * rate * DT).exp()) / (2.0 * rate),
+            ),
+        };
+        Self {
+            factor,
+            spread: intensity * variance.sqrt(),
+        }
+    }
+
+    /// Standard deviation after a long time.
+    fn settled(self) -> f64 {
+        self.spread / (1.0 - self.factor * self.factor).sqrt()
+    }
+
+    /// Probability that it is above `limit` after one of `STEPS` steps, from a normal start about 0 or from 0: the
+    /// equation of Chapman and Kolmogorov backwards from the end, by Gauss's rule of three points on panels.
+    fn passes(self, limit: f64, start_std: f64) -> f64 {
+        const PANELS: usize = 160;
+        let lowest = -9.0 * self.settled();
+        let panel = (limit - lowest) / PANELS as f64;
+        let nodes: Vec<[f64; 2]> = (0..3 * PANELS)
+            .map(|node| {
+                let place = [-0.6_f64.sqrt(), 0.0, 0.6_f64.sqrt()][node % 3];
+                let weight = [5.0, 8.0, 5.0][node % 3] / 18.0;
+                let x = lowest + panel * ((node / 3) as f64 + 0.5 + 0.5 * place);
+                [x, weight * panel]
+            })
+            .collect();
+        let beyond = |x: f64, std: f64| 0.5 * libm::erfc((limit - x) / (std * 2.0_f64.sqrt()));
+        let density = |x: f64, std: f64| {
+            (-0.5 * (x / std).powi(2)).exp() / (std * std::f64::consts::TAU.sqrt())
+        };
+        let row = |x: f64| -> Vec<f64> {
+            let to = |&[y, weight]: &[f64; 2]| weight * density(y - self.factor * x, self.spread);
+            nodes.iter().map(to).collect()
+        };
+        let from = |x: f64, row: &[f64], passes: &[f64]| {
+            let later: f64 = row
+                .iter()
+                .zip(passes)
+                .map(|(weight, passes)| weight * passes)
+                .sum();
+            beyond(self.factor * x, self.spread) + later
+        };
+        let kernel: Vec<Vec<f64>> = nodes.iter().map(|&[x, _]| row(x)).collect();
+        let mut passes = vec![0.0; nodes.len()];
+        for _ in 1..STEPS {
+            let next = nodes
+                .iter()
+                .zip(&kernel)
+                .map(|(&[x, _], row)| from(x, row, &passes));
+            passes = next.collect();
+        }
+        if start_std == 0.0 {
+            return from(0.0, &row(0.0), &passes);
+        }
+        // One step more for those that start at the nodes; those that start beyond have passed.
+        let next = nodes
+            .iter()
+            .zip(&kernel)
+            .map(|(&[x, weight], row)| weight * density(x, start_std) * from(x, row, &passes));
+        next.sum::<f64>() + beyond(0.0, start_std)
+    }
+}
+
+/// The event that chi_1 passes so many standard deviations, upwards or downwards.
+fn passage(chain: Chain, deviations: f64) -> RareEvent {
+    RareEvent {
+        state: index("chi_1"),
+        limit: deviations * chain.settled(),
+        effort: 160,
+        levels: None,
+        repetitions: 20,
+    }
+}
+
+fn estimate(experiment: &Experiment<Sdcom>, event: &RareEvent, threads: usize) -> RareEstimate {
+    experiment
+        .first_passage(event, threads, &Control::default())
+        .expect("an estimate")
+}
+
+fn told(name: &str, estimate: &RareEstimate, known: &str) {
+    let Estimate { value, low, high } = estimate.probability;
+    println!(
+        "{name}: {value:.4e} ({low:.4e} to {high:.4e}), known {known}; {} levels, {} member-steps, plain sampling {:.3e}",
+        estimate.levels.len(),
+        estimate.member_steps,
+        estimate.plain_member_steps
+    );
+    for level in &estimate.levels {
+        println!("    level {:.6}: {:.3}", level.value, level.share);
+    }
+}
+
+#[test]
+fn rare_passages_of_coloured_noise_are_as_likely_as_its_kernel_says() {
+    for (scheme, deviations) in [(Scheme::EulerMaruyama, 5.3), (Scheme::Splitting, -5.3)] {
+        let chain = Chain::of(scheme);
+        let known = chain.passes(f64::abs(deviations) * chain.settled(), 0.0);
+        assert!((5e-7..2e-6).contains(&known), "{known}");
+        let experiment = Experiment {
+            scheme,
+            ..open_loop(5)
+        };
+        let found = estimate(&experiment, &passage(chain, deviations), 2);
+        told(scheme.name(), &found, &format!("{known:.4e}"));
+        assert!(found.probability.holds(known));
+        // Neither so wide that it holds anything.
+        assert!(found.probability.high < 1.6 * found.probability.value);
+        assert!(100.0 * (found.member_steps as f64) < found.plain_member_steps);
+        assert_eq!(found.lost, 0);
+        for level in &found.levels[..found.levels.len() - 1] {
+            assert!((0.1..0.35).contains(&level.share), "{level:?}");
+        }
+    }
+}
+
+#[test]
+fn intervals_hold_the_truth_as_often_as_they_say() {
+    let chain = Chain::of(Scheme::EulerMaruyama);
+    let start_std = 0.5 * chain.settled();
+    let known = chain.passes(3.5 * chain.settled(), start_std);
+    // Levels of one's own, one of them near the next: a step may lead past both.
+    let levels = [1.0, 1.9, 2.7, 2.75].map(|level| level * chain.settled());
+    let event = RareEvent {
+        effort: 64,
+        levels: Some(levels.to_vec()),
+        repetitions: 10,
+        ..passage(chain, 3.5)
+    };
+    let mut held = 0;
+    let mut mean = 0.0;
+    for seed in 0..20 {
+        let mut experiment = open_loop(100 + seed);
+        experiment.state[1].chi_1 = start_std;
+        let found = estimate(&experiment, &event, 2);
+        held += u32::from(found.probability.holds(known));
+        mean += found.probability.value / 20.0;
+    }
+    println!("{held} of 20 intervals hold {known:.4e}; mean {mean:.4e}");
+    // Of 20 intervals of 95 %, fewer than 16 hold the truth once in 400 times.
+    assert!(held >= 16);
+    assert!((mean / known - 1.0).abs() < 0.15);
+}
+
+#[test]
+fn alpha_leaves_a_limit_in_closed_loop_as_often_as_in_plain_flights() {
+    let mut experiment = closed_loop(7);
+    let trimmed = experiment.state[0].alpha;
+    let near = trimmed + NEAR;
+    let bounds = |max| State {
+        alpha: Bounds {
+            min: f64::NEG_INFINITY,
+            max,
+        },
+        ..State::splat(Bounds {
+            min: f64::NEG_INFINITY,
+            max: f64::INFINITY,
+        })
+    };
+    experiment.watched = vec![bounds(near)];
+    let plain = experiment
+        .run(15_000, 2, &Control::default())
+        .expect("flights");
+    experiment.watched.clear();
+    let snapshot = &plain.snapshots[0];
+    let left = Estimate::of_share(snapshot.left[0][index("alpha")], plain.members);
+    println!(
+        "alpha: deviation {:?}, plain {left:?}, {} member-steps",
+        snapshot.states[index("alpha")].std,
+        plain.member_steps
+    );
+    let event = RareEvent {
+        state: index("alpha"),
+        limit: near,
+        effort: 160,
+        levels: None,
+        repetitions: 20,
+    };
+    let found = estimate(&experiment, &event, 2);
+    told(
+        "near",
+        &found,
+        &format!("{:.4e} to {:.4e}", left.low, left.high),
+    );
+    assert!(found.probability.low < left.high && left.low < found.probability.high);
+
+    let far = RareEvent {
+        limit: trimmed + FAR,
+        ..event
+    };
+    let found = estimate(&experiment, &far, 2);
+    told("far", &found, "to none");
+    assert!(found.probability.value < 1e-5);
+    assert!(100.0 * (found.member_steps as f64) < found.plain_member_steps);
+}
+
+/// Limits of alpha beyond the trim, in rad: one that plain flights leave, and one that they do not.
+const NEAR: f64 = 0.0010;
+const FAR: f64 = 0.0018;
+
+#[test]
+fn threads_change_no_bit() {
+    let event = RareEvent {
+        effort: 20,
+        repetitions: 10,
+        ..passage(Chain::of(Scheme::Splitting), 3.0)
+    };
+    let one = estimate(&closed_loop(3), &event, 1);
+    assert_eq!(one, estimate(&closed_loop(3), &event, 2));
+    assert_ne!(one, estimate(&closed_loop(4), &event, 2));
+}
+
+#[test]
+fn requests_without_sense_are_refused() {
+    let experiment = open_loop(1);
+    let good = passage(Chain::of(Scheme::EulerMaruyama), 4.0);
+    let refused = |experiment: &Experiment<Sdcom>, event: &RareEvent| match experiment
+        .first_passage(event, 1, &Control::default())
+    {
+        Err(MonteCarloError::Rare(error)) => error,
+        other => panic!("{other:?}"),
+    };
+    for limit in [0.0, f64::NAN, f64::INFINITY] {
+        let event = RareEvent {
+            limit,
+            ..good.clone()
+        };
+        let error = refused(&experiment, &event);
+        assert!(
+            matches!(error, RareError::Limit { state: "chi_1", .. }),
+            "{error}"
+        );
+    }
+    let nobody = RareEvent {
+        effort: 0,
+        ..good.clone()
+    };
+    assert_eq!(refused(&experiment, &nobody), RareError::Effort);
+    let once = RareEvent {
+        repetitions: 9,
+        ..good.clone()
+    };
+    assert_eq!(
+        refused(&experiment, &once),
+        RareError::Repetitions { repetitions: 9 }
+    );
+    let ninth = RareEvent {
+        state: 8,
+        ..good.clone()
+    };
+    let error = refused(&experiment, &ninth);
+    assert_eq!(
+        error,
+        RareError::State {
+            state: 8,
+            states: 8
+        }
+    );
+    for (levels, level) in [
+        (vec![-0.1 * good.limit], -0.1 * good.limit),
+        (vec![0.5 * good.limit; 2], 0.5 * good.limit),
+        (vec![0.5 * good.limit, good.limit], good.limit),
+    ] {
+        let event = RareEvent {
+            levels: Some(levels),
+            ..good.clone()
+        };
+        let error = refused(&experiment, &event);
+        assert!(
+            matches!(error, RareError::Level { level: found, .. } if found == level),
+            "{error}"
+        );
+    }
+    for (dt, steps) in [(0.0, STEPS), (f64::NAN, STEPS), (DT, 0)] {
+        let experiment = Experiment {
+            dt,
+            snapshots: vec![steps],
+            ..open_loop(1)
+        };
+        assert!(matches!(
+            refused(&experiment, &good),
+            RareError::Flight { .. }
+        ));
+    }
+}
+
+#[test]
+fn what_cannot_be_estimated_is_told() {
+    let chain = Chain::of(Scheme::EulerMaruyama);
+    let find = |event: &RareEvent, control: &Control| open_loop(1).first_passage(event, 1, control);
+    // One level, and few members: none gets there.
+    let far = RareEvent {
+        effort: 8,
+        levels: Some(Vec::new()),
+        repetitions: 10,
+        ..passage(chain, 6.0)
+    };
+    let error = find(&far, &Control::default());
+    let limit = far.limit;
+    assert_eq!(error, Err(RareError::OutOfReach { level: limit }.into()));
+    // Without noise, all pass or none.
+    let mut calm = open_loop(1);
+    calm.parameters = silent(NOMINAL);
+    calm.state[0].chi_1 = 1.0;
+    let decayed = RareEvent {
+        limit: 0.9,
+        effort: 8,
+        ..far.clone()
+    };
+    let error = calm.first_passage(&decayed, 1, &Control::default());
+    assert_eq!(error, Err(RareError::NoSpread { value: 1.0 }.into()));
+    let stopped = Control {
+        done: AtomicU64::new(0),
+        stop: AtomicBool::new(true),
+    };
+    assert_eq!(find(&far, &stopped), Err(MonteCarloError::Stopped));
+    assert_eq!(stopped.done.load(Ordering::Relaxed), 0);
+}
