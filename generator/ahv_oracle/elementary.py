@@ -1,7 +1,7 @@
 """Reference values of sine, cosine and exponential by mpmath, at random and at hard points.
 
-Line 1 is a comment; a row is ``function,x,nearest,missing``: the nearest double to f(x), and what it misses of f(x), in its
-ulp.
+Line 1 is a comment; a row is ``function,x,nearest,missing``: the nearest double to f(x), and what it misses of f(x), in
+its ulp.
 """
 
 import math
@@ -26,7 +26,8 @@ HARDEST = 200
 
 def elementary_lines() -> Iterator[str]:
     """Yield the lines of the file."""
-    yield f"# ahv reference values of sin, cos and exp, mpmath with {DIGITS} digits, seed {SEED}; function,x,nearest,missing"
+    heading = f"# ahv reference values of sin, cos and exp, mpmath with {DIGITS} digits, seed {SEED}"
+    yield f"{heading}; function,x,nearest,missing"
     draw = random.Random(SEED)
     with mpmath.workdps(DIGITS):
         angles = [*_drawn(draw, ANGLES), *_near_multiples()]

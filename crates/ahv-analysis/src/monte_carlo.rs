@@ -22,7 +22,7 @@ pub use batch::Loss;
 pub use experiment::{Control, Experiment, Flown, Seen};
 pub use family::{Dcom, Family, LANES, Packed, Sdcom};
 pub use feedback::Feedback;
-pub use outcome::{Outcome, Snapshot, StateSpread};
+pub use outcome::{Outcome, Point, Snapshot, StateSpread};
 pub use rare::{FEWEST_REPETITIONS, Level, RareError, RareEstimate, RareEvent};
 pub use scheme::Scheme;
 pub use spread::{Bin, QUANTILES};

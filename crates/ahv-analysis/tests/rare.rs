@@ -3,6 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use ahv_analysis::disperse::{Distribution, Draws};
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
 use ahv_analysis::monte_carlo::{
@@ -13,7 +14,7 @@ use ahv_analysis::statistics::Estimate;
 use ahv_analysis::track::{ACTUATORS, silent};
 use ahv_analysis::trim::{SteadyFlight, Trim, trim};
 use ahv_core::{Bounds, ColouredNoise, StochasticModel, Vector};
-use ahv_models::sdcom::{Input, Model, NOMINAL, Noise, State};
+use ahv_models::sdcom::{Input, Model, NOMINAL, Noise, Parameters, State};
 
 /// Steps of a flight, and their size in s.
 const STEPS: u64 = 100;
@@ -223,12 +224,26 @@ fn rare_passages_of_coloured_noise_are_as_likely_as_its_kernel_says() {
 #[test]
 fn intervals_hold_the_truth_as_often_as_they_say() {
     let chain = Chain::of(Scheme::EulerMaruyama);
-    let start_std = 0.5 * chain.settled();
-    let known = chain.passes(3.5 * chain.settled(), start_std);
+    let (limit, start_std) = (3.5 * chain.settled(), 0.5 * chain.settled());
+    // Starts and intensities that differ from member to member, and stay with those that descend from one.
+    let within = 0.3;
+    let uncertainty = Parameters {
+        sigma_1: within,
+        ..Parameters::splat(0.0)
+    };
+    let draws = Draws::new(NOMINAL, uncertainty, Distribution::Uniform, Vec::new(), 11);
+    let draws = draws.expect("draws");
+    let known: f64 = (0..12)
+        .map(|part| {
+            let sigma = 1.0 + within * ((f64::from(part) + 0.5) / 6.0 - 1.0);
+            let spread = sigma * chain.spread;
+            Chain { spread, ..chain }.passes(limit, start_std) / 12.0
+        })
+        .sum();
     // Levels of one's own, one of them near the next: a step may lead past both.
     let levels = [1.0, 1.9, 2.7, 2.75].map(|level| level * chain.settled());
     let event = RareEvent {
-        effort: 64,
+        effort: 128,
         levels: Some(levels.to_vec()),
         repetitions: 10,
         ..passage(chain, 3.5)
@@ -238,6 +253,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     for seed in 0..20 {
         let mut experiment = open_loop(100 + seed);
         experiment.state[1].chi_1 = start_std;
+        experiment.dispersion = Some(draws.clone());
         let found = estimate(&experiment, &event, 2);
         held += u32::from(found.probability.holds(known));
         mean += found.probability.value / 20.0;

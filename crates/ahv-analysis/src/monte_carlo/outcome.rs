@@ -20,6 +20,17 @@ const GROUP: u64 = 32;
 /// Losses that are told one by one.
 const TOLD: usize = 20;
 
+/// A member at one time.
+#[derive(Clone, Copy)]
+pub struct Point<F: Family> {
+    /// Time, in s.
+    pub time: f64,
+    /// State.
+    pub state: F::State<f64>,
+    /// Input.
+    pub input: F::Input<f64>,
+}
+
 /// What members show together.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -133,8 +144,8 @@ impl<F: Flown> Experiment<F> {
         Ok(Some(seen))
     }
 
-    /// State and input of one member at the start and after every `stride` steps, as long as it is not lost, with the time
-    /// in s. The bits are those that the member has among others.
+    /// State and input of one member at the start and after every `stride` steps, as long as it is not lost.
+    /// The bits are those that the member has among others.
     ///
     /// # Errors
     ///
@@ -143,7 +154,7 @@ impl<F: Flown> Experiment<F> {
         &self,
         member: u64,
         stride: u64,
-    ) -> Result<Vec<(f64, F::State<f64>, F::Input<f64>)>, MonteCarloError> {
+    ) -> Result<Vec<Point<F>>, MonteCarloError> {
         let alone = Self {
             snapshots: (0..=self.steps()).step_by(stride.max(1) as usize).collect(),
             ..self.clone()
@@ -155,9 +166,12 @@ impl<F: Flown> Experiment<F> {
             .map(|seen| seen.at)
             .unwrap_or_default();
         let timed = alone.snapshots.iter().zip(at);
-        Ok(timed
-            .map(|(&step, (x, u))| (step as f64 * self.dt, x, u))
-            .collect())
+        let point = |(&step, (state, input)): (&u64, _)| Point {
+            time: step as f64 * self.dt,
+            state,
+            input,
+        };
+        Ok(timed.map(point).collect())
     }
 }
 

@@ -128,7 +128,7 @@ pub struct RareEstimate {
     /// The probability with its interval of 95 %, by Student's distribution of the mean of the repetitions.
     ///
     /// It is right for a mean that is nearly normal: with few members from each level the repetitions spread to one side, and
-    /// more of them are needed.
+    /// the interval lies too low too often.
     pub probability: Estimate,
     /// The levels; the limit is the last.
     pub levels: Vec<Level>,

@@ -72,11 +72,11 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
         })?;
         let flight = told.experiment.trajectory(member, 1);
         let flight = flight.map_err(|error| Failure::Numeric(error.to_string()))?;
-        for (time, x, u) in flight {
+        for point in flight {
             table.members.push(number);
-            let states = (0..M::State::LEN).filter_map(|index| x.get(index));
-            let inputs = (0..M::Input::LEN).filter_map(|index| u.get(index));
-            let values = std::iter::once(time).chain(states).chain(inputs);
+            let states = (0..M::State::LEN).filter_map(|index| point.state.get(index));
+            let inputs = (0..M::Input::LEN).filter_map(|index| point.input.get(index));
+            let values = std::iter::once(point.time).chain(states).chain(inputs);
             table
                 .columns
                 .iter_mut()

@@ -1,0 +1,264 @@
+//! The engine against the steppers of `ahv-integrate`, member by member, and against laws that are known.
+#![forbid(unsafe_code)]
+
+use ahv_analysis::monte_carlo::{
+    Control, Dcom, Experiment, Feedback, Flown, Mode, MonteCarloError, Scheme, Sdcom,
+};
+use ahv_analysis::statistics::Estimate;
+use ahv_analysis::track::Actuator;
+use ahv_core::{Bounds, ColouredNoise, Vector};
+use ahv_integrate::{ItoEulerMaruyama, ItoHeun, ItoStrangSplitting, NormalStream, WienerSource};
+use ahv_models::{dcom, sdcom};
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+
+const SEED: u64 = 5;
+const CHANNELS: usize = sdcom::Noise::<()>::LEN;
+
+/// Near the level trim of the nominal table.
+const STATE: sdcom::State<f64> = sdcom::State {
+    velocity: 7702.0,
+    altitude: 85_000.0,
+    gamma: 0.0,
+    alpha: 0.026,
+    pitch_rate: 0.0,
+    chi_1: 0.0,
+    chi_2: 0.0,
+    chi_3: 0.0,
+};
+const INPUT: sdcom::Input<f64> = sdcom::Input {
+    phi: 0.25,
+    delta_e: 0.2,
+    delta_c: 0.0,
+};
+
+fn experiment(scheme: Scheme, dt: f64, snapshots: Vec<u64>) -> Experiment<Sdcom> {
+    Experiment {
+        parameters: sdcom::NOMINAL,
+        dispersion: None,
+        state: [STATE, Vector::splat(0.0)],
+        input: [INPUT, Vector::splat(0.0)],
+        feedback: None,
+        watched: vec![sdcom::STATE_BOUNDS],
+        scheme,
+        mode: Mode::Exact,
+        dt,
+        snapshots,
+        seed: SEED,
+    }
+}
+
+fn last(experiment: &Experiment<Sdcom>, members: &[u64]) -> Vec<sdcom::State<f64>> {
+    let seen = Sdcom::fly(experiment, members, &Control::default());
+    let seen = seen.expect("the scheme goes").expect("nobody stops it");
+    seen.into_iter().map(|seen| seen.last).collect()
+}
+
+/// One member by the stepper of `ahv-integrate`, its noise from `WienerSource`.
+fn alone(
+    member: u64,
+    steps: u64,
+    dt: f64,
+    step: impl Fn(&sdcom::Model<f64>, &mut sdcom::State<f64>, &sdcom::Noise<f64>, [[f64; 3]; 2]),
+) -> sdcom::State<f64> {
+    let model = sdcom::Model::new(&sdcom::NOMINAL);
+    let mut wiener = WienerSource::<CHANNELS>::new(SEED, member);
+    let mut extra: Vec<NormalStream> = (0..6)
+        .map(|index| NormalStream::new(SEED, member, CHANNELS as u64 + index))
+        .collect();
+    let mut x = STATE;
+    for index in 0..steps {
+        let dw = wiener.increments(index, dt);
+        let halves = [0, 1].map(|half| [0, 1, 2].map(|k| extra[3 * half + k].normal(index)));
+        step(&model, &mut x, &dw, halves);
+    }
+    x
+}
+
+#[test]
+fn a_member_has_the_bits_that_its_stepper_gives_it_alone() {
+    let (dt, steps) = (1e-3, 60);
+    // Not a multiple of the lanes, and not from 0 on.
+    let members = [3, 4, 5, 6, 900, 1 << 40];
+    let euler = last(&experiment(Scheme::EulerMaruyama, dt, vec![steps]), &members);
+    let heun = last(&experiment(Scheme::Heun, dt, vec![steps]), &members);
+    let splitting = last(&experiment(Scheme::Splitting, dt, vec![steps]), &members);
+    for (index, &member) in members.iter().enumerate() {
+        let expected = alone(member, steps, dt, |model, x, dw, _| {
+            ItoEulerMaruyama::new(dt).step(model, x, &INPUT, dw).expect("finite");
+        });
+        assert_eq!(euler[index], expected, "Euler-Maruyama, member {member}");
+        let expected = alone(member, steps, dt, |model, x, dw, _| {
+            ItoHeun::new(dt).step(model, x, &INPUT, dw).expect("finite");
+        });
+        assert_eq!(heun[index], expected, "Heun, member {member}");
+        let expected = alone(member, steps, dt, |model, x, dw, halves| {
+            let splitting: ItoStrangSplitting<f64, 3> =
+                ItoStrangSplitting::new(model, x, &INPUT, dt).expect("three states of noise");
+            splitting.step_heun(model, x, &INPUT, dw, &halves).expect("finite");
+        });
+        assert_eq!(splitting[index], expected, "splitting, member {member}");
+    }
+}
+
+#[test]
+fn threads_and_chunks_change_no_bit() {
+    let experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 10, 20]);
+    let run = |threads| experiment.run(300, threads, &Control::default()).expect("it goes");
+    let (one, three) = (run(1), run(3));
+    assert_eq!(one.digest, three.digest);
+    for (a, b) in one.snapshots.iter().zip(&three.snapshots) {
+        assert_eq!(a.covariance, b.covariance);
+        assert_eq!(a.members, 300);
+        for (a, b) in a.states.iter().zip(&b.states) {
+            assert_eq!((a.mean, a.std, a.quantiles), (b.mean, b.std, b.quantiles));
+        }
+    }
+}
+
+/// The stationary deviation of coloured noise in closed form: by the exact transition it has no error at any step.
+#[test]
+fn coloured_noise_has_its_stationary_deviation_at_a_long_step() {
+    let experiment = experiment(Scheme::Splitting, 0.05, vec![12]);
+    let outcome = experiment.run(4096, 2, &Control::default()).expect("it goes");
+    let model = sdcom::Model::new(&sdcom::NOMINAL);
+    let chi_1 = sdcom::State::<f64>::index_of("chi_1").expect("a state");
+    let rate = model.decay(chi_1).expect("coloured noise");
+    let gain = model.prepared.chi_diffusion_1;
+    let time = 0.6;
+    let exact = (gain * gain / (2.0 * rate) * (1.0 - (-2.0 * rate * time).exp())).sqrt();
+    let std = outcome.snapshots[0].states[chi_1].std.expect("finite");
+    assert!(std.holds(exact), "{exact} is not in {std:?}");
+}
+
+#[test]
+fn feedback_moves_the_inputs_as_the_actuator_does() {
+    let mut experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 1, 2, 50]);
+    let mut gain: sdcom::Input<sdcom::State<f64>> = Vector::splat(Vector::splat(0.0));
+    gain.delta_e.alpha = -3.0;
+    gain.delta_e.pitch_rate = -1.0;
+    let actuator = Actuator {
+        bandwidth: 20.0,
+        rate: 0.5,
+        bounds: Bounds::new(0.15, 0.22),
+    };
+    let mut actuators = Vector::splat(None);
+    let place: &mut sdcom::Input<_> = &mut actuators;
+    place.delta_e = Some(actuator);
+    let reference = sdcom::State { alpha: 0.01, ..STATE };
+    experiment.feedback = Some(Feedback { state: reference, input: INPUT, gain, actuators });
+    let points = experiment.trajectory(2, 1).expect("it goes");
+    assert_eq!(points.len(), 51);
+    let mut position = INPUT.delta_e;
+    for (before, after) in points.iter().zip(&points[1..]) {
+        let command = INPUT.delta_e + 3.0 * (before.state.alpha - 0.01) + before.state.pitch_rate;
+        position = actuator.moved(position, command, 1e-3).0;
+        assert_relative_eq!(after.input.delta_e, position, max_relative = 1e-12);
+        assert_eq!(after.input.phi, INPUT.phi);
+    }
+    assert!((points[50].input.delta_e - INPUT.delta_e).abs() > 1e-3, "it moves");
+}
+
+#[test]
+fn members_that_are_lost_are_counted_and_touch_no_other() {
+    // With deviations of 30 rad of the angle of attack the curve fits soon have no finite value.
+    let mut wild = experiment(Scheme::EulerMaruyama, 0.05, vec![0, 400]);
+    wild.state[1].alpha = 30.0;
+    let members: Vec<u64> = (0..8).collect();
+    let seen = Sdcom::fly(&wild, &members, &Control::default()).expect("it goes").expect("all");
+    assert!(seen.iter().any(|seen| seen.lost.is_some()), "some are lost");
+    for (seen, &member) in seen.iter().zip(&members) {
+        let alone = Sdcom::fly(&wild, &[member], &Control::default());
+        let alone = alone.expect("it goes").expect("all");
+        assert_eq!(alone[0].last, seen.last, "member {member}");
+        assert_eq!(alone[0].lost, seen.lost);
+        assert!(seen.last.find(|value| !value.is_finite()).is_none());
+    }
+    let outcome = wild.run(64, 1, &Control::default()).expect("it goes");
+    assert_eq!(outcome.snapshots[0].members, 64);
+    assert_eq!(outcome.snapshots[1].members, 64 - outcome.lost);
+}
+
+#[test]
+fn the_first_step_outside_is_found() {
+    let mut experiment = experiment(Scheme::EulerMaruyama, 1e-3, (0..=200).collect());
+    let mut limits = sdcom::State::splat(Bounds::new(f64::NEG_INFINITY, f64::INFINITY));
+    limits.alpha = Bounds::new(0.0255, 0.0265);
+    experiment.watched.push(limits);
+    let seen = Sdcom::fly(&experiment, &[0, 1, 2], &Control::default());
+    for seen in seen.expect("it goes").expect("all") {
+        let outside = |(x, _): &(sdcom::State<f64>, _)| !limits.alpha.contains(x.alpha);
+        let first = seen.at.iter().position(outside).map(|step| step as u64);
+        assert_eq!(seen.left[1].alpha, first);
+        assert!(first.is_some(), "it leaves");
+    }
+}
+
+#[test]
+fn modes_differ_by_rounding_alone() {
+    let exact = experiment(Scheme::Splitting, 0.01, vec![20]);
+    let mode = |mode| {
+        let experiment = Experiment { mode, ..exact.clone() };
+        experiment.run(4096, 2, &Control::default())
+    };
+    let stds = |outcome: &ahv_analysis::monte_carlo::Outcome| -> Vec<Estimate> {
+        outcome.snapshots[0].states.iter().filter_map(|state| state.std).collect()
+    };
+    let reference = stds(&mode(Mode::Exact).expect("it goes"));
+    match mode(Mode::Fma) {
+        Ok(outcome) => {
+            for (a, b) in stds(&outcome).iter().zip(&reference) {
+                assert_relative_eq!(a.value, b.value, max_relative = 1e-9);
+            }
+        }
+        Err(error) => assert_eq!(error, MonteCarloError::NoFma),
+    }
+    // Other numbers of the same law.
+    for single in [Mode::F32Noise, Mode::F32Drift] {
+        for (a, b) in stds(&mode(single).expect("it goes")).iter().zip(&reference) {
+            assert!(a.low < b.high && b.low < a.high, "{single:?}: {a:?}, {b:?}");
+        }
+    }
+}
+
+#[test]
+fn a_scheme_that_does_not_go_says_why() {
+    let fly = |scheme| Sdcom::fly(&experiment(scheme, 1e-3, vec![1]), &[0], &Control::default());
+    assert!(matches!(fly(Scheme::Milstein), Err(MonteCarloError::Scheme { .. })));
+    assert!(matches!(fly(Scheme::Sra1), Err(MonteCarloError::Scheme { .. })));
+    assert!(fly(Scheme::Dri1).is_ok() && fly(Scheme::StratonovichHeun).is_ok());
+    let state = dcom::STATE_BOUNDS.map_into(|bounds| 0.5 * (bounds.min + bounds.max));
+    let deterministic = Experiment::<Dcom> {
+        parameters: dcom::NOMINAL,
+        dispersion: None,
+        state: [state, Vector::splat(0.0)],
+        input: [Vector::splat(0.1), Vector::splat(0.0)],
+        feedback: None,
+        watched: Vec::new(),
+        scheme: Scheme::Splitting,
+        mode: Mode::Exact,
+        dt: 1e-3,
+        snapshots: vec![1],
+        seed: 0,
+    };
+    let fly = Dcom::fly(&deterministic, &[0], &Control::default());
+    assert!(matches!(fly, Err(MonteCarloError::Scheme { .. })));
+}
+
+#[test]
+fn what_is_stopped_tells_of_what_was_flown() {
+    let control = Control::default();
+    control.stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    let stopped = experiment(Scheme::Heun, 1e-3, vec![10]).run(100, 1, &control);
+    assert_eq!(stopped.err(), Some(MonteCarloError::Stopped));
+}
+
+/// By SciPy 1.17: `binomtest(count, 100).proportion_ci(method="wilson")`.
+#[test]
+fn the_interval_of_a_share_is_wilsons() {
+    let share = Estimate::of_share(10, 100);
+    assert_abs_diff_eq!(share.low, 0.055_229_1, epsilon = 1e-6);
+    assert_abs_diff_eq!(share.high, 0.174_365_8, epsilon = 1e-6);
+    let none = Estimate::of_share(0, 100);
+    assert_eq!(none.low, 0.0);
+    assert_abs_diff_eq!(none.high, 0.036_993_5, epsilon = 1e-6);
+}
