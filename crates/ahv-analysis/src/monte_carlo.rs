@@ -51,6 +51,9 @@ pub enum MonteCarloError {
         "the mode fma asks for a processor with a fused multiply-add, which this one is without"
     )]
     NoFma,
+    /// A step that is not positive and finite.
+    #[error("the step must be positive and finite, not {0} s")]
+    StepSize(f64),
     /// Stopped before a member had flown.
     #[error("stopped before the first members had flown")]
     Stopped,

@@ -79,12 +79,17 @@ fn a_member_has_the_bits_that_its_stepper_gives_it_alone() {
     let (dt, steps) = (1e-3, 60);
     // Not a multiple of the lanes, and not from 0 on.
     let members = [3, 4, 5, 6, 900, 1 << 40];
-    let euler = last(&experiment(Scheme::EulerMaruyama, dt, vec![steps]), &members);
+    let euler = last(
+        &experiment(Scheme::EulerMaruyama, dt, vec![steps]),
+        &members,
+    );
     let heun = last(&experiment(Scheme::Heun, dt, vec![steps]), &members);
     let splitting = last(&experiment(Scheme::Splitting, dt, vec![steps]), &members);
     for (index, &member) in members.iter().enumerate() {
         let expected = alone(member, steps, dt, |model, x, dw, _| {
-            ItoEulerMaruyama::new(dt).step(model, x, &INPUT, dw).expect("finite");
+            ItoEulerMaruyama::new(dt)
+                .step(model, x, &INPUT, dw)
+                .expect("finite");
         });
         assert_eq!(euler[index], expected, "Euler-Maruyama, member {member}");
         let expected = alone(member, steps, dt, |model, x, dw, _| {
@@ -94,7 +99,9 @@ fn a_member_has_the_bits_that_its_stepper_gives_it_alone() {
         let expected = alone(member, steps, dt, |model, x, dw, halves| {
             let splitting: ItoStrangSplitting<f64, 3> =
                 ItoStrangSplitting::new(model, x, &INPUT, dt).expect("three states of noise");
-            splitting.step_heun(model, x, &INPUT, dw, &halves).expect("finite");
+            splitting
+                .step_heun(model, x, &INPUT, dw, &halves)
+                .expect("finite");
         });
         assert_eq!(splitting[index], expected, "splitting, member {member}");
     }
@@ -103,7 +110,11 @@ fn a_member_has_the_bits_that_its_stepper_gives_it_alone() {
 #[test]
 fn threads_and_chunks_change_no_bit() {
     let experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 10, 20]);
-    let run = |threads| experiment.run(300, threads, &Control::default()).expect("it goes");
+    let run = |threads| {
+        experiment
+            .run(300, threads, &Control::default())
+            .expect("it goes")
+    };
     let (one, three) = (run(1), run(3));
     assert_eq!(one.digest, three.digest);
     for (a, b) in one.snapshots.iter().zip(&three.snapshots) {
@@ -119,7 +130,9 @@ fn threads_and_chunks_change_no_bit() {
 #[test]
 fn coloured_noise_has_its_stationary_deviation_at_a_long_step() {
     let experiment = experiment(Scheme::Splitting, 0.05, vec![12]);
-    let outcome = experiment.run(4096, 2, &Control::default()).expect("it goes");
+    let outcome = experiment
+        .run(4096, 2, &Control::default())
+        .expect("it goes");
     let model = sdcom::Model::new(&sdcom::NOMINAL);
     let chi_1 = sdcom::State::<f64>::index_of("chi_1").expect("a state");
     let rate = model.decay(chi_1).expect("coloured noise");
@@ -144,8 +157,16 @@ fn feedback_moves_the_inputs_as_the_actuator_does() {
     let mut actuators = Vector::splat(None);
     let place: &mut sdcom::Input<_> = &mut actuators;
     place.delta_e = Some(actuator);
-    let reference = sdcom::State { alpha: 0.01, ..STATE };
-    experiment.feedback = Some(Feedback { state: reference, input: INPUT, gain, actuators });
+    let reference = sdcom::State {
+        alpha: 0.01,
+        ..STATE
+    };
+    experiment.feedback = Some(Feedback {
+        state: reference,
+        input: INPUT,
+        gain,
+        actuators,
+    });
     let points = experiment.trajectory(2, 1).expect("it goes");
     assert_eq!(points.len(), 51);
     let mut position = INPUT.delta_e;
@@ -155,7 +176,10 @@ fn feedback_moves_the_inputs_as_the_actuator_does() {
         assert_relative_eq!(after.input.delta_e, position, max_relative = 1e-12);
         assert_eq!(after.input.phi, INPUT.phi);
     }
-    assert!((points[50].input.delta_e - INPUT.delta_e).abs() > 1e-3, "it moves");
+    assert!(
+        (points[50].input.delta_e - INPUT.delta_e).abs() > 1e-3,
+        "it moves"
+    );
 }
 
 #[test]
@@ -164,7 +188,9 @@ fn members_that_are_lost_are_counted_and_touch_no_other() {
     let mut wild = experiment(Scheme::EulerMaruyama, 0.05, vec![0, 400]);
     wild.state[1].alpha = 30.0;
     let members: Vec<u64> = (0..8).collect();
-    let seen = Sdcom::fly(&wild, &members, &Control::default()).expect("it goes").expect("all");
+    let seen = Sdcom::fly(&wild, &members, &Control::default())
+        .expect("it goes")
+        .expect("all");
     assert!(seen.iter().any(|seen| seen.lost.is_some()), "some are lost");
     for (seen, &member) in seen.iter().zip(&members) {
         let alone = Sdcom::fly(&wild, &[member], &Control::default());
@@ -197,11 +223,18 @@ fn the_first_step_outside_is_found() {
 fn modes_differ_by_rounding_alone() {
     let exact = experiment(Scheme::Splitting, 0.01, vec![20]);
     let mode = |mode| {
-        let experiment = Experiment { mode, ..exact.clone() };
+        let experiment = Experiment {
+            mode,
+            ..exact.clone()
+        };
         experiment.run(4096, 2, &Control::default())
     };
     let stds = |outcome: &ahv_analysis::monte_carlo::Outcome| -> Vec<Estimate> {
-        outcome.snapshots[0].states.iter().filter_map(|state| state.std).collect()
+        outcome.snapshots[0]
+            .states
+            .iter()
+            .filter_map(|state| state.std)
+            .collect()
     };
     let reference = stds(&mode(Mode::Exact).expect("it goes"));
     match mode(Mode::Fma) {
@@ -222,9 +255,21 @@ fn modes_differ_by_rounding_alone() {
 
 #[test]
 fn a_scheme_that_does_not_go_says_why() {
-    let fly = |scheme| Sdcom::fly(&experiment(scheme, 1e-3, vec![1]), &[0], &Control::default());
-    assert!(matches!(fly(Scheme::Milstein), Err(MonteCarloError::Scheme { .. })));
-    assert!(matches!(fly(Scheme::Sra1), Err(MonteCarloError::Scheme { .. })));
+    let fly = |scheme| {
+        Sdcom::fly(
+            &experiment(scheme, 1e-3, vec![1]),
+            &[0],
+            &Control::default(),
+        )
+    };
+    assert!(matches!(
+        fly(Scheme::Milstein),
+        Err(MonteCarloError::Scheme { .. })
+    ));
+    assert!(matches!(
+        fly(Scheme::Sra1),
+        Err(MonteCarloError::Scheme { .. })
+    ));
     assert!(fly(Scheme::Dri1).is_ok() && fly(Scheme::StratonovichHeun).is_ok());
     let state = dcom::STATE_BOUNDS.map_into(|bounds| 0.5 * (bounds.min + bounds.max));
     let deterministic = Experiment::<Dcom> {
@@ -247,7 +292,9 @@ fn a_scheme_that_does_not_go_says_why() {
 #[test]
 fn what_is_stopped_tells_of_what_was_flown() {
     let control = Control::default();
-    control.stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    control
+        .stop
+        .store(true, std::sync::atomic::Ordering::Relaxed);
     let stopped = experiment(Scheme::Heun, 1e-3, vec![10]).run(100, 1, &control);
     assert_eq!(stopped.err(), Some(MonteCarloError::Stopped));
 }

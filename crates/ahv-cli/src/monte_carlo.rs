@@ -91,7 +91,7 @@ pub(crate) struct Arguments {
     input_std: Vec<String>,
 
     #[command(flatten)]
-    feedback: feedback::Arguments,
+    feedback: feedback::FeedbackArguments,
 
     /// Limits of states whose violation is told, e.g. alpha=-2deg..6deg
     #[arg(

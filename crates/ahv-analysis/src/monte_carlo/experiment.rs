@@ -253,6 +253,9 @@ impl<F: Family> Experiment<F> {
         if self.mode == Mode::Fma && !has_fma() {
             return Err(MonteCarloError::NoFma);
         }
+        if !(self.dt > 0.0 && self.dt.is_finite()) {
+            return Err(MonteCarloError::StepSize(self.dt));
+        }
         // Lanes without member repeat the last one.
         let last = flying.last().copied().unwrap_or_else(|| self.particle(0));
         let flying: [Particle<F>; LANES] =

@@ -150,11 +150,7 @@ impl<F: Flown> Experiment<F> {
     /// # Errors
     ///
     /// [`MonteCarloError`].
-    pub fn trajectory(
-        &self,
-        member: u64,
-        stride: u64,
-    ) -> Result<Vec<Point<F>>, MonteCarloError> {
+    pub fn trajectory(&self, member: u64, stride: u64) -> Result<Vec<Point<F>>, MonteCarloError> {
         let alone = Self {
             snapshots: (0..=self.steps()).step_by(stride.max(1) as usize).collect(),
             ..self.clone()

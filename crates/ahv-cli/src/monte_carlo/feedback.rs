@@ -22,7 +22,7 @@ const RATE: f64 = 1.0;
 
 /// State feedback.
 #[derive(Args)]
-pub(super) struct Arguments {
+pub(super) struct FeedbackArguments {
     /// File of gains as `ahv lqr --out` writes it: inputs follow u = input - gain (x - state) through actuators
     #[arg(long, value_name = "FILE")]
     feedback: Option<PathBuf>,
@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     actuator_rate: Vec<String>,
 }
 
-impl Arguments {
+impl FeedbackArguments {
     /// The feedback, if there is one. Actuators move within the validity box of the inputs.
     pub(super) fn read<M: Pair<F>, F: Flown>(
         &self,

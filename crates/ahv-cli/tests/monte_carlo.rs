@@ -1,0 +1,140 @@
+//! `ahv montecarlo`, through the real binary.
+#![forbid(unsafe_code)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ahv"));
+    command.args(arguments).output().expect("ahv starts")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = run(&[arguments, &["--json"]].concat());
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+const FEW: [&str; 9] = [
+    "montecarlo",
+    "--model",
+    "sdcom",
+    "--members",
+    "100",
+    "--t-end",
+    "0.1",
+    "--dt",
+    "0.01",
+];
+
+#[test]
+fn the_same_seed_gives_the_same_numbers_on_any_threads() {
+    let one = json(&[&FEW[..], &["--threads", "1"]].concat());
+    let two = json(&[&FEW[..], &["--threads", "2"]].concat());
+    for key in ["members", "mean", "std", "digest", "snapshots"] {
+        assert_eq!(one[key], two[key], "{key}");
+    }
+    assert_eq!(one["members"], 100);
+    assert_eq!((&one["threads"], &two["threads"]), (&1.into(), &2.into()));
+    assert!(
+        one["member_steps_per_second"]
+            .as_f64()
+            .is_some_and(|rate| rate > 0.0)
+    );
+    assert_eq!(one["digest"].as_str().map(str::len), Some(64));
+    assert!(one["std"]["alpha"].as_f64().is_some_and(|std| std > 0.0));
+    let other = json(&[&FEW[..], &["--seed", "1"]].concat());
+    assert_ne!(one["digest"], other["digest"]);
+}
+
+#[test]
+fn files_hold_what_was_flown_and_feedback_follows_the_gains() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let gains = path("gains.json");
+    assert!(
+        run(&["lqr", "--model", "sdcom", "--out", &gains])
+            .status
+            .success()
+    );
+    let out = path("out");
+    let options = [
+        "--feedback",
+        &gains,
+        "--disperse",
+        "--state-std",
+        "altitude=10ft",
+        "--limit",
+        "alpha=1deg..1.6deg",
+        "--trajectories",
+        "0,99",
+        "--out",
+        &out,
+    ];
+    let told = json(&[&FEW[..], &options].concat());
+    assert_eq!(
+        (&told["feedback"], &told["dispersed"]),
+        (&true.into(), &true.into())
+    );
+    let summary = fs::read_to_string(Path::new(&out).join("summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    assert_eq!(summary["digest"], told["digest"]);
+    for name in [
+        "montecarlo.svg",
+        "snapshots.csv",
+        "histograms.csv",
+        "limits.csv",
+    ] {
+        assert!(Path::new(&out).join(name).is_file(), "{name}");
+    }
+    let trajectories = fs::read_to_string(Path::new(&out).join("trajectories.csv")).expect("rows");
+    assert_eq!(trajectories.lines().count(), 1 + 2 * 11);
+    assert!(trajectories.starts_with("member,time [s],velocity [ft/s]"));
+    let parquet = [&options[..], &["--trajectory-format", "parquet"]].concat();
+    json(&[&FEW[..], &parquet].concat());
+    let bytes = fs::read(Path::new(&out).join("trajectories.parquet")).expect("a file");
+    assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
+}
+
+#[test]
+fn bad_requests_are_refused_with_a_reason() {
+    for (options, words) in [
+        (&["--scheme", "milstein"][..], "do not commute"),
+        (
+            &["--scheme", "dri1", "--mode", "f32-drift"],
+            "no mode f32-drift",
+        ),
+        (&["--limit", "alpha=3"], "NAME=LOW..HIGH"),
+        (&["--limit", "alpha=3deg..2deg"], "not below"),
+        (&["--state-std", "alpah=1deg"], "alpha"),
+        (&["--feedback", "no-such-file.json"], "no-such-file.json"),
+        (
+            &[
+                "--trajectories",
+                "100",
+                "--out",
+                env!("CARGO_TARGET_TMPDIR"),
+            ],
+            "no member 100",
+        ),
+    ] {
+        let output = run(&[&FEW[..], options].concat());
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{options:?}: {message}");
+        assert!(message.contains(words), "{message}");
+    }
+    let com = run(&[
+        "montecarlo",
+        "--model",
+        "com",
+        "--members",
+        "9",
+        "--t-end",
+        "1",
+    ]);
+    assert_eq!(com.status.code(), Some(2));
+}
