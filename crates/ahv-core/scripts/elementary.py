@@ -13,7 +13,9 @@ mp.mp.dps = 60
 Real = Callable[[mp.mpf], mp.mpf]
 
 
-def remez(f: Real, weight: Real, low: float, high: float, first: int, degree: int) -> list[mp.mpf]:
+def remez(
+    f: Real, weight: Real, low: float, high: float, first: int, degree: int
+) -> list[mp.mpf]:
     """Coefficients of x^first … x^degree that make the largest |weight * (f - p)| on the interval nearly smallest."""
     low_, high_ = mp.mpf(low), mp.mpf(high)
     size = degree - first + 1
@@ -67,13 +69,20 @@ def fit(
     for fixed in range(refit + 1):
 
         def rest(x: mp.mpf, done: tuple[float, ...] = tuple(found)) -> mp.mpf:
-            return f(x) - mp.polyval([mp.mpf(c) for c in done][::-1], x) if done else f(x)
+            return (
+                f(x) - mp.polyval([mp.mpf(c) for c in done][::-1], x) if done else f(x)
+            )
 
         solved = remez(rest, weight, low, high, fixed, degree)
         found += [float(c) for c in (solved if fixed == refit else solved[:1])]
     middle, half = (mp.mpf(low) + high) / 2, (mp.mpf(high) - low) / 2
-    grid = [middle - half * mp.cos(mp.pi * (k + mp.mpf(1) / 3) / 2000) for k in range(2000)]
-    worst = max(abs(weight(x) * (f(x) - mp.polyval([mp.mpf(c) for c in found][::-1], x))) for x in grid)
+    grid = [
+        middle - half * mp.cos(mp.pi * (k + mp.mpf(1) / 3) / 2000) for k in range(2000)
+    ]
+    worst = max(
+        abs(weight(x) * (f(x) - mp.polyval([mp.mpf(c) for c in found][::-1], x)))
+        for x in grid
+    )
     return found, worst
 
 
@@ -161,7 +170,10 @@ def main() -> None:
     for name, degrees in (("f64", (6, 7, 4)), ("f32", (4, 4, 2))):
         show(f"SINE, {name}", *fit(sine, one, 1e-9, quarter, degrees[0], 0))
         show(f"COSINE, {name}", *fit(cosine, one, 1e-9, quarter, degrees[1], 0))
-        show(f"LOGARITHM, {name}", *fit(logarithm, lambda z: z, 1e-9, edge, degrees[2], 0))
+        show(
+            f"LOGARITHM, {name}",
+            *fit(logarithm, lambda z: z, 1e-9, edge, degrees[2], 0),
+        )
 
 
 if __name__ == "__main__":
