@@ -92,20 +92,42 @@ pub(super) struct Batch<F: Family, S> {
 
 /// Intervals of the states, and when each was left first.
 pub(super) struct Watch<F: Family> {
-    /// Ends of the intervals; of one that was left, infinite.
-    min: F::State<Packed>,
-    max: F::State<Packed>,
+    intervals: F::State<Interval>,
+}
+
+/// An interval of one state.
+#[derive(Clone, Copy)]
+struct Interval {
+    /// Ends; for a member that has left it, infinite.
+    min: Packed,
+    max: Packed,
     /// Steps after which the state first was outside.
-    pub(super) left: F::State<[u64; LANES]>,
+    left: [u64; LANES],
+}
+
+impl Interval {
+    /// Looks at this lane no more.
+    fn close(&mut self, lane: usize) {
+        self.min.0[lane] = f64::NEG_INFINITY;
+        self.max.0[lane] = f64::INFINITY;
+    }
 }
 
 impl<F: Family> Watch<F> {
     pub(super) fn new(bounds: F::State<Bounds>) -> Self {
-        Self {
-            min: F::map_state(&bounds, |bounds| Packed::splat(bounds.min)),
-            max: F::map_state(&bounds, |bounds| Packed::splat(bounds.max)),
-            left: F::State::splat([NEVER; LANES]),
-        }
+        let intervals = F::map_state(&bounds, |bounds| Interval {
+            min: Packed::splat(bounds.min),
+            max: Packed::splat(bounds.max),
+            left: [NEVER; LANES],
+        });
+        Self { intervals }
+    }
+
+    /// Steps after which a member first was outside, state by state.
+    pub(super) fn left(&self, lane: usize) -> F::State<Option<u64>> {
+        F::map_state(&self.intervals, |interval| {
+            Some(interval.left[lane]).filter(|&step| step != NEVER)
+        })
     }
 
     /// Looks at the states after `step` steps.
@@ -114,8 +136,10 @@ impl<F: Family> Watch<F> {
         let mut any = false;
         for lane in 0..LANES {
             let mut outside = false;
-            F::zip_state(x, &self.min, |x, min| outside |= x.0[lane] < min.0[lane]);
-            F::zip_state(x, &self.max, |x, max| outside |= x.0[lane] > max.0[lane]);
+            F::zip_state(x, &self.intervals, |x, interval| {
+                outside |= x.0[lane] < interval.min.0[lane];
+                outside |= x.0[lane] > interval.max.0[lane];
+            });
             any |= outside;
         }
         if any {
@@ -126,53 +150,19 @@ impl<F: Family> Watch<F> {
     #[cold]
     #[inline(never)]
     fn note(&mut self, x: &F::State<Packed>, step: u64) {
-        let mut outside = F::State::splat([false; LANES]);
-        let mut mark = |beyond: fn(&f64, &f64) -> bool, ends: &F::State<Packed>| {
-            let mut here = F::State::splat([false; LANES]);
-            let mut flags = F::map_state(ends, |ends| *ends);
-            F::update_state(&mut flags, *x, |ends, x| {
-                for (end, x) in ends.0.iter_mut().zip(&x.0) {
-                    *end = f64::from(u8::from(beyond(x, end)));
-                }
-            });
-            F::update_state(&mut here, flags, |here, flags| {
-                for (here, flag) in here.iter_mut().zip(&flags.0) {
-                    *here = *flag != 0.0;
-                }
-            });
-            F::update_state(&mut outside, here, |outside, here| {
-                for (outside, here) in outside.iter_mut().zip(here) {
-                    *outside |= here;
-                }
-            });
-        };
-        mark(f64::lt, &self.min);
-        mark(f64::gt, &self.max);
-        F::update_state(&mut self.left, outside, |left, outside| {
-            for (left, outside) in left.iter_mut().zip(outside) {
-                if outside {
-                    *left = step;
+        F::update_state(&mut self.intervals, *x, |interval, x| {
+            for (lane, value) in x.0.into_iter().enumerate() {
+                if value < interval.min.0[lane] || value > interval.max.0[lane] {
+                    interval.left[lane] = step;
+                    interval.close(lane);
                 }
             }
         });
-        let open = |end: f64| {
-            move |ends: &mut Packed, outside: [bool; LANES]| {
-                for (place, outside) in ends.0.iter_mut().zip(outside) {
-                    if outside {
-                        *place = end;
-                    }
-                }
-            }
-        };
-        F::update_state(&mut self.min, outside, open(f64::NEG_INFINITY));
-        F::update_state(&mut self.max, outside, open(f64::INFINITY));
     }
 
-    /// Looks at this lane no more.
     fn close(&mut self, lane: usize) {
-        let close = |ends: &mut Packed, end| ends.0[lane] = end;
-        F::update_state(&mut self.min, F::State::splat(f64::NEG_INFINITY), close);
-        F::update_state(&mut self.max, F::State::splat(f64::INFINITY), close);
+        let all = F::State::splat(lane);
+        F::update_state(&mut self.intervals, all, Interval::close);
     }
 }
 

@@ -6,7 +6,7 @@ use ahv_core::{Bounds, Fused, Real, StochasticModel, Straight, Vector};
 use ahv_integrate::{NoiseError, NormalStream};
 
 use super::arithmetic::{Called, In, Mode, Narrowed};
-use super::batch::{Batch, Member, NEVER, Noise, Start, Watch};
+use super::batch::{Batch, Member, Noise, Start, Watch};
 use super::family::{Dcom, Family, LANES, Packed, Sdcom};
 use super::feedback::Feedback;
 use super::rare::{Goal, Particle, Passed, pass};
@@ -215,20 +215,9 @@ where
         at,
         last: batch.member(lane).0,
         lost: batch.lost[lane],
-        left: batch
-            .watches
-            .iter()
-            .map(|watch| left(watch, lane))
-            .collect(),
+        left: batch.watches.iter().map(|watch| watch.left(lane)).collect(),
     });
     Ok(Some(seen.collect()))
-}
-
-/// Steps after which a member first left each interval.
-fn left<F: Family>(watch: &Watch<F>, lane: usize) -> F::State<Option<u64>> {
-    F::map_state(&watch.left, |steps: &[u64; LANES]| {
-        steps.get(lane).copied().filter(|&step| step != NEVER)
-    })
 }
 
 /// Whether this processor multiplies and adds in one rounding.
