@@ -28,7 +28,7 @@ impl<T: MulAdd + crate::Lane> MulAdd for Straight<T> {
 /// rounding.
 ///
 /// Products have no rounding of their own before they are added, which changes last bits: a mode to be asked for by name. For
-/// targets with the instruction; elsewhere each is a call, and an addition takes ten times its time.
+/// targets with the instruction; elsewhere each addition is a call.
 #[derive(Clone, Copy, Debug)]
 pub struct Fused<T> {
     /// The factors; the second is 1 where there is none. The compiler knows it, and drops multiplications by it.

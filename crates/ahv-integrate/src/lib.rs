@@ -20,9 +20,9 @@
 //! | [`LinearTransition`] | linear equations with additive noise | exact in law | exact |
 //!
 //! Noise comes from the caller: [`WienerSource`], [`NormalStream`], [`KeyedNormals`], [`NormalLanes`], a [`BrownianPath`]
-//! that can be refined, and, by the feature `rand`, `RandNormals`; in the shape of [`WienerIntegrals`] and [`WeakIncrements`] too. A scheme that needs
-//! additive or commutative noise asks for it by a trait; [`AdditiveChannels`] and [`CommutativeChannels`] check it at run
-//! time.
+//! that can be refined, and, by the feature `rand`, `RandNormals`; in the shape of [`WienerIntegrals`] and
+//! [`WeakIncrements`] too. A scheme that needs additive or commutative noise asks for it by a trait; [`AdditiveChannels`] and
+//! [`CommutativeChannels`] check it at run time.
 //!
 //! A step allocates nothing and does not panic. A step whose result is not finite is an error that
 //! names the component, and leaves the state as it was.

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use ahv_core::{Bounds, Fused, Real, StochasticModel, Straight, Vector};
+use ahv_core::{Bounds, Fused, Real, Straight, Vector};
 use ahv_integrate::{NoiseError, NormalStream};
 
 use super::arithmetic::{Called, In, Mode, Narrowed};
@@ -12,7 +12,7 @@ use super::feedback::Feedback;
 use super::rare::{Goal, Particle, Passed, pass};
 use super::scheme::{
     Dri1, EulerMaruyama, Heun, InStratonovichSense, MOST_NORMALS, Milstein, Scheme, Splitting,
-    Sra1, Stepping, Steps,
+    Sra1, Stepping, Steps, column,
 };
 use super::{Loss, MonteCarloError};
 use crate::disperse::Draws;
@@ -267,14 +267,7 @@ impl<F: Family> Experiment<F> {
         let mut used = [false; MOST_NORMALS];
         let channels = F::Noise::<Packed>::LEN;
         for (channel, used) in used.iter_mut().enumerate().take(channels) {
-            let unit = F::Noise::from_fn(|index| {
-                if index == channel {
-                    Packed::ONE
-                } else {
-                    Packed::ZERO
-                }
-            });
-            *used = S::uses(&model, &model.noise_increment(&x, &u, &unit));
+            *used = S::uses(&model, &column(&model, &x, &u, channel));
         }
         used.iter_mut()
             .skip(channels)

@@ -217,6 +217,15 @@ fn is_on(value: Packed) -> bool {
     !value.all(|value| value == 0.0)
 }
 
+/// The column of the diffusion that belongs to channel number `channel`.
+pub(super) fn column<M>(model: &M, x: &M::State, u: &M::Input, channel: usize) -> M::State
+where
+    M: StochasticModel<Scalar = Packed>,
+{
+    let unit = |index| Packed::splat(f64::from(u8::from(index == channel)));
+    model.noise_increment(x, u, &M::Noise::from_fn(unit))
+}
+
 /// Channels that move the state, by their number.
 fn channels<M>(model: &M, x: &M::State, u: &M::Input) -> [bool; MOST_NORMALS]
 where
@@ -224,8 +233,7 @@ where
 {
     let mut on = [false; MOST_NORMALS];
     for (channel, on) in on.iter_mut().enumerate().take(M::Noise::LEN) {
-        let unit = M::Noise::from_fn(|index| Packed::splat(f64::from(u8::from(index == channel))));
-        *on = model.noise_increment(x, u, &unit).find(is_on).is_some();
+        *on = column(model, x, u, channel).find(is_on).is_some();
     }
     on
 }

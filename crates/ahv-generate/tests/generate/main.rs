@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 mod bad_tables;
+mod passes;
 mod python;
 mod scratch;
 mod tree;

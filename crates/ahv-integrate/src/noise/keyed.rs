@@ -10,7 +10,7 @@ use crate::NormalSource;
 
 /// Standard normal numbers of one channel in `N` members side by side, each a function of (seed, member, channel, step) alone.
 ///
-/// With `T` = `f64` a lane has the bits of [`NormalStream`]; `f32` takes half the bits and half the time, and its numbers
+/// With `T` = `f64` a lane has the bits of [`NormalStream`]; `f32` takes fewer random bits and less time, and its numbers
 /// have 20 correct bits and reach to 6.5.
 #[derive(Clone, Copy, Debug)]
 pub struct NormalLanes<T, const N: usize> {
