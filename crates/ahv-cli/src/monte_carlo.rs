@@ -41,7 +41,6 @@ const DISPERSION_SEED: u64 = 0x5851_F42D_4C95_7F2D;
 /// machine. A member whose state is no longer finite is lost: it is counted, and left out of what is told from then on. One
 /// that leaves the validity box is counted and flies on. Ctrl-C ends the work, and what was flown till then is told.
 #[derive(Args)]
-#[command(name = "montecarlo")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     condition: Condition,
@@ -127,7 +126,7 @@ fn names<const N: usize>(names: [&'static str; N]) -> PossibleValuesParser {
     names.into()
 }
 
-/// Runs the command; whether it was interrupted.
+/// Runs the command.
 ///
 /// # Errors
 ///
@@ -185,8 +184,9 @@ fn fly<M: Pair<F>, F: Flown>(arguments: &Arguments) -> Result<(), Failure> {
     let flight = arguments.place.flight(&vehicle)?;
     let trim = vehicle.trim(&flight)?;
     let experiment = experiment::<M, F>(arguments, &vehicle, trim.state, trim.input)?;
+    // Before the work: what cannot be written is not told after it.
+    trajectories::check(arguments)?;
     if let Some(folder) = &arguments.out {
-        // Before the work: a folder that cannot be made is not told after it.
         output::folder(folder)?;
     }
     let threads = arguments

@@ -121,6 +121,7 @@ fn bad_requests_are_refused_with_a_reason() {
             ],
             "no member 100",
         ),
+        (&["--trajectories", "0"], "--out"),
     ] {
         let output = run(&[&FEW[..], options].concat());
         let message = String::from_utf8_lossy(&output.stderr);

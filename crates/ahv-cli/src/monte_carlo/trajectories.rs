@@ -33,6 +33,28 @@ struct Table {
     columns: Vec<Vec<f64>>,
 }
 
+/// Looks whether there are the members that are asked for.
+///
+/// # Errors
+///
+/// [`Failure::Request`] if not, or if there is no place to write them to.
+pub(super) fn check(arguments: &super::Arguments) -> Result<(), Failure> {
+    let members = arguments.members;
+    if let Some(member) = arguments.trajectories.iter().find(|it| **it >= members) {
+        return Err(Failure::Request(format!(
+            "--trajectories: there is no member {member}; they are 0 to {}",
+            members - 1
+        )));
+    }
+    if !arguments.trajectories.is_empty() && arguments.out.is_none() {
+        return Err(Failure::Request(
+            "--trajectories: they are written to the folder of --out, which is not given"
+                .to_owned(),
+        ));
+    }
+    Ok(())
+}
+
 /// Writes the flights that were asked for; none is no file.
 pub(super) fn write<F: Flown, M: Pair<F>>(
     told: &Told<'_, F, M>,
@@ -61,19 +83,11 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
     };
     table.columns = vec![Vec::new(); table.names.len()];
     for &member in chosen {
-        let number = i64::try_from(member)
-            .ok()
-            .filter(|_| member < told.outcome.asked);
-        let number = number.ok_or_else(|| {
-            Failure::Request(format!(
-                "--trajectories: there is no member {member}; they are 0 to {}",
-                told.outcome.asked - 1
-            ))
-        })?;
         let flight = told.experiment.trajectory(member, 1);
         let flight = flight.map_err(|error| Failure::Numeric(error.to_string()))?;
         for point in flight {
-            table.members.push(number);
+            // Members are fewer than 10^9.
+            table.members.push(member as i64);
             let states = (0..M::State::LEN).filter_map(|index| point.state.get(index));
             let inputs = (0..M::Input::LEN).filter_map(|index| point.input.get(index));
             let values = std::iter::once(point.time).chain(states).chain(inputs);
