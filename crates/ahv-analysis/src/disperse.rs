@@ -20,7 +20,7 @@ pub use draws::{Distribution, DrawError, Draws, Group};
 pub use quantity::{Kind, Part, Quantity};
 pub use slopes::{Contribution, Slopes, slopes};
 pub use solution::{Solution, SolutionError, solve};
-pub use spread::{Spread, share};
+pub use spread::Spread;
 
 use quantity::Ordered;
 

@@ -42,8 +42,16 @@ impl Estimate {
         }
     }
 
-    /// The probability of what was seen `count` times in `of` trials, with its interval of 95 % (Wilson 1927).
+    /// The probability of what was seen `count` times in `of` trials, with its interval of 95 % (Wilson 1927); without trials
+    /// it is unknown: 0, between 0 and 1.
     pub fn of_share(count: u64, of: u64) -> Self {
+        if of == 0 {
+            return Self {
+                value: 0.0,
+                low: 0.0,
+                high: 1.0,
+            };
+        }
         let (n, share) = (of as f64, count as f64 / of as f64);
         let z_2 = Z_95 * Z_95;
         let middle = (share + z_2 / (2.0 * n)) / (1.0 + z_2 / n);

@@ -299,13 +299,15 @@ fn what_is_stopped_tells_of_what_was_flown() {
     assert_eq!(stopped.err(), Some(MonteCarloError::Stopped));
 }
 
-/// By SciPy 1.17: `binomtest(count, 100).proportion_ci(method="wilson")`.
+/// By SciPy 1.17: `binomtest(count, of).proportion_ci(method="wilson")`.
 #[test]
 fn the_interval_of_a_share_is_wilsons() {
-    let share = Estimate::of_share(10, 100);
-    assert_abs_diff_eq!(share.low, 0.055_229_1, epsilon = 1e-6);
-    assert_abs_diff_eq!(share.high, 0.174_365_8, epsilon = 1e-6);
+    let share = Estimate::of_share(8, 10);
+    assert_abs_diff_eq!(share.low, 0.490_162_471_536_641_8, epsilon = 1e-14);
+    assert_abs_diff_eq!(share.high, 0.943_317_848_545_624_8, epsilon = 1e-14);
     let none = Estimate::of_share(0, 100);
     assert_eq!(none.low, 0.0);
     assert_abs_diff_eq!(none.high, 0.036_993_5, epsilon = 1e-6);
+    let unknown = Estimate::of_share(0, 0);
+    assert_eq!((unknown.low, unknown.high), (0.0, 1.0));
 }

@@ -26,15 +26,29 @@ impl Assignments {
     ) -> Result<Self, Failure> {
         let mut assignments: Vec<(usize, f64)> = Vec::new();
         for text in texts {
-            let assignment = parse_one::<V>(text, units)
-                .and_then(|new| match assignments.iter().any(|old| old.0 == new.0) {
-                    true => Err(format!("`{text}` gives a value a second time")),
-                    false => Ok(new),
-                })
-                .map_err(|message| Failure::Request(format!("{option}: {message}")))?;
-            assignments.push(assignment);
+            let new = Self::one::<V>(option, text, units)?;
+            if assignments.iter().any(|old| old.0 == new.0) {
+                return Err(Failure::Request(format!(
+                    "{option}: `{text}` gives a value a second time"
+                )));
+            }
+            assignments.push(new);
         }
         Ok(Self(assignments))
+    }
+
+    /// Reads one `name=value` pair: the index of the component of a `V`, and its value.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::parse`].
+    pub(crate) fn one<V: Vector<f64>>(
+        option: &str,
+        text: &str,
+        units: Units,
+    ) -> Result<(usize, f64), Failure> {
+        parse_one::<V>(text, units)
+            .map_err(|message| Failure::Request(format!("{option}: {message}")))
     }
 
     /// The value given for `name`.

@@ -7,6 +7,7 @@ mod covariance;
 mod csv_file;
 mod disperse;
 mod failure;
+mod flights;
 #[cfg(feature = "generate")]
 mod generate;
 mod linearize;
@@ -17,6 +18,7 @@ mod output;
 mod place;
 mod poles;
 mod progress;
+mod rare;
 mod reduce;
 mod reproduce;
 mod simulate;
@@ -49,6 +51,7 @@ enum Command {
     #[command(name = "montecarlo")]
     MonteCarlo(monte_carlo::Arguments),
     Poles(poles::Arguments),
+    Rare(rare::Arguments),
     Reduce(reduce::Arguments),
     Reproduce(reproduce::Arguments),
     Simulate(simulate::Arguments),
@@ -66,6 +69,7 @@ fn main() -> ExitCode {
         Command::Lqr(arguments) => lqr::run(&arguments),
         Command::MonteCarlo(arguments) => monte_carlo::run(&arguments),
         Command::Poles(arguments) => poles::run(&arguments),
+        Command::Rare(arguments) => rare::run(&arguments),
         Command::Reduce(arguments) => reduce::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

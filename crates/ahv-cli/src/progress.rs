@@ -14,7 +14,8 @@ const STRIDE: u64 = 4096;
 /// A bar on stderr, if that is a terminal and the work is long.
 pub(crate) struct Progress {
     started: Instant,
-    total: u64,
+    /// `None` if nobody knows how much there is to do.
+    total: Option<u64>,
     enabled: bool,
     /// Steps at which the clock is looked at next.
     next: u64,
@@ -24,18 +25,23 @@ pub(crate) struct Progress {
 
 impl Progress {
     pub(crate) fn new(total: u64) -> Self {
-        Self::with_template(total, "{bar:40} {percent:>3} % {eta} left")
+        Self::with_template(Some(total), "{bar:40} {percent:>3} % {eta} left")
     }
 
     /// With the rate at which member-steps are done.
     pub(crate) fn of_member_steps(total: u64) -> Self {
         Self::with_template(
-            total,
+            Some(total),
             "{bar:40} {percent:>3} % {per_sec} member-steps, {eta} left",
         )
     }
 
-    fn with_template(total: u64, template: &'static str) -> Self {
+    /// With the member-steps that are done and their rate.
+    pub(crate) fn of_unknown() -> Self {
+        Self::with_template(None, "{spinner} {human_pos} member-steps, {per_sec}")
+    }
+
+    fn with_template(total: Option<u64>, template: &'static str) -> Self {
         Self {
             started: Instant::now(),
             total,
@@ -69,7 +75,8 @@ impl Drop for Progress {
     }
 }
 
-fn bar(total: u64, template: &str) -> ProgressBar {
+fn bar(total: Option<u64>, template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template);
-    ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

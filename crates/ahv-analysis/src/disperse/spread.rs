@@ -1,6 +1,6 @@
 //! How a number spreads over members.
 
-use crate::statistics::{Estimate, Z_95, excess_kurtosis, mean_and_std, quantile};
+use crate::statistics::{excess_kurtosis, mean_and_std, quantile};
 
 /// The distribution of a number over members.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -52,25 +52,5 @@ impl Spread {
             p95: quantile(&sorted, 0.95)?,
             max: *sorted.last()?,
         })
-    }
-}
-
-/// The share `hits` of `count` trials with its interval of 95 % (Wilson 1927); all of nothing is unknown: 0 to 1.
-pub fn share(hits: usize, count: usize) -> Estimate {
-    if count == 0 {
-        return Estimate {
-            value: 0.0,
-            low: 0.0,
-            high: 1.0,
-        };
-    }
-    let (n, value) = (count as f64, hits as f64 / count as f64);
-    let square = Z_95 * Z_95 / n;
-    let centre = (value + 0.5 * square) / (1.0 + square);
-    let half = Z_95 * (value * (1.0 - value) / n + 0.25 * square / n).sqrt() / (1.0 + square);
-    Estimate {
-        value,
-        low: (centre - half).max(0.0),
-        high: (centre + half).min(1.0),
     }
 }

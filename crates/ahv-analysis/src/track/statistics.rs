@@ -1,7 +1,6 @@
 //! Figures of many flights.
 
 use super::{Flight, Sample};
-use crate::disperse::share;
 use crate::statistics::{Estimate, mean_and_std};
 
 /// A figure of a flight, over all flights.
@@ -94,7 +93,7 @@ impl Statistics {
             let hits = flights.iter().filter(|flight| test(flight)).count();
             Count {
                 flights: hits,
-                share: share(hits, flights.len()),
+                share: Estimate::of_share(hits as u64, flights.len() as u64),
             }
         };
         let figures = FIGURES.map(|(name, unit, figure)| {

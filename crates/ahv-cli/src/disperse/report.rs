@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use ahv_analysis::disperse::{
-    Contribution, Distribution, Kind, Part, Quantity, SolutionError, Spread, share,
+    Contribution, Distribution, Kind, Part, Quantity, SolutionError, Spread,
 };
 use ahv_analysis::statistics::Estimate;
 use ahv_analysis::trim::TrimError;
@@ -138,7 +138,7 @@ impl<M: FlightModel> Outcome<'_, M> {
             .iter()
             .filter_map(|it| it.solution.as_ref().ok())
             .collect();
-        let of_trimmed = |hits: usize| share(hits, solutions.len());
+        let of_trimmed = |hits: usize| Estimate::of_share(hits as u64, solutions.len() as u64);
         let bounds = &self.vehicle.state_bounds;
         let inside = solutions
             .iter()
@@ -146,7 +146,10 @@ impl<M: FlightModel> Outcome<'_, M> {
         let stable = solutions.iter().filter(|it| it.unstable_poles() == 0);
         let non_minimum_phase = solutions.iter().filter(|it| it.is_non_minimum_phase());
         vec![
-            ("trims", share(solutions.len(), self.members.len())),
+            (
+                "trims",
+                Estimate::of_share(solutions.len() as u64, self.members.len() as u64),
+            ),
             ("inside_validity_box", of_trimmed(inside.count())),
             ("stable", of_trimmed(stable.count())),
             ("non_minimum_phase", of_trimmed(non_minimum_phase.count())),

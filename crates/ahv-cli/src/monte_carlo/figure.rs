@@ -4,7 +4,8 @@ use ahv_analysis::monte_carlo::{Flown, QUANTILES, StateSpread};
 use ahv_core::Vector;
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
 
-use super::{Pair, Told};
+use super::Told;
+use crate::flights::Pair;
 use crate::output::readable;
 
 /// Panels in a row: fan and distribution of two states.
@@ -14,7 +15,13 @@ const COLUMNS: usize = 4;
 pub(super) fn draw<F: Flown, M: Pair<F>>(told: &Told<'_, F, M>) -> Result<String, PlotError> {
     let panels = (0..M::State::LEN).flat_map(|index| {
         let name = M::State::NAMES.get(index).copied().unwrap_or_default();
-        let unit = told.vehicle.units.labels::<M::State>().get(index).copied();
+        let unit = told
+            .ready
+            .vehicle
+            .units
+            .labels::<M::State>()
+            .get(index)
+            .copied();
         let (unit, factor) = readable(unit.unwrap_or_default());
         [
             fan(told, index, name, &unit, factor),

@@ -7,9 +7,10 @@ use ahv_analysis::statistics::Estimate;
 use ahv_core::Vector;
 use serde::Serialize;
 
-use super::{Pair, Told};
+use super::Told;
 use crate::assignment::show;
 use crate::condition::Heading;
+use crate::flights::{Manner, Pair};
 use crate::output::Pairs;
 
 /// The outcome as JSON. Means, standard deviations and quantiles are of the members that fly at the end.
@@ -26,14 +27,8 @@ pub(super) struct Json<'a> {
     member_steps: u64,
     member_steps_per_second: f64,
     seconds: f64,
-    threads: usize,
-    scheme: &'static str,
-    mode: &'static str,
-    seed: u64,
-    dt: f64,
-    steps: u64,
-    dispersed: bool,
-    feedback: bool,
+    #[serde(flatten)]
+    manner: Manner,
     mean: Pairs<Option<f64>>,
     std: Pairs<Option<f64>>,
     digest: &'a str,
@@ -87,8 +82,8 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                 .flat_map(|it| &it.states)
         };
         Json {
-            heading: self.vehicle.heading(),
-            units: Pairs::units::<M::State>(self.vehicle.units),
+            heading: self.ready.vehicle.heading(),
+            units: Pairs::units::<M::State>(self.ready.vehicle.units),
             members: outcome.members,
             asked: outcome.asked,
             complete: outcome.members == outcome.asked,
@@ -98,21 +93,14 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                 .iter()
                 .map(|(member, loss)| JsonLoss {
                     member: *member,
-                    time: loss.step as f64 * self.experiment.dt,
+                    time: loss.step as f64 * self.ready.experiment.dt,
                     state: loss.state,
                 })
                 .collect(),
             member_steps: outcome.member_steps,
             member_steps_per_second: self.rate(),
             seconds: outcome.elapsed.as_secs_f64(),
-            threads: self.threads,
-            scheme: self.experiment.scheme.name(),
-            mode: self.experiment.mode.name(),
-            seed: self.experiment.seed,
-            dt: self.experiment.dt,
-            steps: self.experiment.steps(),
-            dispersed: self.experiment.dispersion.is_some(),
-            feedback: self.experiment.feedback.is_some(),
+            manner: self.ready.manner(),
             mean: by_state::<M::State, _>(last().map(|it| value(&it.mean))),
             std: by_state::<M::State, _>(last().map(|it| value(&it.std))),
             digest: &outcome.digest,
@@ -154,7 +142,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
     }
 
     pub(super) fn has_limits(&self) -> bool {
-        self.experiment.watched.len() > 1
+        self.ready.experiment.watched.len() > 1
     }
 
     /// Probability that a member has left any interval of a set by then.
@@ -174,13 +162,13 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
     }
 
     pub(super) fn text(&self) -> String {
-        let (outcome, experiment) = (&self.outcome, &self.experiment);
+        let (outcome, experiment) = (&self.outcome, &self.ready.experiment);
         let mut text = format!(
             "{}: {}, {}\n{} flights of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second on {} threads\n\
              at the end, mean and standard deviation with intervals of 95 %, 0.5 % and 99.5 % points",
             M::NAME,
-            self.place,
-            self.vehicle.described(),
+            self.ready.place,
+            self.ready.vehicle.described(),
             outcome.members,
             experiment.steps() as f64 * experiment.dt,
             experiment.scheme.name(),
@@ -198,9 +186,9 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                 ""
             },
             self.rate(),
-            self.threads,
+            self.ready.threads,
         );
-        let units = self.vehicle.units.labels::<M::State>();
+        let units = self.ready.vehicle.units.labels::<M::State>();
         let last = outcome.snapshots.last();
         let states = last.into_iter().flat_map(|it| &it.states);
         // Writing into a String cannot fail.

@@ -6,9 +6,10 @@ use ahv_analysis::monte_carlo::{Flown, QUANTILES};
 use ahv_analysis::statistics::Estimate;
 use ahv_core::Vector;
 
-use super::{Pair, Told, figure, trajectories};
+use super::{Told, figure, trajectories};
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::flights::Pair;
 use crate::output;
 
 /// Cells of an estimate; empty where there is none.
@@ -45,7 +46,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             heading.extend([name.clone(), format!("{name}_low"), format!("{name}_high")]);
         }
         file.row(&heading)?;
-        let units = self.vehicle.units.labels::<M::State>();
+        let units = self.ready.vehicle.units.labels::<M::State>();
         for snapshot in &self.outcome.snapshots {
             for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(&snapshot.states) {
                 let mut row = vec![
@@ -68,7 +69,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
     fn histograms(&self, path: &Path) -> Result<(), Failure> {
         let mut file = CsvFile::create(path)?;
         file.row(&["state", "unit", "low", "high", "members"])?;
-        let units = self.vehicle.units.labels::<M::State>();
+        let units = self.ready.vehicle.units.labels::<M::State>();
         let last = self.outcome.snapshots.last();
         let states = last.into_iter().flat_map(|it| &it.states);
         for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(states) {

@@ -12,9 +12,10 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use super::{Pair, Told};
+use super::Told;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::flights::Pair;
 use crate::output::Output;
 
 /// A file format.
@@ -64,7 +65,7 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
     if chosen.is_empty() {
         return Ok(());
     }
-    let units = told.vehicle.units;
+    let units = told.ready.vehicle.units;
     let labels = |names: &[&str], units: &[&str]| -> Vec<String> {
         let named = names.iter().zip(units);
         named
@@ -83,7 +84,7 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
     };
     table.columns = vec![Vec::new(); table.names.len()];
     for &member in chosen {
-        let flight = told.experiment.trajectory(member, 1);
+        let flight = told.ready.experiment.trajectory(member, 1);
         let flight = flight.map_err(|error| Failure::Numeric(error.to_string()))?;
         for point in flight {
             // Members are fewer than 10^9.

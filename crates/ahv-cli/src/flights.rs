@@ -1,0 +1,310 @@
+//! Flights with noise and dispersions: what `ahv montecarlo` and `ahv rare` fly.
+
+mod feedback;
+
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use ahv_analysis::disperse::{Distribution, Draws};
+use ahv_analysis::monte_carlo::{
+    Control, Dcom, Experiment, Family, Flown, Mode, MonteCarloError, RareError, Scheme, Sdcom,
+};
+use ahv_core::{Bounds, Vector};
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use crate::assignment::Assignments;
+use crate::condition::{Condition, Vehicle};
+use crate::failure::Failure;
+use crate::place::Place;
+use crate::progress::Progress;
+use crate::simulate::grid::positive;
+use crate::vehicle::{FlightModel, ModelName};
+
+/// Between two looks at how far the flights are.
+const GLANCE: Duration = Duration::from_millis(5);
+/// Set in the seed of the drawn parameters: they have nothing to do with the noise.
+const DISPERSION_SEED: u64 = 0x5851_F42D_4C95_7F2D;
+
+/// How members fly.
+#[derive(Args)]
+pub(crate) struct Flights {
+    #[command(flatten)]
+    pub(crate) condition: Condition,
+
+    #[command(flatten)]
+    place: Place,
+
+    /// End of the flights in s
+    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
+    t_end: f64,
+
+    /// Step in s; the last one ends at --t-end or up to half a step beside it
+    #[arg(long, value_name = "S", default_value_t = 0.001, value_parser = positive, allow_negative_numbers = true)]
+    dt: f64,
+
+    /// Stepper [default: splitting, which steps coloured noise exactly; for dcom, which has none, heun]
+    #[arg(long, value_parser = names(Scheme::ALL.map(Scheme::name)))]
+    scheme: Option<String>,
+
+    /// Arithmetic: exact; fma, one rounding for a product and its sum; f32-noise, normal numbers in single precision;
+    /// f32-drift, drift and noise in single precision, states in double
+    #[arg(long, default_value = "exact", value_parser = names(Mode::ALL.map(Mode::name)))]
+    mode: String,
+
+    /// Seed of noise and dispersion
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+
+    /// Threads [default: as many as the machine runs at once]
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+
+    /// Draw the parameters of each member, uniformly within their uncertainty
+    #[arg(long)]
+    disperse: bool,
+
+    /// Standard deviations of the states at the start, e.g. altitude=50ft,gamma=0.2deg
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    state_std: Vec<String>,
+
+    /// Standard deviations of the inputs at the start, e.g. phi=0.01; without feedback they are held
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    input_std: Vec<String>,
+
+    #[command(flatten)]
+    feedback: feedback::FeedbackArguments,
+}
+
+fn names<const N: usize>(names: [&'static str; N]) -> PossibleValuesParser {
+    names.into()
+}
+
+/// A model that the command line knows, and as a family.
+pub(crate) trait Pair<F: Family>:
+    FlightModel<
+        State = F::State<f64>,
+        Input = F::Input<f64>,
+        Parameters = F::Parameters<f64>,
+        StateBounds = F::State<Bounds>,
+        InputBounds = F::Input<Bounds>,
+    >
+{
+}
+
+impl<F: Family, M> Pair<F> for M where
+    M: FlightModel<
+            State = F::State<f64>,
+            Input = F::Input<f64>,
+            Parameters = F::Parameters<f64>,
+            StateBounds = F::State<Bounds>,
+            InputBounds = F::Input<Bounds>,
+        >
+{
+}
+
+/// What a command does with a model, whichever it is.
+pub(crate) trait Task {
+    /// Does it.
+    ///
+    /// # Errors
+    ///
+    /// Those of the command.
+    fn run<M: Pair<F>, F: Flown>(&self) -> Result<(), Failure>;
+}
+
+/// Does the task with the model that is asked for.
+///
+/// # Errors
+///
+/// [`Failure::Request`] for a model that is not flown side by side, those of the task.
+pub(crate) fn with_model(flights: &Flights, task: &impl Task) -> Result<(), Failure> {
+    match flights.condition.model {
+        ModelName::Sdcom => task.run::<ahv_models::sdcom::Model<f64>, Sdcom>(),
+        ModelName::Dcom => task.run::<ahv_models::dcom::Model<f64>, Dcom>(),
+        other => {
+            let name = other.to_possible_value();
+            let name = name.as_ref().map_or("this", |it| it.get_name());
+            Err(Failure::Request(format!(
+                "--model: {name} is not flown side by side; sdcom and dcom are"
+            )))
+        }
+    }
+}
+
+/// Flights that are about to start, with no limits but the validity box.
+pub(crate) struct Ready<F: Flown, M: Pair<F>> {
+    pub(crate) vehicle: Vehicle<M>,
+    /// Where they start, in words.
+    pub(crate) place: String,
+    pub(crate) experiment: Experiment<F>,
+    pub(crate) threads: usize,
+}
+
+impl Flights {
+    /// Makes the flights ready.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] for bad input, [`Failure::Numeric`] if there is no trim.
+    pub(crate) fn ready<F: Flown, M: Pair<F>>(&self) -> Result<Ready<F, M>, Failure> {
+        let vehicle: Vehicle<M> = self.condition.vehicle()?;
+        let flight = self.place.flight(&vehicle)?;
+        let trim = vehicle.trim(&flight)?;
+        let experiment = self.experiment(&vehicle, trim.state, trim.input)?;
+        let threads = self
+            .threads
+            .or_else(|| std::thread::available_parallelism().ok());
+        Ok(Ready {
+            place: vehicle.at(&flight),
+            vehicle,
+            experiment,
+            threads: threads.map_or(1, NonZeroUsize::get),
+        })
+    }
+
+    fn experiment<M: Pair<F>, F: Flown>(
+        &self,
+        vehicle: &Vehicle<M>,
+        state: F::State<f64>,
+        input: F::Input<f64>,
+    ) -> Result<Experiment<F>, Failure> {
+        let steps = (self.t_end / self.dt).round();
+        if !(1.0..=1e12).contains(&steps) {
+            return Err(Failure::Request(format!(
+                "--dt and --t-end: {steps} steps; 1 to 1e12 can be flown"
+            )));
+        }
+        let named = |name: &str| Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);
+        let default = if F::NAME == Dcom::NAME {
+            Scheme::Heun
+        } else {
+            Scheme::Splitting
+        };
+        Ok(Experiment {
+            parameters: vehicle.parameters,
+            dispersion: self.dispersion(vehicle)?,
+            state: [state, deviations("--state-std", &self.state_std, vehicle)?],
+            input: [input, deviations("--input-std", &self.input_std, vehicle)?],
+            feedback: self.feedback.read::<M, F>(vehicle)?,
+            watched: vec![vehicle.state_bounds],
+            scheme: self.scheme.as_deref().and_then(named).unwrap_or(default),
+            mode: Mode::ALL
+                .into_iter()
+                .find(|mode| mode.name() == self.mode)
+                .unwrap_or_default(),
+            dt: self.dt,
+            snapshots: vec![steps as u64],
+            seed: self.seed,
+        })
+    }
+
+    fn dispersion<M: FlightModel>(
+        &self,
+        vehicle: &Vehicle<M>,
+    ) -> Result<Option<Draws<M::Parameters>>, Failure> {
+        let seed = self.seed ^ DISPERSION_SEED;
+        let draws = self.disperse.then(|| {
+            Draws::new(
+                vehicle.parameters,
+                vehicle.uncertainty,
+                Distribution::Uniform,
+                Vec::new(),
+                seed,
+            )
+        });
+        draws
+            .transpose()
+            .map_err(|error| Failure::Request(format!("--disperse: {error}")))
+    }
+}
+
+/// How members flew, as JSON.
+#[derive(Serialize)]
+pub(crate) struct Manner {
+    threads: usize,
+    scheme: &'static str,
+    mode: &'static str,
+    seed: u64,
+    dt: f64,
+    steps: u64,
+    dispersed: bool,
+    feedback: bool,
+}
+
+impl<F: Flown, M: Pair<F>> Ready<F, M> {
+    pub(crate) fn manner(&self) -> Manner {
+        let experiment = &self.experiment;
+        Manner {
+            threads: self.threads,
+            scheme: experiment.scheme.name(),
+            mode: experiment.mode.name(),
+            seed: experiment.seed,
+            dt: experiment.dt,
+            steps: experiment.steps(),
+            dispersed: experiment.dispersion.is_some(),
+            feedback: experiment.feedback.is_some(),
+        }
+    }
+}
+
+/// Standard deviations, 0 where none is given.
+fn deviations<M: FlightModel, V: Vector<f64>>(
+    option: &str,
+    texts: &[String],
+    vehicle: &Vehicle<M>,
+) -> Result<V, Failure> {
+    let mut deviations = V::splat(0.0);
+    Assignments::parse::<V>(option, texts, vehicle.units)?.apply(&mut deviations, &[]);
+    match deviations.find(|deviation| deviation < 0.0) {
+        Some((name, value)) => Err(Failure::Request(format!(
+            "{option}: {name} is {value}; a standard deviation is 0 or more"
+        ))),
+        None => Ok(deviations),
+    }
+}
+
+/// Works while a bar shows how far it is, and Ctrl-C is listened to.
+///
+/// # Errors
+///
+/// [`Failure::Interrupted`] if Ctrl-C left nothing to tell of, those of the work.
+pub(crate) fn watched<T: Send>(
+    mut progress: Progress,
+    work: impl FnOnce(&Control) -> Result<T, MonteCarloError> + Send,
+) -> Result<T, Failure> {
+    let control = Arc::new(Control::default());
+    let heard = Arc::clone(&control);
+    ctrlc::set_handler(move || {
+        // A second time means now.
+        if heard.stop.swap(true, Ordering::Relaxed) {
+            std::process::exit(Failure::INTERRUPTED.into());
+        }
+    })
+    .map_err(|error| Failure::Request(format!("cannot listen to Ctrl-C: {error}")))?;
+    let outcome = std::thread::scope(|scope| {
+        let worker = scope.spawn(|| work(&control));
+        while !worker.is_finished() {
+            std::thread::sleep(GLANCE);
+            progress.tell(control.done.load(Ordering::Relaxed));
+        }
+        worker.join()
+    });
+    drop(progress);
+    let outcome =
+        outcome.map_err(|_| Failure::Numeric("a thread of the flights failed".to_owned()))?;
+    outcome.map_err(|error| match error {
+        MonteCarloError::Stopped => Failure::Interrupted(format!("interrupted: {error}")),
+        MonteCarloError::Scheme { .. } | MonteCarloError::ModeOfScheme { .. } => {
+            Failure::Request(format!("--scheme: {error}"))
+        }
+        MonteCarloError::NoFma => Failure::Request(format!("--mode: {error}")),
+        MonteCarloError::Rare(RareError::OutOfReach { .. } | RareError::NoSpread { .. }) => {
+            Failure::Numeric(error.to_string())
+        }
+        other => Failure::Request(other.to_string()),
+    })
+}

@@ -1,0 +1,180 @@
+//! `ahv rare`: how likely an event is that hardly ever happens.
+
+use std::fmt::Write;
+
+use ahv_analysis::monte_carlo::{FEWEST_REPETITIONS, Flown, RareEstimate, RareEvent};
+use ahv_analysis::statistics::Estimate;
+use ahv_core::Vector;
+use clap::Args;
+use serde::Serialize;
+
+use crate::assignment::{Assignments, show};
+use crate::condition::Heading;
+use crate::failure::{Failure, print};
+use crate::flights::{Flights, Manner, Pair, Ready, Task, watched, with_model};
+use crate::output;
+use crate::progress::Progress;
+
+/// Estimates the probability that a state passes a limit before the flight ends, however small it is.
+///
+/// By importance splitting: members that pass a level on the way to the limit are copied, and the copies fly on with noise of
+/// their own. A pilot sets the levels. The flights are those of `ahv montecarlo`, which counts what happens often enough to
+/// be counted. The same seed gives the same numbers whatever the threads.
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    flights: Flights,
+
+    /// State and limit, above or below where the flights start, e.g. alpha=4deg
+    #[arg(long, value_name = "NAME=VALUE")]
+    passes: String,
+
+    /// Members that start from each level
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(2..=10_000_000))]
+    effort: u64,
+
+    /// Independent repetitions, whose spread gives the interval
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(FEWEST_REPETITIONS..=10_000))]
+    repetitions: u64,
+
+    /// Print the outcome as JSON, in the units of the model
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Failure::Request`] for bad input, [`Failure::Numeric`] if there is no trim or no member comes near the limit,
+/// [`Failure::Interrupted`].
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    with_model(&arguments.flights, arguments)
+}
+
+impl Task for Arguments {
+    fn run<M: Pair<F>, F: Flown>(&self) -> Result<(), Failure> {
+        let ready: Ready<F, M> = self.flights.ready()?;
+        let (state, limit) =
+            Assignments::one::<F::State<f64>>("--passes", &self.passes, ready.vehicle.units)?;
+        let event = RareEvent {
+            state,
+            limit,
+            effort: self.effort,
+            levels: None,
+            repetitions: self.repetitions,
+        };
+        let estimate = watched(Progress::of_unknown(), |control| {
+            ready
+                .experiment
+                .first_passage(&event, ready.threads, control)
+        })?;
+        let told = Told {
+            ready,
+            event,
+            estimate,
+        };
+        if self.json {
+            output::print_json(&told.json())
+        } else {
+            print(&told.text())
+        }
+    }
+}
+
+/// What was asked, and what came of it.
+struct Told<F: Flown, M: Pair<F>> {
+    ready: Ready<F, M>,
+    event: RareEvent,
+    estimate: RareEstimate,
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    #[serde(flatten)]
+    heading: Heading<'a>,
+    state: &'static str,
+    unit: &'static str,
+    limit: f64,
+    time: f64,
+    #[serde(flatten)]
+    estimate: &'a RareEstimate,
+    ratio: f64,
+    effort: u64,
+    repetitions: u64,
+    #[serde(flatten)]
+    manner: Manner,
+}
+
+impl<F: Flown, M: Pair<F>> Told<F, M> {
+    /// Name and unit of the state.
+    fn state(&self) -> (&'static str, &'static str) {
+        let index = self.event.state;
+        let units = self.ready.vehicle.units.labels::<M::State>();
+        let names = M::State::NAMES.iter().zip(units).nth(index);
+        names.map_or(("", ""), |(name, unit)| (*name, *unit))
+    }
+
+    /// End of the flights, in s.
+    fn time(&self) -> f64 {
+        self.ready.experiment.steps() as f64 * self.ready.experiment.dt
+    }
+
+    /// Steps of plain sampling to one of splitting, for an interval as wide.
+    fn ratio(&self) -> f64 {
+        self.estimate.plain_member_steps / self.estimate.member_steps as f64
+    }
+
+    fn json(&self) -> Json<'_> {
+        let (state, unit) = self.state();
+        Json {
+            heading: self.ready.vehicle.heading(),
+            state,
+            unit,
+            limit: self.event.limit,
+            time: self.time(),
+            estimate: &self.estimate,
+            ratio: self.ratio(),
+            effort: self.event.effort,
+            repetitions: self.event.repetitions,
+            manner: self.ready.manner(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let Ready {
+            vehicle,
+            place,
+            experiment,
+            ..
+        } = &self.ready;
+        let (name, unit) = self.state();
+        let Estimate { value, low, high } = self.estimate.probability;
+        let mut text = format!(
+            "{}: {place}, {}\n{name} passes {} within {} s with probability {value:.3e} [{low:.3e}, {high:.3e}]\nlevels, and the share that passes each from the one before",
+            M::NAME,
+            vehicle.described(),
+            show(self.event.limit, unit),
+            self.time(),
+        );
+        // Writing into a String cannot fail.
+        for level in &self.estimate.levels {
+            let _ = write!(text, "\n  {}: {:.3}", show(level.value, unit), level.share);
+        }
+        let _ = write!(
+            text,
+            "\n{} repetitions of {} members a level, {} {} s, {}, seed {}\n{:.3e} member-steps; for an interval as wide, plain sampling takes {:.3e}, {:.3} times as many\nlost, with a state that was no longer finite: {}",
+            self.event.repetitions,
+            self.event.effort,
+            experiment.scheme.name(),
+            experiment.dt,
+            experiment.mode.name(),
+            experiment.seed,
+            self.estimate.member_steps as f64,
+            self.estimate.plain_member_steps,
+            self.ratio(),
+            self.estimate.lost,
+        );
+        text
+    }
+}
