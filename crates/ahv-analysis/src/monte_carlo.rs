@@ -7,6 +7,7 @@
 
 mod arithmetic;
 mod batch;
+mod crew;
 mod experiment;
 mod family;
 mod feedback;
@@ -19,7 +20,8 @@ use ahv_integrate::NoiseError;
 
 pub use arithmetic::Mode;
 pub use batch::Loss;
-pub use experiment::{Control, Experiment, Flown, Seen};
+pub use crew::{Crew, Flown};
+pub use experiment::{Control, Experiment, Seen};
 pub use family::{Dcom, Family, LANES, Packed, Sdcom};
 pub use feedback::Feedback;
 pub use outcome::{Outcome, Point, Snapshot, StateSpread};

@@ -2,7 +2,7 @@
 #![forbid(unsafe_code)]
 
 use ahv_analysis::monte_carlo::{
-    Control, Dcom, Experiment, Feedback, Flown, Mode, MonteCarloError, Scheme, Sdcom,
+    Control, Dcom, Experiment, Feedback, Flown, Mode, MonteCarloError, Scheme, Sdcom, Seen,
 };
 use ahv_analysis::statistics::Estimate;
 use ahv_analysis::track::Actuator;
@@ -47,9 +47,16 @@ fn experiment(scheme: Scheme, dt: f64, snapshots: Vec<u64>) -> Experiment<Sdcom>
     }
 }
 
+fn fly<F: Flown>(
+    experiment: &Experiment<F>,
+    members: &[u64],
+) -> Result<Vec<Seen<F>>, MonteCarloError> {
+    let seen = F::crew(experiment)?.fly(members, &Control::default())?;
+    Ok(seen.expect("nobody stops it"))
+}
+
 fn last(experiment: &Experiment<Sdcom>, members: &[u64]) -> Vec<sdcom::State<f64>> {
-    let seen = Sdcom::fly(experiment, members, &Control::default());
-    let seen = seen.expect("the scheme goes").expect("nobody stops it");
+    let seen = fly(experiment, members).expect("the scheme goes");
     seen.into_iter().map(|seen| seen.last).collect()
 }
 
@@ -188,13 +195,10 @@ fn members_that_are_lost_are_counted_and_touch_no_other() {
     let mut wild = experiment(Scheme::EulerMaruyama, 0.05, vec![0, 400]);
     wild.state[1].alpha = 30.0;
     let members: Vec<u64> = (0..8).collect();
-    let seen = Sdcom::fly(&wild, &members, &Control::default())
-        .expect("it goes")
-        .expect("all");
+    let seen = fly(&wild, &members).expect("it goes");
     assert!(seen.iter().any(|seen| seen.lost.is_some()), "some are lost");
     for (seen, &member) in seen.iter().zip(&members) {
-        let alone = Sdcom::fly(&wild, &[member], &Control::default());
-        let alone = alone.expect("it goes").expect("all");
+        let alone = fly(&wild, &[member]).expect("it goes");
         assert_eq!(alone[0].last, seen.last, "member {member}");
         assert_eq!(alone[0].lost, seen.lost);
         assert!(seen.last.find(|value| !value.is_finite()).is_none());
@@ -210,8 +214,7 @@ fn the_first_step_outside_is_found() {
     let mut limits = sdcom::State::splat(Bounds::new(f64::NEG_INFINITY, f64::INFINITY));
     limits.alpha = Bounds::new(0.0255, 0.0265);
     experiment.watched.push(limits);
-    let seen = Sdcom::fly(&experiment, &[0, 1, 2], &Control::default());
-    for seen in seen.expect("it goes").expect("all") {
+    for seen in fly(&experiment, &[0, 1, 2]).expect("it goes") {
         let outside = |(x, _): &(sdcom::State<f64>, _)| !limits.alpha.contains(x.alpha);
         let first = seen.at.iter().position(outside).map(|step| step as u64);
         assert_eq!(seen.left[1].alpha, first);
@@ -255,22 +258,11 @@ fn modes_differ_by_rounding_alone() {
 
 #[test]
 fn a_scheme_that_does_not_go_says_why() {
-    let fly = |scheme| {
-        Sdcom::fly(
-            &experiment(scheme, 1e-3, vec![1]),
-            &[0],
-            &Control::default(),
-        )
-    };
-    assert!(matches!(
-        fly(Scheme::Milstein),
-        Err(MonteCarloError::Scheme { .. })
-    ));
-    assert!(matches!(
-        fly(Scheme::Sra1),
-        Err(MonteCarloError::Scheme { .. })
-    ));
-    assert!(fly(Scheme::Dri1).is_ok() && fly(Scheme::StratonovichHeun).is_ok());
+    let flown = |scheme| fly(&experiment(scheme, 1e-3, vec![1]), &[0]);
+    for scheme in [Scheme::Milstein, Scheme::Sra1] {
+        assert!(matches!(flown(scheme), Err(MonteCarloError::Scheme { .. })));
+    }
+    assert!(flown(Scheme::Dri1).is_ok() && flown(Scheme::StratonovichHeun).is_ok());
     let state = dcom::STATE_BOUNDS.map_into(|bounds| 0.5 * (bounds.min + bounds.max));
     let deterministic = Experiment::<Dcom> {
         parameters: dcom::NOMINAL,
@@ -285,8 +277,10 @@ fn a_scheme_that_does_not_go_says_why() {
         snapshots: vec![1],
         seed: 0,
     };
-    let fly = Dcom::fly(&deterministic, &[0], &Control::default());
-    assert!(matches!(fly, Err(MonteCarloError::Scheme { .. })));
+    assert!(matches!(
+        fly(&deterministic, &[0]),
+        Err(MonteCarloError::Scheme { .. })
+    ));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 use std::process::ExitCode;
 
 use ahv_bench_kernels::lanes::{
-    DcomDrift, DcomDriftJacobians, DcomRk4, Packed, SdcomDriftDiffusion, Side,
+    DcomDrift, DcomDriftJacobians, DcomRk4, Packed, Pair, SdcomDriftDiffusion, Side,
 };
 use ahv_core::Straight;
 use ahv_integrate::{ItoEulerMaruyama, Rk4};
@@ -19,12 +19,12 @@ type Calls = fn(u32);
 
 /// Evaluates as many times, a multiple of [`BLOCKS`], for all lanes.
 macro_rules! lanes {
-    ($count:ident, $call:ident, $module:ident, $results:ty, $x:expr, $u:expr) => {
+    ($count:ident, $call:ident<$scalar:ty>, $module:ident, $results:ty, $x:expr, $u:expr) => {
         let model = $module::Model::new(&$module::NOMINAL).map_ref(packed);
         let (states, inputs) = ([$x.map_ref(packed); BLOCKS], [$u.map_ref(packed); BLOCKS]);
         let mut results = <$results as Side>::empty();
         for _ in 0..$count as usize / BLOCKS {
-            with_avx2($call::<R> {
+            with_avx2($call::<$scalar> {
                 model: see(&model),
                 states: see(&states),
                 inputs: see(&inputs),
@@ -80,12 +80,19 @@ const COUNTED: [(&str, Calls); 10] = [
         });
     }),
     ("dcom::drift, 8 lanes, AVX2", |count| {
-        lanes!(count, DcomDrift, dcom, dcom::State<R>, DCOM, DCOM_INPUT);
+        lanes!(
+            count,
+            DcomDrift<Pair>,
+            dcom,
+            dcom::State<Pair>,
+            DCOM,
+            DCOM_INPUT
+        );
     }),
     ("dcom::drift_and_jacobians, 8 lanes, AVX2", |count| {
         lanes!(
             count,
-            DcomDriftJacobians,
+            DcomDriftJacobians<R>,
             dcom,
             (dcom::State<R>, [R; 48], [R; 18]),
             DCOM,
@@ -95,7 +102,7 @@ const COUNTED: [(&str, Calls); 10] = [
     ("sdcom::drift_and_diffusion, 8 lanes, AVX2", |count| {
         lanes!(
             count,
-            SdcomDriftDiffusion,
+            SdcomDriftDiffusion<R>,
             sdcom,
             (sdcom::State<R>, sdcom::Diffusion<R>),
             SDCOM,
@@ -117,7 +124,7 @@ const COUNTED: [(&str, Calls); 10] = [
 /// Members in lanes that one call evaluates, one block after the other.
 const BLOCKS: usize = 100;
 
-/// The scalar of the lanes.
+/// The scalar of the lanes of long functions.
 type R = Straight<f64>;
 
 fn packed(value: &f64) -> Packed {

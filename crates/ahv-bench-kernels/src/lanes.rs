@@ -24,8 +24,8 @@ pub trait Side {
     /// Before there are any.
     fn empty() -> Self::Packed;
 
-    /// Puts those of one member to their places.
-    fn put(self, places: &mut Self::Packed, lane: usize);
+    /// Puts those of a turn to their places.
+    fn put(self, places: &mut Self::Packed, turn: usize);
 
     /// Appends those of one member to `numbers`, row by row.
     fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>);
@@ -33,14 +33,49 @@ pub trait Side {
 
 /// A scalar that members are computed with.
 pub trait Scalar: Real + Side<Packed = Packed> {
-    /// The scalar of this value.
-    fn of(value: f64) -> Self;
+    /// Turns of the loop over the members: as many as there are, or fewer with some in each.
+    const TURNS: usize = LANES;
+
+    /// The numbers of the members of a turn.
+    fn pick(numbers: &Packed, turn: usize) -> Self;
 }
 
 impl Scalar for Straight<f64> {
     #[inline(always)]
-    fn of(value: f64) -> Self {
-        Self(value)
+    fn pick(numbers: &Packed, turn: usize) -> Self {
+        Self(numbers.0[turn])
+    }
+}
+
+/// Two members in a turn: operations of one fill the time in which those of the other wait for each other.
+///
+/// That is faster for a short function. Of long ones the compiler no longer makes vector instructions.
+pub type Pair = Lanes<Straight<f64>, 2>;
+
+impl Scalar for Pair {
+    const TURNS: usize = LANES / 2;
+
+    #[inline(always)]
+    fn pick(numbers: &Packed, turn: usize) -> Self {
+        Self([numbers.0[turn], numbers.0[turn + LANES / 2]].map(Straight))
+    }
+}
+
+impl Side for Pair {
+    type Packed = Packed;
+
+    fn empty() -> Packed {
+        Packed::ZERO
+    }
+
+    #[inline(always)]
+    fn put(self, places: &mut Packed, turn: usize) {
+        let Self([one, other]) = self;
+        (places.0[turn], places.0[turn + LANES / 2]) = (one.0, other.0);
+    }
+
+    fn tell(places: &Packed, lane: usize, numbers: &mut Vec<f64>) {
+        numbers.push(places.0[lane]);
     }
 }
 
@@ -52,8 +87,8 @@ impl Side for Straight<f64> {
     }
 
     #[inline(always)]
-    fn put(self, places: &mut Packed, lane: usize) {
-        places.0[lane] = self.0;
+    fn put(self, places: &mut Packed, turn: usize) {
+        places.0[turn] = self.0;
     }
 
     fn tell(places: &Packed, lane: usize, numbers: &mut Vec<f64>) {
@@ -63,8 +98,8 @@ impl Side for Straight<f64> {
 
 impl Scalar for Fused<Straight<f64>> {
     #[inline(always)]
-    fn of(value: f64) -> Self {
-        Self::new(Straight(value))
+    fn pick(numbers: &Packed, turn: usize) -> Self {
+        Self::new(Straight(numbers.0[turn]))
     }
 }
 
@@ -76,8 +111,8 @@ impl Side for Fused<Straight<f64>> {
     }
 
     #[inline(always)]
-    fn put(self, places: &mut Packed, lane: usize) {
-        self.value().put(places, lane);
+    fn put(self, places: &mut Packed, turn: usize) {
+        self.value().put(places, turn);
     }
 
     fn tell(places: &Packed, lane: usize, numbers: &mut Vec<f64>) {
@@ -93,9 +128,9 @@ impl<T: Side, const N: usize> Side for [T; N] {
     }
 
     #[inline(always)]
-    fn put(self, places: &mut Self::Packed, lane: usize) {
+    fn put(self, places: &mut Self::Packed, turn: usize) {
         for (place, value) in places.iter_mut().zip(self) {
-            value.put(place, lane);
+            value.put(place, turn);
         }
     }
 
@@ -112,9 +147,9 @@ impl<A: Side, B: Side> Side for (A, B) {
     }
 
     #[inline(always)]
-    fn put(self, places: &mut Self::Packed, lane: usize) {
-        self.0.put(&mut places.0, lane);
-        self.1.put(&mut places.1, lane);
+    fn put(self, places: &mut Self::Packed, turn: usize) {
+        self.0.put(&mut places.0, turn);
+        self.1.put(&mut places.1, turn);
     }
 
     fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>) {
@@ -131,10 +166,10 @@ impl<A: Side, B: Side, C: Side> Side for (A, B, C) {
     }
 
     #[inline(always)]
-    fn put(self, places: &mut Self::Packed, lane: usize) {
-        self.0.put(&mut places.0, lane);
-        self.1.put(&mut places.1, lane);
-        self.2.put(&mut places.2, lane);
+    fn put(self, places: &mut Self::Packed, turn: usize) {
+        self.0.put(&mut places.0, turn);
+        self.1.put(&mut places.1, turn);
+        self.2.put(&mut places.2, turn);
     }
 
     fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>) {
@@ -154,8 +189,8 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn put(self, places: &mut Self::Packed, lane: usize) {
-                places.update(self, |place, value| value.put(place, lane));
+            fn put(self, places: &mut Self::Packed, turn: usize) {
+                places.update(self, |place, value| value.put(place, turn));
             }
 
             fn tell(places: &Self::Packed, lane: usize, numbers: &mut Vec<f64>) {
@@ -198,10 +233,10 @@ macro_rules! functions {
                 let mut results = <$results as Side>::empty();
                 for (x, u) in self.states.iter().zip(self.inputs) {
                     let (x, u) = (*x, *u);
-                    for lane in 0..LANES {
-                        let pick = |numbers: &Packed| R::of(numbers.0[lane]);
+                    for turn in 0..R::TURNS {
+                        let pick = |numbers: &Packed| R::pick(numbers, turn);
                         let (x, u, p) = (x.map_ref(pick), u.map_ref(pick), prepared.map_ref(pick));
-                        $module::$function(&x, &u, &p).put(&mut results, lane);
+                        $module::$function(&x, &u, &p).put(&mut results, turn);
                     }
                     // One place for all stays in the cache; nobody may leave out what is overwritten there.
                     black_box(&mut results);
@@ -251,12 +286,12 @@ impl<R: Scalar> pulp::WithSimd for DcomRk4<'_, R> {
         let (model, mut x, u) = (*self.model, *self.state, *self.input);
         let mut next = x;
         for _ in 0..self.steps {
-            for lane in 0..LANES {
-                let pick = |numbers: &Packed| R::of(numbers.0[lane]);
+            for turn in 0..R::TURNS {
+                let pick = |numbers: &Packed| R::pick(numbers, turn);
                 let mut member = x.map_ref(pick);
                 // A scalar without branches has no failure.
                 let _ = stepper.step(&model.map_ref(pick), &mut member, &u.map_ref(pick));
-                member.put(&mut next, lane);
+                member.put(&mut next, turn);
             }
             x = next;
         }

@@ -53,11 +53,9 @@ impl Turn {
 impl Arrays {
     /// Starts all of them.
     pub(crate) fn start(setting: &Setting, problem: &Value) -> Result<Self, String> {
-        let start = |package: &str, threads: usize| {
-            let mut script = setting.script(&format!("{package}_peer"));
-            script.arg("--functions").arg(setting.out.join("casadi"));
-            script.args(["--threads", &threads.to_string()]);
-            Ok::<_, String>(Rc::new(RefCell::new(Service::start(&mut script, problem)?)))
+        let start = |package, threads| {
+            let service = start(setting, package, threads, problem)?;
+            Ok::<_, String>(Rc::new(RefCell::new(service)))
         };
         Ok(Self {
             numba: [start("numba", 1)?, start("numba", 2)?],
@@ -65,6 +63,34 @@ impl Arrays {
             numpy: start("numpy", 1)?,
         })
     }
+}
+
+fn start(
+    setting: &Setting,
+    package: &str,
+    threads: usize,
+    problem: &Value,
+) -> Result<Service, String> {
+    let mut script = setting.script(&format!("{package}_peer"));
+    script.arg("--functions").arg(setting.out.join("casadi"));
+    script.args(["--threads", &threads.to_string()]);
+    Service::start(&mut script, problem)
+}
+
+/// A turn of a service that is started for it.
+pub(crate) fn ask_once(
+    setting: &Setting,
+    package: &str,
+    threads: usize,
+    problem: &Value,
+    job: &str,
+    turn: Turn,
+) -> Result<Answer, String> {
+    ask(
+        &RefCell::new(start(setting, package, threads, problem)?),
+        job,
+        turn,
+    )
 }
 
 /// A turn of a service at a job.

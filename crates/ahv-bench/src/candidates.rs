@@ -76,9 +76,15 @@ pub(crate) fn build(
             candidates.push(wrenfold(names[1], flags, setting)?);
         }
     }
-    candidates.push(side_by_side::<lanes::Exact>(LANES, lanes::EXACT));
+    candidates.push(side_by_side::<lanes::Short, lanes::Exact>(
+        LANES,
+        lanes::EXACT,
+    ));
     if lanes::has_fma() {
-        candidates.push(side_by_side::<lanes::Fma>(LANES_FMA, lanes::FMA));
+        candidates.push(side_by_side::<lanes::Fma, lanes::Fma>(
+            LANES_FMA,
+            lanes::FMA,
+        ));
     }
     if let Some(arrays) = arrays {
         candidates.push(symforce(setting)?);
@@ -186,12 +192,12 @@ pub(crate) fn layout(subject: &Subject) -> Layout {
 }
 
 /// The product's functions for members side by side.
-fn side_by_side<R: Scalar>(name: &'static str, built: &str) -> Candidate {
+fn side_by_side<S: Scalar, L: Scalar>(name: &'static str, built: &str) -> Candidate {
     Candidate {
         name,
         built: built.to_owned(),
         compiled: 0.0,
-        kernels: lanes::kernels::<R>(),
+        kernels: lanes::kernels::<S, L>(),
     }
 }
 

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::time::Instant;
 
 use ahv_bench_kernels::lanes::{
-    DcomDrift, DcomDriftJacobians, LANES, Packed, Scalar, SdcomDriftDiffusion, Side,
+    DcomDrift, DcomDriftJacobians, LANES, Packed, Pair, Scalar, SdcomDriftDiffusion, Side,
 };
 use ahv_core::{Fused, Lanes, Straight, Vector};
 use ahv_models::{dcom, sdcom};
@@ -16,6 +16,8 @@ use crate::subject::SUBJECTS;
 
 /// The exact mode, and the one with a fused multiply-add.
 pub(crate) type Exact = Straight<f64>;
+/// The exact mode of a short function.
+pub(crate) type Short = Pair;
 /// Asks for a processor with the instruction.
 pub(crate) type Fma = Fused<Straight<f64>>;
 
@@ -95,10 +97,10 @@ impl<M, X: Vector<Packed>, U: Vector<Packed>, Y> Evaluate for SideBySide<M, X, U
 }
 
 macro_rules! kernel {
-    ($call:ident, $module:ident, $results:ty, $subject:expr) => {
+    ($call:ident<$scalar:ty>, $module:ident, $results:ty, $subject:expr) => {
         Box::new(SideBySide {
             call: |model, states, inputs, results| {
-                pulp::Arch::new().dispatch($call::<R> {
+                pulp::Arch::new().dispatch($call::<$scalar> {
                     model,
                     states,
                     inputs,
@@ -116,20 +118,20 @@ macro_rules! kernel {
     };
 }
 
-/// The kernels of all subjects.
-pub(crate) fn kernels<R: Scalar>() -> Vec<Box<dyn Evaluate>> {
+/// The kernels of all subjects, the short function with the scalar `S` and long ones with `L`.
+pub(crate) fn kernels<S: Scalar, L: Scalar>() -> Vec<Box<dyn Evaluate>> {
     vec![
-        kernel!(DcomDrift, dcom, dcom::State<R>, SUBJECTS[0]),
+        kernel!(DcomDrift<S>, dcom, dcom::State<S>, SUBJECTS[0]),
         kernel!(
-            DcomDriftJacobians,
+            DcomDriftJacobians<L>,
             dcom,
-            (dcom::State<R>, [R; 48], [R; 18]),
+            (dcom::State<L>, [L; 48], [L; 18]),
             SUBJECTS[1]
         ),
         kernel!(
-            SdcomDriftDiffusion,
+            SdcomDriftDiffusion<L>,
             sdcom,
-            (sdcom::State<R>, sdcom::Diffusion<R>),
+            (sdcom::State<L>, sdcom::Diffusion<L>),
             SUBJECTS[2]
         ),
     ]

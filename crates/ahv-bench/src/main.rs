@@ -20,6 +20,7 @@ mod operations;
 mod picture;
 mod points;
 mod ports;
+mod process;
 mod race;
 mod report;
 mod rk4;
@@ -141,6 +142,8 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     let trajectories = rk4::measure(&steps, arrays.as_ref(), races)?;
     let monte_carlo = monte_carlo::measure(ensembles, arrays.as_ref(), races)?;
     let modes = modes::measure(ensembles, arrays.as_ref(), races)?;
+    let process = |program: &PathBuf| process::measure(setting, program, &problem());
+    let processes = args.peers.as_ref().map(process).transpose()?;
     let weak = setting.peers.then(|| weak::measure(races)).transpose()?;
     let groups = [
         ("RK4 of DCOM", &trajectories.finishes),
@@ -161,6 +164,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
         steppers,
         trajectories,
         monte_carlo,
+        processes,
         modes,
         weak,
         bound: ports::measure(&setting.root)?,

@@ -15,6 +15,7 @@ use crate::monte_carlo::MonteCarlo;
 use crate::operations::Operations;
 use crate::picture;
 use crate::ports::Bound;
+use crate::process::{self, Process};
 use crate::rk4::Trajectories;
 use crate::steppers::Steppers;
 use crate::subject::SUBJECTS;
@@ -41,6 +42,8 @@ pub(crate) struct Report {
     pub(crate) steppers: Steppers,
     pub(crate) trajectories: Trajectories,
     pub(crate) monte_carlo: MonteCarlo,
+    /// With peers alone.
+    pub(crate) processes: Option<Vec<Process>>,
     pub(crate) modes: Modes,
     /// With peers alone: it takes minutes.
     pub(crate) weak: Option<Weak>,
@@ -99,8 +102,9 @@ impl Report {
             self.times(),
             self.trajectories.table(),
             self.monte_carlo.table(),
-            self.modes.table(),
         ];
+        tables.extend(self.processes.as_deref().map(process::table));
+        tables.push(self.modes.table());
         tables.extend(self.weak.iter().flat_map(|it| [it.errors(), it.times()]));
         let drift = self.lane_drift();
         tables.extend(drift.map(|it| self.bound.table([it.median, it.min])));

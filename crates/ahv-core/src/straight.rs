@@ -109,3 +109,38 @@ impl<T: Lane> Real for Straight<T> {
         true
     }
 }
+
+/// Nothing is beyond its ways without branches.
+impl<T: Lane> Lane for Straight<T> {
+    const NAN: Self = Self(T::NAN);
+
+    #[inline(always)]
+    fn is_small_angle(self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn small_sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+
+    #[inline(always)]
+    fn is_moderate_angle(self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn moderate_sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+
+    #[inline(always)]
+    fn is_moderate_exponent(self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn moderate_exp(self) -> Self {
+        self.exp()
+    }
+}

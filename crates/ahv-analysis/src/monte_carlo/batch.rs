@@ -1,5 +1,6 @@
 //! Members side by side, from step to step.
 
+use std::borrow::Cow;
 use std::marker::PhantomData;
 
 use ahv_core::{Bounds, Real, Vector};
@@ -68,13 +69,19 @@ fn fill<T: Precision>(
     }
 }
 
-/// [`LANES`] members in flight.
-pub(super) struct Batch<F: Family, S> {
+/// What members fly.
+#[derive(Clone, Copy)]
+pub(super) struct Craft<F: Family, S> {
     pub(super) model: F::Model<Packed>,
     pub(super) scheme: S,
-    pub(super) law: Option<Law<F>>,
-    pub(super) noise: Noise,
-    pub(super) dt: f64,
+}
+
+/// [`LANES`] members in flight.
+pub(super) struct Batch<'c, F: Family, S: Copy> {
+    craft: Cow<'c, Craft<F, S>>,
+    law: Option<Law<F>>,
+    noise: Noise,
+    dt: f64,
     /// Step that comes next.
     pub(super) step: u64,
     pub(super) x: F::State<Packed>,
@@ -167,8 +174,8 @@ impl<F: Family> Watch<F> {
 }
 
 /// Steps a batch with the instructions of the machine that it runs on.
-struct Advance<'b, F: Family, S, A> {
-    batch: &'b mut Batch<F, S>,
+struct Advance<'b, 'c, F: Family, S: Copy, A> {
+    batch: &'b mut Batch<'c, F, S>,
     /// Step to stop before.
     until: u64,
     /// Fast, and for what is stepped again.
@@ -188,7 +195,7 @@ pub(super) trait Member<F: Family>: Copy {
     fn model(model: &F::Model<Packed>, lane: usize) -> Self::Model;
 }
 
-impl<F, S, A, E> pulp::WithSimd for Advance<'_, F, S, (A, E)>
+impl<F, S, A, E> pulp::WithSimd for Advance<'_, '_, F, S, (A, E)>
 where
     F: Family,
     A: Member<F>,
@@ -206,7 +213,7 @@ where
             return;
         }
         // Local copies, of which the compiler knows that no store to a state changes them.
-        let (model, scheme, law) = (batch.model, batch.scheme, batch.law);
+        let (Craft { model, scheme }, law) = (*batch.craft, batch.law);
         let (mut x, mut u, mut normals) = (batch.x, batch.u, [Packed::ZERO; MOST_NORMALS]);
         let mut next = x;
         while batch.step < self.until {
@@ -265,35 +272,27 @@ where
     scheme.step(dt, pick, &model, x, &u, |channel| normals[channel].0[lane])
 }
 
-/// What a batch starts from.
-pub(super) struct Start<F: Family> {
-    pub(super) model: F::Model<Packed>,
-    pub(super) x: F::State<Packed>,
-    pub(super) u: F::Input<Packed>,
-}
-
-impl<F: Family, S> Batch<F, S> {
+impl<'c, F: Family, S: Copy> Batch<'c, F, S> {
     /// The batch before its first step.
     pub(super) fn new(
-        start: Start<F>,
-        scheme: S,
+        craft: Cow<'c, Craft<F, S>>,
+        (x, u): (F::State<Packed>, F::Input<Packed>),
         dt: f64,
         noise: Noise,
         law: Option<Law<F>>,
         watches: Vec<Watch<F>>,
     ) -> Self {
         Self {
-            model: start.model,
-            scheme,
+            craft,
             law,
             noise,
             dt,
             step: 0,
-            x: start.x,
-            u: start.u,
-            start: start.x,
+            x,
+            u,
+            start: x,
             lost: [None; LANES],
-            last: start.x,
+            last: x,
             watches,
             passage: None,
         }
@@ -364,8 +363,8 @@ impl<F: Family, S> Batch<F, S> {
                 continue;
             }
             let mut member = F::map_state(x, |numbers| E::Scalar::of(numbers.0[lane]));
-            let kind = (&self.model, &self.scheme);
-            match step::<F, S, E>(kind, self.dt, &mut member, u, normals, lane) {
+            let Craft { model, scheme } = self.craft.as_ref();
+            match step::<F, S, E>((model, scheme), self.dt, &mut member, u, normals, lane) {
                 Ok(()) => F::update_state(next, member, |place, value| {
                     place.0[lane] = value.value();
                 }),

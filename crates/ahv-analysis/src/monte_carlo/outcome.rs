@@ -7,7 +7,8 @@ use ahv_core::Vector;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::experiment::{Control, Experiment, Flown, Seen};
+use super::crew::{Crew, Flown};
+use super::experiment::{Control, Experiment, Seen};
 use super::family::{Family, LANES};
 use super::spread::{Bin, QUANTILES, Spread};
 use super::{Loss, MonteCarloError};
@@ -106,12 +107,13 @@ impl<F: Flown> Experiment<F> {
             .build()
             .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
         let started = Instant::now();
+        let crew = F::crew(self)?;
         let mut collector = Collector::<F>::new(self);
         let mut next = 0;
         while next < members {
             let end = members.min(next + GROUP * CHUNK);
             let chunks: Vec<u64> = (next..end).step_by(CHUNK as usize).collect();
-            let fly = |&first: &u64| self.chunk(first..end.min(first + CHUNK), control);
+            let fly = |&first: &u64| chunk(&*crew, first..end.min(first + CHUNK), control);
             let flown: Vec<Option<Vec<Seen<F>>>> =
                 pool.install(|| chunks.par_iter().map(fly).collect::<Result<_, _>>())?;
             // All or none: what is told is always of members 0 to some number.
@@ -128,22 +130,6 @@ impl<F: Flown> Experiment<F> {
         Ok(collector.outcome(members, member_steps, started.elapsed()))
     }
 
-    fn chunk(
-        &self,
-        members: std::ops::Range<u64>,
-        control: &Control,
-    ) -> Result<Option<Vec<Seen<F>>>, MonteCarloError> {
-        let members: Vec<u64> = members.collect();
-        let mut seen = Vec::with_capacity(members.len());
-        for batch in members.chunks(LANES) {
-            match F::fly(self, batch, control)? {
-                Some(flown) => seen.extend(flown),
-                None => return Ok(None),
-            }
-        }
-        Ok(Some(seen))
-    }
-
     /// State and input of one member at the start and after every `stride` steps, as long as it is not lost.
     /// The bits are those that the member has among others.
     ///
@@ -155,13 +141,10 @@ impl<F: Flown> Experiment<F> {
             snapshots: (0..=self.steps()).step_by(stride.max(1) as usize).collect(),
             ..self.clone()
         };
-        let seen = F::fly(&alone, &[member], &Control::default())?.unwrap_or_default();
-        let at = seen
-            .into_iter()
-            .next()
-            .map(|seen| seen.at)
-            .unwrap_or_default();
-        let timed = alone.snapshots.iter().zip(at);
+        let crew = F::crew(&alone)?;
+        let seen = crew.fly(&[member], &Control::default())?;
+        let at = seen.into_iter().flatten().next().map(|seen| seen.at);
+        let timed = alone.snapshots.iter().zip(at.unwrap_or_default());
         let point = |(&step, (state, input)): (&u64, _)| Point {
             time: step as f64 * self.dt,
             state,
@@ -169,6 +152,23 @@ impl<F: Flown> Experiment<F> {
         };
         Ok(timed.map(point).collect())
     }
+}
+
+/// Flies members one batch after the other.
+fn chunk<F: Family>(
+    crew: &dyn Crew<F>,
+    members: std::ops::Range<u64>,
+    control: &Control,
+) -> Result<Option<Vec<Seen<F>>>, MonteCarloError> {
+    let members: Vec<u64> = members.collect();
+    let mut seen = Vec::with_capacity(members.len());
+    for batch in members.chunks(LANES) {
+        match crew.fly(batch, control)? {
+            Some(flown) => seen.extend(flown),
+            None => return Ok(None),
+        }
+    }
+    Ok(Some(seen))
 }
 
 /// Sums over members, in their order.

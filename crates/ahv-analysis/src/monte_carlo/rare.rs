@@ -15,7 +15,8 @@ use rayon::prelude::*;
 pub(super) use passage::{Goal, Particle, Passage, Passed, pass};
 
 use super::MonteCarloError;
-use super::experiment::{Control, Experiment, Flown};
+use super::crew::{Crew, Flown};
+use super::experiment::{Control, Experiment};
 use super::family::LANES;
 use crate::statistics::{Estimate, Z_95, mean_and_std};
 
@@ -162,6 +163,7 @@ impl<F: Flown> Experiment<F> {
             .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
         let mut search = Search {
             experiment: self,
+            crew: F::crew(self)?,
             event,
             control,
             goal: event.goal(self),
@@ -248,6 +250,7 @@ impl RareEvent {
 /// Splitting at work.
 struct Search<'e, F: Flown> {
     experiment: &'e Experiment<F>,
+    crew: Box<dyn Crew<F> + 'e>,
     event: &'e RareEvent,
     control: &'e Control,
     /// The limit.
@@ -387,7 +390,7 @@ impl<F: Flown> Search<'_, F> {
         };
         let flown: Vec<Option<Vec<Passed<F>>>> = flying
             .par_chunks(LANES)
-            .map(|batch| F::pass(self.experiment, batch, &goal, self.control))
+            .map(|batch| self.crew.pass(batch, &goal, self.control))
             .collect::<Result<_, _>>()?;
         let flown: Option<Vec<Vec<_>>> = flown.into_iter().collect();
         let flown: Vec<_> = flown

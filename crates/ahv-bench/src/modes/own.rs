@@ -112,24 +112,24 @@ where
 
     #[inline(always)]
     fn with_simd<V: pulp::Simd>(mut self, _: V) {
-        let model = self.model.map_ref(|&value| R::of(value));
+        let model = self.model.map_ref(|&value| R::from_f64(value));
         let (stepper, root) = (ItoEulerMaruyama::new(DT), DT.sqrt());
         let input = Input::splat(R::ZERO);
         let mut states = [State::splat(Packed::ZERO); BATCHES];
         for (step, row) in self.sums.iter_mut().enumerate() {
             let mut total = [Packed::ZERO; 4];
             for (x, normals) in states.iter_mut().zip(&mut self.normals) {
-                let normal = normals.normal(step as u64);
-                for lane in 0..LANES {
-                    let mut run = x.map_ref(|numbers| R::of(numbers.0[lane]));
+                let dw = normals.normal(step as u64).map(|it| root * f64::from(it));
+                for turn in 0..R::TURNS {
+                    let mut run = x.map_ref(|numbers| R::pick(numbers, turn));
                     let dw = Noise {
-                        xi: R::of(root * f64::from(normal.0[lane])),
+                        xi: R::pick(&dw, turn),
                     };
                     // A scalar without branches has no failure.
                     let _ = stepper.step(&model, &mut run, &input, &dw);
-                    run.eta.put(&mut x.eta, lane);
-                    run.eta_dot.put(&mut x.eta_dot, lane);
-                    run.chi.put(&mut x.chi, lane);
+                    run.eta.put(&mut x.eta, turn);
+                    run.eta_dot.put(&mut x.eta_dot, turn);
+                    run.chi.put(&mut x.chi, turn);
                 }
                 let values = [x.eta, x.eta * x.eta, x.chi, x.chi * x.chi];
                 for (total, value) in total.iter_mut().zip(values) {

@@ -4,10 +4,9 @@ use std::sync::atomic::Ordering;
 
 use ahv_core::Vector;
 
-use super::super::MonteCarloError;
 use super::super::arithmetic::Called;
-use super::super::batch::{Member, NEVER};
-use super::super::experiment::{Control, Experiment};
+use super::super::batch::{Batch, Member, NEVER};
+use super::super::experiment::Control;
 use super::super::family::{Family, LANES, Packed};
 use super::super::scheme::Steps;
 
@@ -101,25 +100,25 @@ impl<F: Family> Passage<F> {
     }
 }
 
-/// Flies members, at most [`LANES`], until each has passed the goal or its time is over; `None` if the work was stopped.
+/// Flies the members of a batch until each has passed the goal or its time of `steps` is over; `None` if the work was stopped.
 ///
 /// Who is beyond the goal already passes it at once: a step may lead past several levels.
 pub(in super::super) fn pass<F, S, A, E>(
-    experiment: &Experiment<F>,
+    mut batch: Batch<'_, F, S>,
+    steps: u64,
     flying: &[Particle<F>],
     goal: &Goal,
     control: &Control,
-) -> Result<Option<Vec<Passed<F>>>, MonteCarloError>
+) -> Option<Vec<Passed<F>>>
 where
     F: Family,
     A: Member<F>,
     E: Member<F>,
     S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
 {
-    let mut batch = experiment.batch::<S>(flying)?;
     let mut until = [0; LANES];
     for (until, particle) in until.iter_mut().zip(flying) {
-        *until = experiment.steps().saturating_sub(particle.step) + 1;
+        *until = steps.saturating_sub(particle.step) + 1;
     }
     let mut passage = Passage {
         goal: *goal,
@@ -135,7 +134,7 @@ where
     batch.passage = Some(passage);
     while batch.step < end {
         if control.stop.load(Ordering::Relaxed) {
-            return Ok(None);
+            return None;
         }
         let (from, until) = (batch.step, end.min(batch.step + STRETCH));
         batch.advance::<A, E>(until);
@@ -145,7 +144,7 @@ where
         end = batch.passage.as_ref().map_or(0, Passage::end);
     }
     let Some(passage) = batch.passage else {
-        return Ok(Some(Vec::new()));
+        return Some(Vec::new());
     };
     let passed = flying
         .iter()
@@ -165,5 +164,5 @@ where
                 steps: batch.step,
             }
         });
-    Ok(Some(passed.collect()))
+    Some(passed.collect())
 }

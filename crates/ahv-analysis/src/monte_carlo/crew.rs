@@ -1,0 +1,314 @@
+//! Who flies the members of an experiment: its scheme and its mode, chosen at run time.
+
+use std::borrow::Cow;
+use std::marker::PhantomData;
+use std::sync::atomic::Ordering;
+
+use ahv_core::{Bounds, Fused, Real, Straight, Vector};
+use ahv_integrate::NoiseError;
+
+use super::MonteCarloError;
+use super::arithmetic::{Called, In, Mode, Narrowed};
+use super::batch::{Batch, Craft, Member, Noise, Watch};
+use super::experiment::{Control, Experiment, Seen};
+use super::family::{Dcom, Family, LANES, Packed, Sdcom};
+use super::rare::{Goal, Particle, Passed, pass};
+use super::scheme::{
+    Dri1, EulerMaruyama, Heun, InStratonovichSense, MOST_NORMALS, Milstein, Scheme, Splitting,
+    Sra1, Stepping, Steps, column,
+};
+
+/// Steps between two looks at whether to stop.
+const PATIENCE: u64 = 1024;
+/// Where in the validity box it is asked which noise moves the states; there is nothing special about it.
+const SOMEWHERE: f64 = 0.618;
+
+/// Flies members of an experiment.
+pub trait Crew<F: Family>: Send + Sync {
+    /// Flies members, at most [`LANES`]; `None` if the work was stopped.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError::Scheme`] for parameters that the scheme is not for.
+    fn fly(
+        &self,
+        members: &[u64],
+        control: &Control,
+    ) -> Result<Option<Vec<Seen<F>>>, MonteCarloError>;
+
+    /// Flies members, at most [`LANES`], from where they are until they pass the goal or time is over; `None` if the work was
+    /// stopped.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::fly`].
+    fn pass(
+        &self,
+        flying: &[Particle<F>],
+        goal: &Goal,
+        control: &Control,
+    ) -> Result<Option<Vec<Passed<F>>>, MonteCarloError>;
+}
+
+/// A model for which every scheme that it has can be chosen at run time.
+pub trait Flown: Family {
+    /// Who flies the members of an experiment.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError::Scheme`] for a scheme that is not for this model's noise, [`MonteCarloError::ModeOfScheme`],
+    /// [`MonteCarloError::NoFma`], [`MonteCarloError::StepSize`].
+    fn crew(experiment: &Experiment<Self>) -> Result<Box<dyn Crew<Self> + '_>, MonteCarloError>
+    where
+        Self: Sized;
+}
+
+/// A crew with the scheme `$scheme` in the experiment's mode.
+macro_rules! in_mode {
+    ($experiment:ident, $scheme:ty) => {
+        match $experiment.mode {
+            Mode::Exact | Mode::F32Noise => {
+                Hands::<Self, $scheme, In<Straight<f64>>, In<f64>>::new($experiment)
+            }
+            Mode::Fma => {
+                Hands::<Self, $scheme, In<Fused<Straight<f64>>>, In<Fused<f64>>>::new($experiment)
+            }
+            Mode::F32Drift => Hands::<
+                Self,
+                $scheme,
+                Narrowed<Straight<f64>, Straight<f32>>,
+                Narrowed<f64, f32>,
+            >::new($experiment),
+        }
+    };
+}
+
+/// A crew with the scheme `$scheme`, which has no modes but those of the noise.
+macro_rules! in_doubles {
+    ($experiment:ident, $scheme:ty) => {
+        match $experiment.mode {
+            Mode::Exact | Mode::F32Noise => {
+                Hands::<Self, $scheme, Called<In<f64>>, In<f64>>::new($experiment)
+            }
+            mode => Err(MonteCarloError::ModeOfScheme {
+                mode: mode.name(),
+                scheme: $experiment.scheme.name(),
+            }),
+        }
+    };
+}
+
+macro_rules! flown {
+    ($($name:ident: $($splitting:ident)?;)+) => {$(
+        impl Flown for $name {
+            fn crew(
+                experiment: &Experiment<Self>,
+            ) -> Result<Box<dyn Crew<Self> + '_>, MonteCarloError> {
+                match experiment.scheme {
+                    $(Scheme::Splitting => in_mode!(experiment, $splitting),)?
+                    Scheme::Heun => in_mode!(experiment, Heun),
+                    Scheme::EulerMaruyama => in_mode!(experiment, EulerMaruyama),
+                    Scheme::StratonovichHeun => in_doubles!(experiment, InStratonovichSense),
+                    Scheme::Milstein => in_doubles!(experiment, Milstein),
+                    Scheme::Sra1 => in_doubles!(experiment, Sra1),
+                    Scheme::Dri1 => in_doubles!(experiment, Dri1),
+                    #[allow(unreachable_patterns, reason = "a model with coloured noise has every scheme")]
+                    scheme => Err(MonteCarloError::Scheme {
+                        scheme: scheme.name(),
+                        reason: NoiseError::ColouredStates { expected: 3, found: 0 },
+                    }),
+                }
+            }
+        }
+    )+};
+}
+
+flown! {
+    Sdcom: Splitting;
+    Dcom:;
+}
+
+/// A crew with a scheme `S`, fast in the arithmetic `A` and again in `E` where that has no result.
+struct Hands<'e, F: Family, S, A, E> {
+    experiment: &'e Experiment<F>,
+    /// The model of the experiment's own parameters.
+    shared: Craft<F, S>,
+    /// Normal numbers that a step uses.
+    used: [bool; MOST_NORMALS],
+    arithmetic: PhantomData<fn() -> (A, E)>,
+}
+
+/// Whether this processor multiplies and adds in one rounding.
+fn has_fma() -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return std::arch::is_x86_feature_detected!("fma");
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    return cfg!(target_arch = "aarch64");
+}
+
+/// State and input in the validity box, where no noise is 0 by chance.
+fn somewhere<F: Family>() -> (F::State<Packed>, F::Input<Packed>) {
+    let between = |bounds: &Bounds| {
+        let value = bounds.min + SOMEWHERE * (bounds.max - bounds.min);
+        Packed::splat(if value.is_finite() { value } else { SOMEWHERE })
+    };
+    (
+        F::map_state(&F::STATE_BOUNDS, between),
+        F::map_input(&F::INPUT_BOUNDS, between),
+    )
+}
+
+/// The model of these parameters, and the scheme for it.
+fn craft<F: Family, S: Stepping<F>>(
+    experiment: &Experiment<F>,
+    parameters: &[F::Parameters<f64>; LANES],
+) -> Result<Craft<F, S>, MonteCarloError> {
+    let model = F::model(parameters);
+    let (x, u) = somewhere::<F>();
+    let scheme =
+        S::new(&model, &x, &u, experiment.dt).map_err(|reason| MonteCarloError::Scheme {
+            scheme: experiment.scheme.name(),
+            reason,
+        })?;
+    Ok(Craft { model, scheme })
+}
+
+impl<'e, F, S, A, E> Hands<'e, F, S, A, E>
+where
+    F: Family,
+    A: Member<F> + 'e,
+    E: Member<F> + 'e,
+    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model> + 'e,
+{
+    #[allow(clippy::new_ret_no_self, reason = "a crew is known by what it does")]
+    fn new(experiment: &'e Experiment<F>) -> Result<Box<dyn Crew<F> + 'e>, MonteCarloError> {
+        if experiment.mode == Mode::Fma && !has_fma() {
+            return Err(MonteCarloError::NoFma);
+        }
+        if !(experiment.dt > 0.0 && experiment.dt.is_finite()) {
+            return Err(MonteCarloError::StepSize(experiment.dt));
+        }
+        let shared: Craft<F, S> = craft(experiment, &[experiment.parameters; LANES])?;
+        let (x, u) = somewhere::<F>();
+        let mut used = [false; MOST_NORMALS];
+        let (wiener, extra) = used.split_at_mut(F::Noise::<Packed>::LEN);
+        for (channel, used) in wiener.iter_mut().enumerate() {
+            *used = S::uses(&shared.model, &column(&shared.model, &x, &u, channel));
+        }
+        extra
+            .iter_mut()
+            .take(S::EXTRA)
+            .for_each(|used| *used = true);
+        Ok(Box::new(Self {
+            experiment,
+            shared,
+            used,
+            arithmetic: PhantomData,
+        }))
+    }
+
+    /// The batch of members that fly on from where they are; its steps count from there.
+    fn batch(&self, flying: &[Particle<F>]) -> Result<Batch<'_, F, S>, MonteCarloError> {
+        let experiment = self.experiment;
+        // Lanes without member repeat the last one.
+        let last = flying
+            .last()
+            .copied()
+            .unwrap_or_else(|| experiment.particle(0));
+        let flying: [Particle<F>; LANES] =
+            std::array::from_fn(|lane| flying.get(lane).copied().unwrap_or(last));
+        let craft = match &experiment.dispersion {
+            None => Cow::Borrowed(&self.shared),
+            Some(draws) => {
+                let parameters = flying.map(|particle| draws.member(particle.origin));
+                Cow::Owned(craft(experiment, &parameters)?)
+            }
+        };
+        let mut x = F::State::splat(Packed::ZERO);
+        let mut u = F::Input::splat(Packed::ZERO);
+        for (lane, particle) in flying.iter().enumerate() {
+            F::update_state(&mut x, particle.x, |numbers, value| numbers.0[lane] = value);
+            F::update_input(&mut u, particle.u, |numbers, value| numbers.0[lane] = value);
+        }
+        let members = flying.map(|particle| particle.member);
+        let single = matches!(experiment.mode, Mode::F32Noise | Mode::F32Drift);
+        let noise = Noise::new(experiment.seed, members, &self.used, single);
+        let law = experiment
+            .feedback
+            .as_ref()
+            .map(|feedback| feedback.over(experiment.dt));
+        let watches = experiment.watched.iter();
+        let watches = watches.map(|&bounds| Watch::new(bounds)).collect();
+        Ok(Batch::new(
+            craft,
+            (x, u),
+            experiment.dt,
+            noise,
+            law,
+            watches,
+        ))
+    }
+}
+
+impl<F, S, A, E> Crew<F> for Hands<'_, F, S, A, E>
+where
+    F: Family,
+    A: Member<F>,
+    E: Member<F>,
+    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
+{
+    fn fly(
+        &self,
+        members: &[u64],
+        control: &Control,
+    ) -> Result<Option<Vec<Seen<F>>>, MonteCarloError> {
+        let experiment = self.experiment;
+        let flying: Vec<_> = members
+            .iter()
+            .map(|&member| experiment.particle(member))
+            .collect();
+        let mut batch = self.batch(&flying)?;
+        let count = members.len().min(LANES);
+        let mut at: Vec<Vec<_>> = vec![Vec::new(); count];
+        for &snapshot in &experiment.snapshots {
+            while batch.step < snapshot {
+                if control.stop.load(Ordering::Relaxed) {
+                    return Ok(None);
+                }
+                let (from, until) = (batch.step, snapshot.min(batch.step + PATIENCE));
+                batch.advance::<A, E>(until);
+                control
+                    .done
+                    .fetch_add((until - from) * count as u64, Ordering::Relaxed);
+            }
+            for (lane, at) in at.iter_mut().enumerate() {
+                if let (x, true) = batch.member(lane) {
+                    at.push((x, F::map_input(&batch.u, |numbers| numbers.0[lane])));
+                }
+            }
+        }
+        let seen = at.into_iter().enumerate().map(|(lane, at)| Seen {
+            at,
+            last: batch.member(lane).0,
+            lost: batch.lost[lane],
+            left: batch.watches.iter().map(|watch| watch.left(lane)).collect(),
+        });
+        Ok(Some(seen.collect()))
+    }
+
+    fn pass(
+        &self,
+        flying: &[Particle<F>],
+        goal: &Goal,
+        control: &Control,
+    ) -> Result<Option<Vec<Passed<F>>>, MonteCarloError> {
+        let batch = self.batch(flying)?;
+        Ok(pass::<F, S, A, E>(
+            batch,
+            self.experiment.steps(),
+            flying,
+            goal,
+            control,
+        ))
+    }
+}
