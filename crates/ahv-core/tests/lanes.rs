@@ -94,18 +94,32 @@ fn lanes_have_the_bits_of_their_numbers<T: Lane>(parting: &[f64]) {
             );
         }
         assert_eq!(a.is_finite(), x.iter().all(|x| x.is_finite()));
-        assert_eq!(a.is_finite(), Real::is_finite(a.to_f64()));
+    }
+}
+
+fn lanes_that_are_not_finite_show_it<T: Lane>() {
+    for x in mixed(&varied::<T>(&[])) {
+        let x = Lanes(x);
+        assert_eq!(x.is_finite(), Real::is_finite(x.to_f64()));
     }
 }
 
 #[test]
 fn lanes_of_doubles_have_the_bits_of_doubles() {
     lanes_have_the_bits_of_their_numbers::<f64>(&[core::f64::consts::FRAC_PI_4, 1e6, 708.0]);
+    lanes_that_are_not_finite_show_it::<f64>();
 }
 
 #[test]
 fn lanes_of_singles_have_the_bits_of_singles() {
     lanes_have_the_bits_of_their_numbers::<f32>(&[core::f64::consts::FRAC_PI_4, 1e4, 87.0]);
+    lanes_that_are_not_finite_show_it::<f32>();
+}
+
+#[test]
+fn lanes_of_straight_numbers_have_the_bits_of_those() {
+    lanes_have_the_bits_of_their_numbers::<Straight<f64>>(&[core::f64::consts::FRAC_PI_4, 708.0]);
+    lanes_have_the_bits_of_their_numbers::<Straight<f32>>(&[core::f64::consts::FRAC_PI_4, 87.0]);
 }
 
 #[test]
