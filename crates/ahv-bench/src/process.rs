@@ -77,6 +77,8 @@ fn own(program: &Path, seed: u64) -> Result<f64, String> {
         ("--dt", DT.to_string()),
         ("--threads", THREADS.to_string()),
         ("--seed", seed.to_string()),
+        // The others look at the end alone.
+        ("--snapshots", "1".to_owned()),
     ] {
         command.args([option, &value]);
     }
@@ -116,7 +118,7 @@ pub(crate) fn table(processes: &[Process]) -> Table {
     Table {
         title: "Monte Carlo of SDCOM as a process".to_owned(),
         note: format!(
-            "The {MEMBERS} flights of {STEPS} steps of the table above, from the start of the program to the outcome, on {THREADS} \
+            "The {MEMBERS} flights of {STEPS} steps that the rates above are of, from the start of the program to the outcome, on {THREADS} \
              threads; {RUNS} runs, taken in turns. The longer the work, the less the start counts: the rates above are what \
              remains."
         ),

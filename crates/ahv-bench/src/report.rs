@@ -101,8 +101,8 @@ impl Report {
             bars::table(&self.bars),
             self.times(),
             self.trajectories.table(),
-            self.monte_carlo.table(),
         ];
+        tables.extend(self.monte_carlo.tables());
         tables.extend(self.processes.as_deref().map(process::table));
         tables.push(self.modes.table());
         tables.extend(self.weak.iter().flat_map(|it| [it.errors(), it.times()]));

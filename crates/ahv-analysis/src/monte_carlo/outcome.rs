@@ -120,7 +120,8 @@ impl<F: Flown> Experiment<F> {
             let Some(flown) = flown.into_iter().collect::<Option<Vec<_>>>() else {
                 break;
             };
-            collector.add(next, flown.into_iter().flatten().collect());
+            let seen = flown.into_iter().flatten().collect();
+            pool.install(|| collector.add(next, seen));
             next = end;
         }
         if next == 0 {
@@ -235,34 +236,16 @@ impl<'e, F: Family> Collector<'e, F> {
             }
         }
         self.members += seen.len() as u64;
-        for (index, (sums, &step)) in self
-            .sums
-            .iter_mut()
-            .zip(&self.experiment.snapshots)
-            .enumerate()
-        {
-            let values: Vec<Vec<f64>> = seen
-                .iter()
-                .filter_map(|seen| seen.at.get(index))
-                .map(|(x, _)| components(x, states))
-                .collect();
+        let steps = self.experiment.snapshots.par_iter();
+        let sums = self.sums.par_iter_mut().zip(steps).enumerate();
+        sums.for_each(|(index, (sums, &step))| {
+            let at = seen.iter().filter_map(|seen| seen.at.get(index));
+            let values: Vec<_> = at.map(|(x, _)| components(x, states)).collect();
             sums.add(&self.origin, &values);
             for seen in &seen {
-                for ((left, counts), any) in
-                    seen.left.iter().zip(&mut sums.left).zip(&mut sums.left_any)
-                {
-                    let by_then = components(left, states)
-                        .into_iter()
-                        .map(|left| left.is_some_and(|left| left <= step));
-                    let mut some = false;
-                    for (count, left) in counts.iter_mut().zip(by_then) {
-                        *count += u64::from(left);
-                        some |= left;
-                    }
-                    *any += u64::from(some);
-                }
+                sums.leave::<F>(&seen.left, step);
             }
-        }
+        });
     }
 
     fn outcome(self, asked: u64, member_steps: u64, elapsed: Duration) -> Outcome {
@@ -289,6 +272,20 @@ impl<'e, F: Family> Collector<'e, F> {
 }
 
 impl Sums {
+    /// Counts what a member has left after so many steps.
+    fn leave<F: Family>(&mut self, left: &[F::State<Option<u64>>], step: u64) {
+        let sets = left.iter().zip(&mut self.left).zip(&mut self.left_any);
+        for ((left, counts), any) in sets {
+            let mut some = false;
+            for (state, count) in counts.iter_mut().enumerate() {
+                let by_then = left.get(state).flatten().is_some_and(|left| left <= step);
+                *count += u64::from(by_then);
+                some |= by_then;
+            }
+            *any += u64::from(some);
+        }
+    }
+
     fn add(&mut self, origin: &[f64], members: &[Vec<f64>]) {
         if self.spreads.is_empty() {
             let column = |state| {

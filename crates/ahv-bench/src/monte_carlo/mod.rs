@@ -1,6 +1,7 @@
 //! Monte Carlo of SDCOM: many short flights from the trim, by the Euler–Maruyama method.
 
 mod own;
+mod shares;
 
 pub(crate) use own::{SIDE_BY_SIDE, experiment, fly};
 
@@ -74,6 +75,8 @@ pub(crate) fn problem() -> Value {
 #[derive(Serialize)]
 pub(crate) struct MonteCarlo {
     pub(crate) finishes: Vec<Finish>,
+    /// Steps in lanes and their normal numbers.
+    pub(crate) shares: Vec<Finish>,
     /// Greatest difference of a moment from the reference's, in standard errors.
     pub(crate) standard_errors: f64,
     pub(crate) rounds: u32,
@@ -90,6 +93,7 @@ pub(crate) fn measure(
 ) -> Result<MonteCarlo, String> {
     let mut found = MonteCarlo {
         finishes: Vec::new(),
+        shares: shares::measure(rounds)?,
         standard_errors: 0.0,
         rounds,
     };
@@ -150,8 +154,8 @@ fn peers(arrays: &Arrays, place: usize) -> Vec<Runner<'static>> {
 
 impl MonteCarlo {
     /// For people.
-    pub(crate) fn table(&self) -> Table {
-        Table::of_rates(
+    pub(crate) fn tables(&self) -> [Table; 2] {
+        let rates = Table::of_rates(
             "Monte Carlo of SDCOM, million member-steps per second".to_owned(),
             format!(
                 "Euler–Maruyama at 1 ms with six Wiener channels in f64: drift, noise and normal numbers of a step, {MEMBERS} \
@@ -164,6 +168,7 @@ impl MonteCarlo {
                 self.standard_errors
             ),
             &self.finishes,
-        )
+        );
+        [rates, shares::table(&self.shares)]
     }
 }
