@@ -56,8 +56,7 @@ const ENSEMBLE: &str = "CasADi C, C++ normals";
 const THREADS: usize = 2;
 
 const OF_LANES: &str = "what else runs on the core: a loop in lanes keeps its ports busy";
-const OF_NOISE: &str =
-    "see below what normal numbers take; what is left is one long chain of operations a member";
+const OF_NOISE: &str = "drift and noise increment; what normal numbers take stands below";
 const OF_MODES: &str =
     "normal numbers, nearly all of the work; NumPy's are by the fastest generator that it has";
 

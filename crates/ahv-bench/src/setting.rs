@@ -36,6 +36,8 @@ impl Setting {
         let mut command = Command::new(&self.python);
         command
             .env("PYTHONPATH", self.root.join("generator"))
+            // Where what they compile for themselves may lie.
+            .current_dir(&self.out)
             .env("PYTHONDONTWRITEBYTECODE", "1")
             .args(["-X", "utf8"])
             .arg(self.peer_file(&format!("{name}.py")));

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use ahv_analysis::disperse::{Distribution, Draws};
 use ahv_analysis::monte_carlo::{
-    Control, Dcom, Experiment, Family, Flown, Mode, MonteCarloError, RareError, Scheme, Sdcom,
+    Control, Dcom, Experiment, Family, Flown, Mode, MonteCarloError, Scheme, Sdcom,
 };
 use ahv_core::{Bounds, Vector};
 use clap::builder::PossibleValuesParser;
@@ -302,9 +302,6 @@ pub(crate) fn watched<T: Send>(
             Failure::Request(format!("--scheme: {error}"))
         }
         MonteCarloError::NoFma => Failure::Request(format!("--mode: {error}")),
-        MonteCarloError::Rare(RareError::OutOfReach { .. } | RareError::NoSpread { .. }) => {
-            Failure::Numeric(error.to_string())
-        }
         other => Failure::Request(other.to_string()),
     })
 }

@@ -2,18 +2,21 @@
 
 use std::fmt::Write;
 
-use ahv_analysis::monte_carlo::{FEWEST_REPETITIONS, Flown, RareEstimate, RareEvent};
+use ahv_analysis::monte_carlo::{
+    FEWEST_REPETITIONS, Flown, MonteCarloError, RareError, RareEstimate, RareEvent,
+};
 use ahv_analysis::statistics::Estimate;
 use ahv_core::Vector;
 use clap::Args;
 use serde::Serialize;
 
 use crate::assignment::{Assignments, show};
-use crate::condition::Heading;
+use crate::condition::{Heading, Vehicle};
 use crate::failure::{Failure, print};
 use crate::flights::{Flights, Manner, Pair, Ready, Task, watched, with_model};
 use crate::output;
 use crate::progress::Progress;
+use crate::vehicle::FlightModel;
 
 /// Estimates the probability that a state passes a limit before the flight ends, however small it is.
 ///
@@ -64,11 +67,17 @@ impl Task for Arguments {
             levels: None,
             repetitions: self.repetitions,
         };
-        let estimate = watched(Progress::of_unknown(), |control| {
-            ready
+        let found = watched(Progress::of_unknown(), |control| {
+            let found = ready
                 .experiment
-                .first_passage(&event, ready.threads, control)
+                .first_passage(&event, ready.threads, control);
+            match found {
+                Err(MonteCarloError::Rare(error)) => Ok(Err(error)),
+                other => other.map(Ok),
+            }
         })?;
+        let unit = unit(&ready.vehicle, state);
+        let estimate = found.map_err(|error| failure(&error, unit))?;
         let told = Told {
             ready,
             event,
@@ -79,6 +88,23 @@ impl Task for Arguments {
         } else {
             print(&told.text())
         }
+    }
+}
+
+/// Unit of a state.
+fn unit<M: FlightModel>(vehicle: &Vehicle<M>, state: usize) -> &'static str {
+    let labels = vehicle.units.labels::<M::State>();
+    labels.get(state).copied().unwrap_or("")
+}
+
+fn failure(error: &RareError, unit: &str) -> Failure {
+    match error {
+        RareError::OutOfReach { level } => Failure::Numeric(format!(
+            "the members come no nearer to the limit than {}; a greater --effort may",
+            show(*level, unit)
+        )),
+        RareError::NoSpread { .. } => Failure::Numeric(error.to_string()),
+        _ => Failure::Request(format!("--passes: {error}")),
     }
 }
 
@@ -109,10 +135,11 @@ struct Json<'a> {
 impl<F: Flown, M: Pair<F>> Told<F, M> {
     /// Name and unit of the state.
     fn state(&self) -> (&'static str, &'static str) {
-        let index = self.event.state;
-        let units = self.ready.vehicle.units.labels::<M::State>();
-        let names = M::State::NAMES.iter().zip(units).nth(index);
-        names.map_or(("", ""), |(name, unit)| (*name, *unit))
+        let name = M::State::NAMES.get(self.event.state).copied();
+        (
+            name.unwrap_or(""),
+            unit(&self.ready.vehicle, self.event.state),
+        )
     }
 
     /// End of the flights, in s.
@@ -163,7 +190,7 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
         }
         let _ = write!(
             text,
-            "\n{} repetitions of {} members a level, {} {} s, {}, seed {}\n{:.3e} member-steps; for an interval as wide, plain sampling takes {:.3e}, {:.3} times as many\nlost, with a state that was no longer finite: {}",
+            "\n{} repetitions of {} members a level, {} {} s, {}, seed {}\n{:.3e} member-steps; for an interval as wide, plain sampling takes {:.3e}, {:.2e} times as many\nlost, with a state that was no longer finite: {}",
             self.event.repetitions,
             self.event.effort,
             experiment.scheme.name(),
