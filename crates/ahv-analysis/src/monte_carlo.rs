@@ -7,11 +7,12 @@
 
 mod arithmetic;
 mod batch;
-mod crew;
+
 mod experiment;
 mod family;
 mod feedback;
 mod outcome;
+mod propagator;
 mod rare;
 mod scheme;
 mod spread;
@@ -20,11 +21,11 @@ use ahv_integrate::NoiseError;
 
 pub use arithmetic::Mode;
 pub use batch::Loss;
-pub use crew::{Crew, Flown};
 pub use experiment::{Control, Experiment, Seen};
 pub use family::{Dcom, Family, LANES, Packed, Sdcom};
 pub use feedback::Feedback;
 pub use outcome::{Outcome, Point, Snapshot, StateSpread};
+pub use propagator::{Flown, Propagator};
 pub use rare::{FEWEST_REPETITIONS, Level, RareError, RareEstimate, RareEvent};
 pub use scheme::Scheme;
 pub use spread::{Bin, QUANTILES};

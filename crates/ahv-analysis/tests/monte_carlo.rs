@@ -51,7 +51,7 @@ fn fly<F: Flown>(
     experiment: &Experiment<F>,
     members: &[u64],
 ) -> Result<Vec<Seen<F>>, MonteCarloError> {
-    let seen = F::crew(experiment)?.fly(members, &Control::default())?;
+    let seen = F::propagator(experiment)?.fly(members, &Control::default())?;
     Ok(seen.expect("nobody stops it"))
 }
 

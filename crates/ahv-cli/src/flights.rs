@@ -224,7 +224,7 @@ impl Flights {
 
 /// How members flew, as JSON.
 #[derive(Serialize)]
-pub(crate) struct Manner {
+pub(crate) struct Settings {
     threads: usize,
     scheme: &'static str,
     mode: &'static str,
@@ -236,9 +236,9 @@ pub(crate) struct Manner {
 }
 
 impl<F: Flown, M: Pair<F>> Ready<F, M> {
-    pub(crate) fn manner(&self) -> Manner {
+    pub(crate) fn settings(&self) -> Settings {
         let experiment = &self.experiment;
-        Manner {
+        Settings {
             threads: self.threads,
             scheme: experiment.scheme.name(),
             mode: experiment.mode.name(),

@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::assignment::{Assignments, show};
 use crate::condition::{Heading, Vehicle};
 use crate::failure::{Failure, print};
-use crate::flights::{Flights, Manner, Pair, Ready, Task, watched, with_model};
+use crate::flights::{Flights, Pair, Ready, Settings, Task, watched, with_model};
 use crate::output;
 use crate::progress::Progress;
 use crate::vehicle::FlightModel;
@@ -131,7 +131,7 @@ struct Json<'a> {
     effort: u64,
     repetitions: u64,
     #[serde(flatten)]
-    manner: Manner,
+    settings: Settings,
 }
 
 impl<F: Flown, M: Pair<F>> Told<F, M> {
@@ -166,7 +166,7 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
             ratio: self.ratio(),
             effort: self.event.effort,
             repetitions: self.event.repetitions,
-            manner: self.ready.manner(),
+            settings: self.ready.settings(),
         }
     }
 

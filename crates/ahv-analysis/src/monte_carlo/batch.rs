@@ -71,14 +71,14 @@ fn fill<T: Precision>(
 
 /// What members fly.
 #[derive(Clone, Copy)]
-pub(super) struct Craft<F: Family, S> {
+pub(super) struct Dynamics<F: Family, S> {
     pub(super) model: F::Model<Packed>,
     pub(super) scheme: S,
 }
 
 /// [`LANES`] members in flight.
 pub(super) struct Batch<'c, F: Family, S: Copy> {
-    craft: Cow<'c, Craft<F, S>>,
+    dynamics: Cow<'c, Dynamics<F, S>>,
     law: Option<Law<F>>,
     noise: Noise,
     dt: f64,
@@ -213,7 +213,7 @@ where
             return;
         }
         // Local copies, of which the compiler knows that no store to a state changes them.
-        let (Craft { model, scheme }, law) = (*batch.craft, batch.law);
+        let (Dynamics { model, scheme }, law) = (*batch.dynamics, batch.law);
         let (mut x, mut u, mut normals) = (batch.x, batch.u, [Packed::ZERO; MOST_NORMALS]);
         let mut next = x;
         while batch.step < self.until {
@@ -275,7 +275,7 @@ where
 impl<'c, F: Family, S: Copy> Batch<'c, F, S> {
     /// The batch before its first step.
     pub(super) fn new(
-        craft: Cow<'c, Craft<F, S>>,
+        dynamics: Cow<'c, Dynamics<F, S>>,
         (x, u): (F::State<Packed>, F::Input<Packed>),
         dt: f64,
         noise: Noise,
@@ -283,7 +283,7 @@ impl<'c, F: Family, S: Copy> Batch<'c, F, S> {
         watches: Vec<Watch<F>>,
     ) -> Self {
         Self {
-            craft,
+            dynamics,
             law,
             noise,
             dt,
@@ -363,7 +363,7 @@ impl<'c, F: Family, S: Copy> Batch<'c, F, S> {
                 continue;
             }
             let mut member = F::map_state(x, |numbers| E::Scalar::of(numbers.0[lane]));
-            let Craft { model, scheme } = self.craft.as_ref();
+            let Dynamics { model, scheme } = self.dynamics.as_ref();
             match step::<F, S, E>((model, scheme), self.dt, &mut member, u, normals, lane) {
                 Ok(()) => F::update_state(next, member, |place, value| {
                     place.0[lane] = value.value();

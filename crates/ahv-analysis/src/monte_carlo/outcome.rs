@@ -7,9 +7,9 @@ use ahv_core::Vector;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::crew::{Crew, Flown};
 use super::experiment::{Control, Experiment, Seen};
 use super::family::{Family, LANES};
+use super::propagator::{Flown, Propagator};
 use super::spread::{Bin, QUANTILES, Spread};
 use super::{Loss, MonteCarloError};
 use crate::statistics::Estimate;
@@ -107,13 +107,13 @@ impl<F: Flown> Experiment<F> {
             .build()
             .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
         let started = Instant::now();
-        let crew = F::crew(self)?;
+        let propagator = F::propagator(self)?;
         let mut collector = Collector::<F>::new(self);
         let mut next = 0;
         while next < members {
             let end = members.min(next + GROUP * CHUNK);
             let chunks: Vec<u64> = (next..end).step_by(CHUNK as usize).collect();
-            let fly = |&first: &u64| chunk(&*crew, first..end.min(first + CHUNK), control);
+            let fly = |&first: &u64| chunk(&*propagator, first..end.min(first + CHUNK), control);
             let flown: Vec<Option<Vec<Seen<F>>>> =
                 pool.install(|| chunks.par_iter().map(fly).collect::<Result<_, _>>())?;
             // All or none: what is told is always of members 0 to some number.
@@ -142,8 +142,8 @@ impl<F: Flown> Experiment<F> {
             snapshots: (0..=self.steps()).step_by(stride.max(1) as usize).collect(),
             ..self.clone()
         };
-        let crew = F::crew(&alone)?;
-        let seen = crew.fly(&[member], &Control::default())?;
+        let propagator = F::propagator(&alone)?;
+        let seen = propagator.fly(&[member], &Control::default())?;
         let at = seen.into_iter().flatten().next().map(|seen| seen.at);
         let timed = alone.snapshots.iter().zip(at.unwrap_or_default());
         let point = |(&step, (state, input)): (&u64, _)| Point {
@@ -157,14 +157,14 @@ impl<F: Flown> Experiment<F> {
 
 /// Flies members one batch after the other.
 fn chunk<F: Family>(
-    crew: &dyn Crew<F>,
+    propagator: &dyn Propagator<F>,
     members: std::ops::Range<u64>,
     control: &Control,
 ) -> Result<Option<Vec<Seen<F>>>, MonteCarloError> {
     let members: Vec<u64> = members.collect();
     let mut seen = Vec::with_capacity(members.len());
     for batch in members.chunks(LANES) {
-        match crew.fly(batch, control)? {
+        match propagator.fly(batch, control)? {
             Some(flown) => seen.extend(flown),
             None => return Ok(None),
         }

@@ -15,9 +15,9 @@ use rayon::prelude::*;
 pub(super) use passage::{Goal, Particle, Passage, Passed, pass};
 
 use super::MonteCarloError;
-use super::crew::{Crew, Flown};
 use super::experiment::{Control, Experiment};
 use super::family::LANES;
+use super::propagator::{Flown, Propagator};
 use crate::statistics::{Estimate, Z_95, mean_and_std};
 
 /// Fewest repetitions: from there on, Student's quantile is right to four digits.
@@ -163,7 +163,7 @@ impl<F: Flown> Experiment<F> {
             .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
         let mut search = Search {
             experiment: self,
-            crew: F::crew(self)?,
+            propagator: F::propagator(self)?,
             event,
             control,
             goal: event.goal(self),
@@ -250,7 +250,7 @@ impl RareEvent {
 /// Splitting at work.
 struct Search<'e, F: Flown> {
     experiment: &'e Experiment<F>,
-    crew: Box<dyn Crew<F> + 'e>,
+    propagator: Box<dyn Propagator<F> + 'e>,
     event: &'e RareEvent,
     control: &'e Control,
     /// The limit.
@@ -390,7 +390,7 @@ impl<F: Flown> Search<'_, F> {
         };
         let flown: Vec<Option<Vec<Passed<F>>>> = flying
             .par_chunks(LANES)
-            .map(|batch| self.crew.pass(batch, &goal, self.control))
+            .map(|batch| self.propagator.pass(batch, &goal, self.control))
             .collect::<Result<_, _>>()?;
         let flown: Option<Vec<Vec<_>>> = flown.into_iter().collect();
         let flown: Vec<_> = flown

@@ -86,11 +86,11 @@ pub(crate) fn fly(
     pool: &ThreadPool,
 ) -> Result<Vec<[f64; STATES]>, String> {
     let control = Control::default();
-    let crew = Sdcom::crew(experiment).map_err(|it| format!("error: {it}"))?;
+    let propagator = Sdcom::propagator(experiment).map_err(|it| format!("error: {it}"))?;
     let batch = |first: u64| {
         let first = first * LANES as u64;
         let numbers: Vec<u64> = (first..members.min(first + LANES as u64)).collect();
-        let seen = crew.fly(&numbers, &control);
+        let seen = propagator.fly(&numbers, &control);
         let seen = seen.map_err(|it| format!("error: {it}"))?;
         let ends = seen.into_iter().flatten().map(|it| match it.lost {
             None => Ok(it.last.to_array()),

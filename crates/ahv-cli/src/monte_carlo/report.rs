@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::Told;
 use crate::assignment::show;
 use crate::condition::Heading;
-use crate::flights::{Manner, Pair};
+use crate::flights::{Pair, Settings};
 use crate::output::Pairs;
 
 /// The outcome as JSON. Means, standard deviations and quantiles are of the members that fly at the end.
@@ -28,7 +28,7 @@ pub(super) struct Json<'a> {
     member_steps_per_second: f64,
     seconds: f64,
     #[serde(flatten)]
-    manner: Manner,
+    settings: Settings,
     mean: Pairs<Option<f64>>,
     std: Pairs<Option<f64>>,
     digest: &'a str,
@@ -100,7 +100,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             member_steps: outcome.member_steps,
             member_steps_per_second: self.rate(),
             seconds: outcome.elapsed.as_secs_f64(),
-            manner: self.ready.manner(),
+            settings: self.ready.settings(),
             mean: by_state::<M::State, _>(last().map(|it| value(&it.mean))),
             std: by_state::<M::State, _>(last().map(|it| value(&it.std))),
             digest: &outcome.digest,

@@ -1,4 +1,4 @@
-//! Who flies the members of an experiment: its scheme and its mode, chosen at run time.
+//! Propagation of the members of an experiment by its scheme and in its mode, which are chosen at run time.
 
 use std::borrow::Cow;
 use std::marker::PhantomData;
@@ -9,7 +9,7 @@ use ahv_integrate::NoiseError;
 
 use super::MonteCarloError;
 use super::arithmetic::{Called, In, Mode, Narrowed};
-use super::batch::{Batch, Craft, Member, Noise, Watch};
+use super::batch::{Batch, Dynamics, Member, Noise, Watch};
 use super::experiment::{Control, Experiment, Seen};
 use super::family::{Dcom, Family, LANES, Packed, Sdcom};
 use super::rare::{Goal, Particle, Passed, pass};
@@ -21,10 +21,10 @@ use super::scheme::{
 /// Steps between two looks at whether to stop.
 const PATIENCE: u64 = 1024;
 /// Where in the validity box it is asked which noise moves the states; there is nothing special about it.
-const SOMEWHERE: f64 = 0.618;
+const FRACTION: f64 = 0.618;
 
-/// Flies members of an experiment.
-pub trait Crew<F: Family>: Send + Sync {
+/// Propagates members of an experiment.
+pub trait Propagator<F: Family>: Send + Sync {
     /// Flies members, at most [`LANES`]; `None` if the work was stopped.
     ///
     /// # Errors
@@ -52,28 +52,32 @@ pub trait Crew<F: Family>: Send + Sync {
 
 /// A model for which every scheme that it has can be chosen at run time.
 pub trait Flown: Family {
-    /// Who flies the members of an experiment.
+    /// The propagator of an experiment's members.
     ///
     /// # Errors
     ///
     /// [`MonteCarloError::Scheme`] for a scheme that is not for this model's noise, [`MonteCarloError::ModeOfScheme`],
     /// [`MonteCarloError::NoFma`], [`MonteCarloError::StepSize`].
-    fn crew(experiment: &Experiment<Self>) -> Result<Box<dyn Crew<Self> + '_>, MonteCarloError>
+    fn propagator(
+        experiment: &Experiment<Self>,
+    ) -> Result<Box<dyn Propagator<Self> + '_>, MonteCarloError>
     where
         Self: Sized;
 }
 
-/// A crew with the scheme `$scheme` in the experiment's mode.
+/// A propagator with the scheme `$scheme` in the experiment's mode.
 macro_rules! in_mode {
     ($experiment:ident, $scheme:ty) => {
         match $experiment.mode {
             Mode::Exact | Mode::F32Noise => {
-                Hands::<Self, $scheme, In<Straight<f64>>, In<f64>>::new($experiment)
+                BatchPropagator::<Self, $scheme, In<Straight<f64>>, In<f64>>::new($experiment)
             }
             Mode::Fma => {
-                Hands::<Self, $scheme, In<Fused<Straight<f64>>>, In<Fused<f64>>>::new($experiment)
+                BatchPropagator::<Self, $scheme, In<Fused<Straight<f64>>>, In<Fused<f64>>>::new(
+                    $experiment,
+                )
             }
-            Mode::F32Drift => Hands::<
+            Mode::F32Drift => BatchPropagator::<
                 Self,
                 $scheme,
                 Narrowed<Straight<f64>, Straight<f32>>,
@@ -83,12 +87,12 @@ macro_rules! in_mode {
     };
 }
 
-/// A crew with the scheme `$scheme`, which has no modes but those of the noise.
+/// A propagator with the scheme `$scheme`, which has no modes but those of the noise.
 macro_rules! in_doubles {
     ($experiment:ident, $scheme:ty) => {
         match $experiment.mode {
             Mode::Exact | Mode::F32Noise => {
-                Hands::<Self, $scheme, Called<In<f64>>, In<f64>>::new($experiment)
+                BatchPropagator::<Self, $scheme, Called<In<f64>>, In<f64>>::new($experiment)
             }
             mode => Err(MonteCarloError::ModeOfScheme {
                 mode: mode.name(),
@@ -101,9 +105,9 @@ macro_rules! in_doubles {
 macro_rules! flown {
     ($($name:ident: $($splitting:ident)?;)+) => {$(
         impl Flown for $name {
-            fn crew(
+            fn propagator(
                 experiment: &Experiment<Self>,
-            ) -> Result<Box<dyn Crew<Self> + '_>, MonteCarloError> {
+            ) -> Result<Box<dyn Propagator<Self> + '_>, MonteCarloError> {
                 match experiment.scheme {
                     $(Scheme::Splitting => in_mode!(experiment, $splitting),)?
                     Scheme::Heun => in_mode!(experiment, Heun),
@@ -128,11 +132,11 @@ flown! {
     Dcom:;
 }
 
-/// A crew with a scheme `S`, fast in the arithmetic `A` and again in `E` where that has no result.
-struct Hands<'e, F: Family, S, A, E> {
+/// A propagator with a scheme `S`, fast in the arithmetic `A` and again in `E` where that has no result.
+struct BatchPropagator<'e, F: Family, S, A, E> {
     experiment: &'e Experiment<F>,
     /// The model of the experiment's own parameters.
-    shared: Craft<F, S>,
+    shared: Dynamics<F, S>,
     /// Normal numbers that a step uses.
     used: [bool; MOST_NORMALS],
     arithmetic: PhantomData<fn() -> (A, E)>,
@@ -147,10 +151,10 @@ fn has_fma() -> bool {
 }
 
 /// State and input in the validity box, where no noise is 0 by chance.
-fn somewhere<F: Family>() -> (F::State<Packed>, F::Input<Packed>) {
+fn generic_point<F: Family>() -> (F::State<Packed>, F::Input<Packed>) {
     let between = |bounds: &Bounds| {
-        let value = bounds.min + SOMEWHERE * (bounds.max - bounds.min);
-        Packed::splat(if value.is_finite() { value } else { SOMEWHERE })
+        let value = bounds.min + FRACTION * (bounds.max - bounds.min);
+        Packed::splat(if value.is_finite() { value } else { FRACTION })
     };
     (
         F::map_state(&F::STATE_BOUNDS, between),
@@ -159,37 +163,40 @@ fn somewhere<F: Family>() -> (F::State<Packed>, F::Input<Packed>) {
 }
 
 /// The model of these parameters, and the scheme for it.
-fn craft<F: Family, S: Stepping<F>>(
+fn dynamics<F: Family, S: Stepping<F>>(
     experiment: &Experiment<F>,
     parameters: &[F::Parameters<f64>; LANES],
-) -> Result<Craft<F, S>, MonteCarloError> {
+) -> Result<Dynamics<F, S>, MonteCarloError> {
     let model = F::model(parameters);
-    let (x, u) = somewhere::<F>();
+    let (x, u) = generic_point::<F>();
     let scheme =
         S::new(&model, &x, &u, experiment.dt).map_err(|reason| MonteCarloError::Scheme {
             scheme: experiment.scheme.name(),
             reason,
         })?;
-    Ok(Craft { model, scheme })
+    Ok(Dynamics { model, scheme })
 }
 
-impl<'e, F, S, A, E> Hands<'e, F, S, A, E>
+impl<'e, F, S, A, E> BatchPropagator<'e, F, S, A, E>
 where
     F: Family,
     A: Member<F> + 'e,
     E: Member<F> + 'e,
     S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model> + 'e,
 {
-    #[allow(clippy::new_ret_no_self, reason = "a crew is known by what it does")]
-    fn new(experiment: &'e Experiment<F>) -> Result<Box<dyn Crew<F> + 'e>, MonteCarloError> {
+    #[allow(
+        clippy::new_ret_no_self,
+        reason = "callers need no more than the trait"
+    )]
+    fn new(experiment: &'e Experiment<F>) -> Result<Box<dyn Propagator<F> + 'e>, MonteCarloError> {
         if experiment.mode == Mode::Fma && !has_fma() {
             return Err(MonteCarloError::NoFma);
         }
         if !(experiment.dt > 0.0 && experiment.dt.is_finite()) {
             return Err(MonteCarloError::StepSize(experiment.dt));
         }
-        let shared: Craft<F, S> = craft(experiment, &[experiment.parameters; LANES])?;
-        let (x, u) = somewhere::<F>();
+        let shared: Dynamics<F, S> = dynamics(experiment, &[experiment.parameters; LANES])?;
+        let (x, u) = generic_point::<F>();
         let mut used = [false; MOST_NORMALS];
         let (wiener, extra) = used.split_at_mut(F::Noise::<Packed>::LEN);
         for (channel, used) in wiener.iter_mut().enumerate() {
@@ -217,11 +224,11 @@ where
             .unwrap_or_else(|| experiment.particle(0));
         let flying: [Particle<F>; LANES] =
             std::array::from_fn(|lane| flying.get(lane).copied().unwrap_or(last));
-        let craft = match &experiment.dispersion {
+        let dynamics = match &experiment.dispersion {
             None => Cow::Borrowed(&self.shared),
             Some(draws) => {
                 let parameters = flying.map(|particle| draws.member(particle.origin));
-                Cow::Owned(craft(experiment, &parameters)?)
+                Cow::Owned(dynamics(experiment, &parameters)?)
             }
         };
         let mut x = F::State::splat(Packed::ZERO);
@@ -240,7 +247,7 @@ where
         let watches = experiment.watched.iter();
         let watches = watches.map(|&bounds| Watch::new(bounds)).collect();
         Ok(Batch::new(
-            craft,
+            dynamics,
             (x, u),
             experiment.dt,
             noise,
@@ -250,7 +257,7 @@ where
     }
 }
 
-impl<F, S, A, E> Crew<F> for Hands<'_, F, S, A, E>
+impl<F, S, A, E> Propagator<F> for BatchPropagator<'_, F, S, A, E>
 where
     F: Family,
     A: Member<F>,
