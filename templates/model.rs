@@ -45,7 +45,7 @@ pub const {{ bounds }}: {{ v.name }}<Bounds> = {{ v.name }} {
 {%- endif %}
 {%- endfor %}
 
-/// ∂f/∂x: `jacobian.{{ model.bases["state"][0].name }}.{{ model.bases["state"][1].name }}` is the derivative of the first component's rate with respect to the second.
+/// ∂f/∂x: `jacobian.{{ vectors[0].0.fields[0].name }}.{{ vectors[0].0.fields[1].name }}` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
 /// ∂f/∂u, by rows of the state.
 pub type InputJacobian<T> = State<Input<T>>;
@@ -62,7 +62,7 @@ pub type NoiseDerivatives<T> = State<Noise<Noise<T>>>;
 /// How each column of the diffusion depends on the state.
 pub const NOISE_CLASS: Noise<NoiseClass> = Noise {
 {%- for column in noise.columns %}
-    {{ column.name }}: NoiseClass::{{ class(column) }},
+    {{ column.name }}: NoiseClass::{{ column.class|fmt("{:?}") }},
 {%- endfor %}
 };
 /// Whether two columns of the diffusion commute: L^j b^k = L^k b^j.

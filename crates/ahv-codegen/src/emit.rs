@@ -7,7 +7,7 @@ use crate::docs::{self, Page, Subject};
 use crate::effect::{self, Effect};
 use crate::format::format_rust;
 use crate::home;
-use crate::ir::{Document, Model, SCHEMA_VERSION};
+use crate::ir::{Document, Model, SCHEMA_VERSION, UnitSystem};
 use crate::manifest::{Manifest, sha256};
 use crate::model::ModelEmitter;
 use crate::parallel;
@@ -30,8 +30,8 @@ pub struct Options {
     pub package: String,
     /// Where `ahv-core` comes from.
     pub core: Core,
-    /// Unit system, `ft-slug-s-rad` or `si`; without one that of the table.
-    pub units: Option<String>,
+    /// Unit system; without one that of the table.
+    pub units: Option<UnitSystem>,
     /// The rules by which expressions are rewritten.
     pub passes: Passes,
 }
@@ -111,7 +111,7 @@ pub fn emit(
             EmitError::Mismatch(format!("there is no IR for table `{}`", table.name))
         })?;
         let mut document = Document::parse(&table.name, text)?;
-        let values = Values::read(table, &mut document, options.units.as_deref())?;
+        let values = Values::read(table, &mut document, options.units)?;
         tree.insert(format!("ir/{}.json", table.name), text.clone());
         read.push((table, document, values));
     }
@@ -134,7 +134,7 @@ pub fn emit(
     let mut jobs = Vec::new();
     for subject in &subjects {
         let home = emit_home(subject, &mut sources)?;
-        tree.extend(docs::emit_table(subject));
+        tree.extend(docs::emit_table(subject)?);
         jobs.extend(subject.document.models.iter().map(|model| Job {
             subject: *subject,
             model,
@@ -149,15 +149,15 @@ pub fn emit(
         effects.push(emitted.effects);
     }
     let models = jobs.iter().map(|job| job.model);
-    tree.extend(docs::emit_passes(models.zip(&effects)));
+    tree.extend(docs::emit_passes(models.zip(&effects))?);
     tree.extend(emit_audit(&subjects, irs)?);
     let audit = tree.contains_key(AUDIT_PAGE).then(audit_page);
     let further: Vec<Page> = audit.into_iter().chain([docs::passes_page()]).collect();
-    tree.extend(docs::emit_index(&subjects, &further));
+    tree.extend(docs::emit_index(&subjects, &further)?);
     let lib = render(&LibTemplate {
         modules: &modules,
         units: units.first().copied().unwrap_or_default(),
-    });
+    })?;
     sources.push(Source {
         path: "src/lib.rs".to_owned(),
         origin: "the tables",
@@ -171,7 +171,7 @@ pub fn emit(
         options,
         version: env!("CARGO_PKG_VERSION"),
     };
-    tree.insert("Cargo.toml".to_owned(), render(&cargo) + "\n");
+    tree.insert("Cargo.toml".to_owned(), render(&cargo)? + "\n");
     let manifest = manifest(tables, irs, &options.passes);
     tree.insert("manifest.json".to_owned(), manifest.render());
     Ok(tree)
@@ -348,7 +348,39 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -
     }
 }
 
-pub(crate) fn render(template: &impl Template) -> String {
-    // A template fails only where a value's Display fails; none of ours does.
-    template.render().unwrap_or_default()
+/// Fills a template in.
+///
+/// # Errors
+/// [`EmitError::Template`] where a value of the template cannot be printed.
+pub(crate) fn render(template: &impl Template) -> Result<String, EmitError> {
+    template
+        .render()
+        .map_err(|error| EmitError::Template(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt;
+
+    use super::*;
+
+    struct Unprintable;
+
+    impl fmt::Display for Unprintable {
+        fn fmt(&self, _: &mut fmt::Formatter<'_>) -> fmt::Result {
+            Err(fmt::Error)
+        }
+    }
+
+    #[derive(Template)]
+    #[template(source = "value {{ value }}", ext = "txt")]
+    struct Failing {
+        value: Unprintable,
+    }
+
+    #[test]
+    fn a_template_that_fails_is_an_error_and_no_empty_file() {
+        let outcome = render(&Failing { value: Unprintable });
+        assert!(matches!(outcome, Err(EmitError::Template(_))));
+    }
 }

@@ -4,7 +4,7 @@ use askama::Template;
 
 use crate::EmitError;
 use crate::emit::render;
-use crate::ir::{Choice, Document, Parameter, Variable, capitalised, status_variant};
+use crate::ir::{Choice, Document, Parameter, Status, Variable, capitalised};
 use crate::values::Values;
 use crate::wording::vector_impl;
 
@@ -43,7 +43,7 @@ struct ProvenanceList {
     set: String,
     constant: String,
     /// Name, source, status and uncertainty.
-    entries: Vec<(String, String, &'static str, String)>,
+    entries: Vec<(String, String, Status, String)>,
     /// Whether the other entries are those of the table.
     rest: bool,
 }
@@ -80,13 +80,13 @@ pub(crate) fn files(
         implementation: vector_impl("Parameters", fields, &document.units)?,
     };
     let mut files = vec![
-        ("parameters", render(&parameters)),
-        ("nominal", render(&nominal(document, values))),
-        ("provenance", render(&provenance(document))),
+        ("parameters", render(&parameters)?),
+        ("nominal", render(&nominal(document, values))?),
+        ("provenance", render(&provenance(document))?),
     ];
     if !document.choices.is_empty() {
         let choices = document.choices.iter().map(choice).collect();
-        files.push(("choices", render(&ChoicesTemplate { choices })));
+        files.push(("choices", render(&ChoicesTemplate { choices })?));
     }
     Ok(files)
 }
@@ -126,7 +126,7 @@ fn nominal<'a>(document: &'a Document, values: &Values) -> NominalTemplate<'a> {
     let sets = document.sets.iter().zip(&values.sets).skip(1);
     let bounds = document.validity.iter().zip(&values.bounds);
     NominalTemplate {
-        system: &document.units.system,
+        system: document.units.system.name(),
         own_set: document.sets.first().map_or("", |set| &set.name),
         values: names
             .zip(values.nominal.iter().map(|&v| number(v)))
@@ -154,7 +154,7 @@ fn provenance(document: &Document) -> ProvenanceTemplate {
         entries: document
             .parameters
             .iter()
-            .map(|p| entry(&p.name, &p.source, &p.status, p.uncertainty))
+            .map(|p| entry(&p.name, &p.source, p.status, p.uncertainty))
             .collect(),
         rest: false,
     }];
@@ -164,7 +164,7 @@ fn provenance(document: &Document) -> ProvenanceTemplate {
             set: set.name.clone(),
             constant: format!("{}_PROVENANCE", constant(&set.name)),
             entries: replaced
-                .map(|p| entry(&p.name, &p.source, &p.status, p.uncertainty))
+                .map(|p| entry(&p.name, &p.source, p.status, p.uncertainty))
                 .collect(),
             rest: true,
         });
@@ -175,16 +175,11 @@ fn provenance(document: &Document) -> ProvenanceTemplate {
 fn entry(
     name: &str,
     source: &str,
-    status: &str,
+    status: Status,
     uncertainty: f64,
-) -> (String, String, &'static str, String) {
+) -> (String, String, Status, String) {
     let quoted = format!("{source:?}");
-    (
-        name.to_owned(),
-        quoted,
-        status_variant(status),
-        format!("{uncertainty:?}"),
-    )
+    (name.to_owned(), quoted, status, format!("{uncertainty:?}"))
 }
 
 fn choice(choice: &Choice) -> ChoiceText {

@@ -2,6 +2,8 @@
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
 
 use crate::EmitError;
 
@@ -46,12 +48,44 @@ pub struct Provenance {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Units {
-    /// `ft-slug-s-rad` or `si`.
-    pub system: String,
+    /// That of the table.
+    pub system: UnitSystem,
     /// The other of the two.
-    pub other: String,
+    pub other: UnitSystem,
     /// Unit and factor in the other system, by the unit in this one.
     pub factors: BTreeMap<String, (String, f64)>,
+}
+
+/// A system of units.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+pub enum UnitSystem {
+    /// Foot, slug, second, radian.
+    #[serde(rename = "ft-slug-s-rad")]
+    FootSlug,
+    /// Metre, kilogram, second, radian.
+    #[serde(rename = "si")]
+    Si,
+}
+
+impl UnitSystem {
+    /// Its name in tables and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FootSlug => "ft-slug-s-rad",
+            Self::Si => "si",
+        }
+    }
+}
+
+impl FromStr for UnitSystem {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let named = [Self::FootSlug, Self::Si]
+            .into_iter()
+            .find(|it| it.name() == name);
+        named.ok_or_else(|| "systems of units: ft-slug-s-rad, si".to_owned())
+    }
 }
 
 /// A choice that a user makes by name, in `[choices]` of a table or when a model is made.
@@ -101,8 +135,8 @@ pub struct Replacement {
     pub path: Vec<String>,
     /// Key of its source.
     pub source: String,
-    /// `published`, `derived`, `unverified` or `assumed`.
-    pub status: String,
+    /// How far its value can be trusted.
+    pub status: Status,
     /// Relative uncertainty.
     pub uncertainty: f64,
 }
@@ -123,10 +157,54 @@ pub struct Parameter {
     pub doc: String,
     /// Key of its source.
     pub source: String,
-    /// `published`, `derived`, `unverified` or `assumed`.
-    pub status: String,
+    /// How far its value can be trusted.
+    pub status: Status,
     /// Relative uncertainty.
     pub uncertainty: f64,
+}
+
+/// How far a value can be trusted, by the names of `ahv_core::Status`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// Printed in the source.
+    Published,
+    /// Computed from published values.
+    Derived,
+    /// Of unknown origin.
+    Unverified,
+    /// Chosen for want of a source.
+    Assumed,
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&format!("{self:?}").to_lowercase())
+    }
+}
+
+/// What the components of a vector, or the rows and columns of a matrix, are.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
+#[serde(rename_all = "lowercase")]
+pub enum Basis {
+    /// Further arguments of a function.
+    Argument,
+    /// Inputs.
+    Input,
+    /// Flexible modes.
+    Mode,
+    /// Wiener processes.
+    Noise,
+    /// Parameters of the table; [`Document::parameters`] holds them.
+    Parameter,
+    /// States.
+    State,
+}
+
+impl fmt::Display for Basis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&format!("{self:?}").to_lowercase())
+    }
 }
 
 /// A named scalar of a basis or of the validity box.
@@ -157,8 +235,8 @@ pub struct Model {
     pub title: String,
     /// Equations of the paper.
     pub equations: String,
-    /// `state`, `input`, and where the model has them `noise` and `mode`.
-    pub bases: BTreeMap<String, Vec<Variable>>,
+    /// States, inputs, and where the model has them Wiener processes, modes and further arguments.
+    pub bases: BTreeMap<Basis, Vec<Variable>>,
     /// Named quantities, each written in earlier names.
     pub quantities: Vec<Quantity>,
     /// Functions to emit.
@@ -184,9 +262,26 @@ pub struct NoiseStructure {
 pub struct NoiseColumn {
     /// The Wiener process.
     pub name: String,
-    /// `constant` (no entry depends on the state), `diagonal` (an entry depends on the state of its own row alone)
-    /// or `general`.
-    pub class: String,
+    /// What its entries depend on.
+    pub class: NoiseClass,
+}
+
+/// What the entries of a column of the diffusion depend on, by the names of `ahv_core::NoiseClass`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum NoiseClass {
+    /// No entry depends on the state.
+    Constant,
+    /// An entry depends on the state of its own row alone.
+    Diagonal,
+    /// Entries depend on states of other rows.
+    General,
+}
+
+impl fmt::Display for NoiseClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&format!("{self:?}").to_lowercase())
+    }
 }
 
 /// A quantity with a name in the field.
@@ -235,7 +330,7 @@ pub struct Output {
     /// Name, empty where the function has one output.
     pub name: String,
     /// Bases of its rows and columns.
-    pub basis: Vec<String>,
+    pub basis: Vec<Basis>,
     /// Unit of a scalar.
     pub unit: Option<String>,
     /// Structurally non-zero entries.
@@ -296,16 +391,6 @@ impl Parameter {
     /// What it is and its unit, as a sentence.
     pub(crate) fn described(&self) -> String {
         described(&self.doc, &self.unit)
-    }
-}
-
-/// The variant of `ahv_core::Status` for a status.
-pub(crate) fn status_variant(status: &str) -> &'static str {
-    match status {
-        "published" => "Published",
-        "derived" => "Derived",
-        "assumed" => "Assumed",
-        _ => "Unverified",
     }
 }
 

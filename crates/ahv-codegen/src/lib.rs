@@ -67,6 +67,9 @@ pub enum EmitError {
     /// The manifest cannot be read.
     #[error("generated/manifest.json cannot be read: {0}")]
     Manifest(String),
+    /// A template cannot be filled in: a fault of the emitter.
+    #[error("internal error: a template cannot be filled in: {0}")]
+    Template(String),
     /// Emitted text is not Rust: a fault of the emitter.
     #[error("internal error: {path} is not valid Rust: {message}")]
     NotRust {

@@ -9,7 +9,7 @@ use crate::dag::{Dag, Id, Kind, Node};
 use crate::decay;
 use crate::emit::render;
 use crate::home;
-use crate::ir::{self, Variable, capitalised, described};
+use crate::ir::{self, Basis, Variable, capitalised, described};
 use crate::items::{FunctionText, Item, scatter};
 use crate::passes::Passes;
 use crate::prepared::Prepared;
@@ -39,19 +39,14 @@ struct ModelTemplate<'a> {
 }
 
 impl ModelTemplate<'_> {
-    /// The class of a column of the diffusion as a variant of `ahv_core::NoiseClass`.
-    fn class(&self, column: &ir::NoiseColumn) -> &'static str {
-        match column.class.as_str() {
-            "constant" => "Constant",
-            "diagonal" => "Diagonal",
-            _ => "General",
-        }
-    }
-
     /// Whether no column of the diffusion depends on the state.
     fn is_additive(&self) -> bool {
         let columns = self.model.noise.as_ref().map(|noise| &noise.columns);
-        columns.is_some_and(|columns| columns.iter().all(|column| column.class == "constant"))
+        columns.is_some_and(|columns| {
+            columns
+                .iter()
+                .all(|column| column.class == ir::NoiseClass::Constant)
+        })
     }
 
     /// Whether every two columns of the diffusion commute.
@@ -182,7 +177,7 @@ impl<'a> ModelEmitter<'a> {
         for &group in &groups {
             files.insert(group.to_owned(), self.functions(group)?);
         }
-        files.insert("prepared".to_owned(), self.prepare());
+        files.insert("prepared".to_owned(), self.prepare()?);
         files.insert("mod".to_owned(), self.module(groups)?);
         Ok(files)
     }
@@ -191,8 +186,8 @@ impl<'a> ModelEmitter<'a> {
         self.model.name.to_uppercase()
     }
 
-    fn basis(&self, name: &str) -> &'a [Variable] {
-        self.model.bases.get(name).map_or(&[], Vec::as_slice)
+    fn basis(&self, basis: Basis) -> &'a [Variable] {
+        self.model.bases.get(&basis).map_or(&[], Vec::as_slice)
     }
 
     fn module(&self, mut groups: Vec<&'a str>) -> Result<String, EmitError> {
@@ -210,13 +205,13 @@ impl<'a> ModelEmitter<'a> {
             Vector {
                 name: "State",
                 doc: "State",
-                fields: self.basis("state"),
+                fields: self.basis(Basis::State),
                 bounds: Some("STATE_BOUNDS"),
             },
             Vector {
                 name: "Input",
                 doc: "Input",
-                fields: self.basis("input"),
+                fields: self.basis(Basis::Input),
                 bounds: Some("INPUT_BOUNDS"),
             },
         ];
@@ -224,7 +219,7 @@ impl<'a> ModelEmitter<'a> {
             vectors.push(Vector {
                 name: "Noise",
                 doc: "One value for each independent Wiener process",
-                fields: self.basis("noise"),
+                fields: self.basis(Basis::Noise),
                 bounds: None,
             });
         }
@@ -233,7 +228,7 @@ impl<'a> ModelEmitter<'a> {
             let fields = vector.fields.iter().map(|v| (&v.name, &v.unit));
             lists.push(vector_impl(vector.name, fields, &self.document.units)?);
         }
-        Ok(render(&ModelTemplate {
+        render(&ModelTemplate {
             model: self.model,
             label: self.label(),
             home: self.home,
@@ -244,7 +239,7 @@ impl<'a> ModelEmitter<'a> {
             groups,
             vectors: vectors.into_iter().zip(lists).collect(),
             coloured: self.coloured(),
-        }))
+        })
     }
 
     /// States that decay by themselves, each with the field that holds its rate.
@@ -255,7 +250,7 @@ impl<'a> ModelEmitter<'a> {
         self.decays.iter().filter_map(field).collect()
     }
 
-    fn prepare(&mut self) -> String {
+    fn prepare(&mut self) -> Result<String, EmitError> {
         let label = self.label();
         let computed: Vec<Id> = self
             .prepared
@@ -361,7 +356,7 @@ impl<'a> ModelEmitter<'a> {
         imports.retain(|name| mentions(name));
         imports.sort_unstable();
         imports.dedup();
-        Ok(render(&FunctionsTemplate {
+        render(&FunctionsTemplate {
             label: self.label(),
             units: self.document.units.in_words(),
             imports,
@@ -373,7 +368,7 @@ impl<'a> ModelEmitter<'a> {
                         .any(|(_, value)| value.contains("::splat("))
             }),
             items,
-        }))
+        })
     }
 
     /// The function itself, or its compressed form.

@@ -1,13 +1,13 @@
 //! The shape of what a function returns: a number, a vector, a matrix, or an array of three indices.
 
 use crate::EmitError;
-use crate::ir::{self, Output, Variable};
+use crate::ir::{self, Basis, Output, Variable};
 use crate::print::literal;
 
-/// A basis with the type of its vectors.
+/// A basis of an output, with the type of its vectors.
 #[derive(Clone, Copy)]
-struct Basis<'a> {
-    name: &'a str,
+struct Axis<'a> {
+    basis: Basis,
     vector: &'static str,
     variables: &'a [Variable],
 }
@@ -15,7 +15,7 @@ struct Basis<'a> {
 /// An output over its bases; none for a number.
 pub(crate) struct Shape<'a> {
     output: &'a Output,
-    bases: Vec<Basis<'a>>,
+    axes: Vec<Axis<'a>>,
 }
 
 /// Zeros that a result needs, by name, each with the vector type that it is a splat of and its component.
@@ -28,35 +28,35 @@ impl<'a> Shape<'a> {
         parameters: &'a [Variable],
         output: &'a Output,
     ) -> Result<Self, EmitError> {
-        let mut bases = Vec::new();
-        for name in &output.basis {
-            let variables = if name == "parameter" {
+        let mut axes = Vec::new();
+        for &basis in &output.basis {
+            let variables = if basis == Basis::Parameter {
                 parameters
             } else {
-                model.bases.get(name).ok_or_else(|| {
-                    EmitError::Mismatch(format!("model `{}` has no basis `{name}`", model.name))
+                model.bases.get(&basis).ok_or_else(|| {
+                    EmitError::Mismatch(format!("model `{}` has no basis `{basis}`", model.name))
                 })?
             };
-            let vector = match name.as_str() {
-                "state" => "State",
-                "input" => "Input",
-                "noise" => "Noise",
-                "parameter" => "Parameters",
-                "mode" => "",
-                _ => return Err(no_form(model, output)),
+            let vector = match basis {
+                Basis::State => "State",
+                Basis::Input => "Input",
+                Basis::Noise => "Noise",
+                Basis::Parameter => "Parameters",
+                Basis::Mode => "",
+                Basis::Argument => return Err(no_form(model, output)),
             };
-            bases.push(Basis {
-                name,
+            axes.push(Axis {
+                basis,
                 vector,
                 variables,
             });
         }
         let known = |at: &[String]| {
-            at.len() == bases.len()
+            at.len() == axes.len()
                 && at
                     .iter()
-                    .zip(&bases)
-                    .all(|(name, basis)| basis.variables.iter().any(|v| v.name == *name))
+                    .zip(&axes)
+                    .all(|(name, axis)| axis.variables.iter().any(|v| v.name == *name))
         };
         if let Some(entry) = output.entries.iter().find(|entry| !known(&entry.at)) {
             return Err(EmitError::Mismatch(format!(
@@ -64,56 +64,56 @@ impl<'a> Shape<'a> {
                 model.name, entry.at
             )));
         }
-        if bases.len() > 1 && bases.iter().any(|basis| basis.vector.is_empty()) {
+        if axes.len() > 1 && axes.iter().any(|axis| axis.vector.is_empty()) {
             return Err(no_form(model, output));
         }
-        Ok(Self { output, bases })
+        Ok(Self { output, axes })
     }
 
     /// What the type of the dense form is called, where it has a name of its own.
     pub(crate) fn alias(&self) -> Option<&'static str> {
-        let names: Vec<&str> = self.bases.iter().map(|basis| basis.name).collect();
-        Some(match names.as_slice() {
-            ["state", "state"] => "StateJacobian",
-            ["state", "input"] => "InputJacobian",
-            ["state", "parameter"] => "ParameterJacobian",
-            ["state", "noise"] => "Diffusion",
-            ["state", "state", "state"] => "Hessian",
-            ["state", "noise", "noise"] => "NoiseDerivatives",
+        let bases: Vec<Basis> = self.axes.iter().map(|axis| axis.basis).collect();
+        Some(match bases.as_slice() {
+            [Basis::State, Basis::State] => "StateJacobian",
+            [Basis::State, Basis::Input] => "InputJacobian",
+            [Basis::State, Basis::Parameter] => "ParameterJacobian",
+            [Basis::State, Basis::Noise] => "Diffusion",
+            [Basis::State, Basis::State, Basis::State] => "Hessian",
+            [Basis::State, Basis::Noise, Basis::Noise] => "NoiseDerivatives",
             _ => return None,
         })
     }
 
     /// The type of the dense form.
     pub(crate) fn result(&self) -> String {
-        match (self.alias(), self.bases.as_slice()) {
+        match (self.alias(), self.axes.as_slice()) {
             (Some(alias), _) => format!("{alias}<R>"),
-            (None, [basis]) if basis.vector.is_empty() => format!("[R; {}]", basis.variables.len()),
+            (None, [axis]) if axis.vector.is_empty() => format!("[R; {}]", axis.variables.len()),
             (None, _) => self.nested(0),
         }
     }
 
     fn nested(&self, depth: usize) -> String {
-        match self.bases.get(depth) {
+        match self.axes.get(depth) {
             None => "R".to_owned(),
-            Some(basis) => format!("{}<{}>", basis.vector, self.nested(depth + 1)),
+            Some(axis) => format!("{}<{}>", axis.vector, self.nested(depth + 1)),
         }
     }
 
     /// Types that the dense form is written in, besides its alias.
     pub(crate) fn vectors(&self) -> impl Iterator<Item = &'static str> {
-        self.bases
+        self.axes
             .iter()
-            .map(|basis| basis.vector)
+            .map(|axis| axis.vector)
             .filter(|vector| !vector.is_empty())
     }
 
     /// The dense form as an expression of its entries' values, which stand in the order of the entries.
     pub(crate) fn dense(&self, values: &[String], zeros: &mut Zeros) -> String {
-        if let [basis] = self.bases.as_slice()
-            && basis.vector.is_empty()
+        if let [axis] = self.axes.as_slice()
+            && axis.vector.is_empty()
         {
-            let entries = basis
+            let entries = axis
                 .variables
                 .iter()
                 .map(|v| self.value(&[&v.name], values));
@@ -126,12 +126,12 @@ impl<'a> Shape<'a> {
 
     /// The part of the dense form below some leading indices; `None` where all of it is zero.
     fn level(&self, at: &[&str], values: &[String], zeros: &mut Zeros) -> Option<String> {
-        let Some(basis) = self.bases.get(at.len()) else {
+        let Some(axis) = self.axes.get(at.len()) else {
             return self.value(at, values);
         };
-        let is_last = at.len() + 1 == self.bases.len();
+        let is_last = at.len() + 1 == self.axes.len();
         let (mut fields, mut any_zero, mut any_value) = (Vec::new(), false, false);
-        for variable in basis.variables {
+        for variable in axis.variables {
             let inner = [at, &[variable.name.as_str()]].concat();
             match self.level(&inner, values, zeros) {
                 Some(value) => {
@@ -139,31 +139,32 @@ impl<'a> Shape<'a> {
                     fields.push(field(&variable.name, value));
                 }
                 // A vector lists its zeros, a matrix has them from a vector of zeros.
-                None if is_last && self.bases.len() == 1 => {
+                None if is_last && self.axes.len() == 1 => {
                     fields.push(field(&variable.name, literal(0.0)));
                 }
                 None => any_zero = true,
             }
         }
-        if !any_value && self.bases.len() > 1 {
+        if !any_value && self.axes.len() > 1 {
             return None;
         }
         if any_zero {
             fields.push(format!("..{}", self.zero(at.len(), zeros)));
         }
-        Some(format!("{} {{ {} }}", basis.vector, fields.join(", ")))
+        Some(format!("{} {{ {} }}", axis.vector, fields.join(", ")))
     }
 
     /// The name of the zero of this depth, noted among the zeros that are needed.
     fn zero(&self, depth: usize, zeros: &mut Zeros) -> String {
-        let Some(basis) = self.bases.get(depth) else {
+        let Some(axis) = self.axes.get(depth) else {
             return literal(0.0);
         };
         let component = self.zero(depth + 1, zeros);
-        let names: Vec<&str> = self.bases[depth..].iter().map(|basis| basis.name).collect();
+        let bases = self.axes[depth..].iter().map(|axis| axis.basis.to_string());
+        let names: Vec<String> = bases.collect();
         let name = format!("no_{}", names.join("_"));
         if !zeros.iter().any(|(known, ..)| *known == name) {
-            zeros.push((name.clone(), basis.vector, component));
+            zeros.push((name.clone(), axis.vector, component));
         }
         name
     }
@@ -187,7 +188,8 @@ impl<'a> Shape<'a> {
     /// The name of the function from the compressed to the dense form, where there is one. A literal is several times
     /// as quick as a walk along the pattern; but where every new coefficient is a new entry, it would be rewritten each time.
     pub(crate) fn scatter(&self) -> Option<String> {
-        let is_small = self.bases.len() == 2 && self.bases.iter().all(|b| b.name != "parameter");
+        let is_small =
+            self.axes.len() == 2 && self.axes.iter().all(|b| b.basis != Basis::Parameter);
         is_small.then(|| Some(format!("dense_{}", words(self.alias()?))))?
     }
 
@@ -210,18 +212,18 @@ impl<'a> Shape<'a> {
         let alias = self.alias()?;
         let name = words(alias).to_uppercase();
         let entries = self.output.entries.iter().map(|entry| {
-            let indices = entry.at.iter().zip(&self.bases);
-            let indices = indices.map(|(name, basis)| format!("{}.{name}", basis.vector));
+            let indices = entry.at.iter().zip(&self.axes);
+            let indices = indices.map(|(name, axis)| format!("{}.{name}", axis.vector));
             format!("ahv_core::at!({})", indices.collect::<Vec<_>>().join(", "))
         });
         let shape = self
-            .bases
+            .axes
             .iter()
-            .map(|basis| format!("{}::<u8>::LEN", basis.vector));
+            .map(|axis| format!("{}::<u8>::LEN", axis.vector));
         Some(PatternText {
             name: format!("{name}_PATTERN"),
             alias,
-            dimensions: self.bases.len(),
+            dimensions: self.axes.len(),
             shape: shape.collect::<Vec<_>>().join(", "),
             entries: entries.collect(),
         })

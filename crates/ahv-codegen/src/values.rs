@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use crate::ir::{Document, Parameter, Units, Variable};
+use crate::ir::{Document, Parameter, UnitSystem, Units, Variable};
 use crate::{EmitError, Table};
 
 /// Section of the parameters that a choice sets.
@@ -23,7 +23,7 @@ impl Values {
     pub(crate) fn read(
         table: &Table,
         document: &mut Document,
-        system: Option<&str>,
+        system: Option<UnitSystem>,
     ) -> Result<Self, EmitError> {
         let mut found = Self {
             nominal: Vec::new(),
@@ -52,8 +52,8 @@ impl Values {
 
     fn convert(&mut self, document: &mut Document) -> Result<(), EmitError> {
         let units = Units {
-            system: document.units.other.clone(),
-            other: document.units.system.clone(),
+            system: document.units.other,
+            other: document.units.system,
             factors: BTreeMap::new(),
         };
         let from = std::mem::replace(&mut document.units, units);
@@ -104,7 +104,7 @@ impl Units {
         let found = self.factors.get(unit).ok_or_else(|| {
             EmitError::Mismatch(format!(
                 "the IR does not say what the unit `{unit}` is in the system `{}`; derive it again",
-                self.other
+                self.other.name()
             ))
         })?;
         Ok((&found.0, found.1))
@@ -112,7 +112,7 @@ impl Units {
 
     /// A unit in the International System, and the factor for its values.
     pub(crate) fn si<'a>(&'a self, unit: &'a str) -> Result<(&'a str, f64), EmitError> {
-        if self.system == "si" {
+        if self.system == UnitSystem::Si {
             Ok((unit, 1.0))
         } else {
             self.other_unit(unit)
@@ -121,7 +121,7 @@ impl Units {
 
     /// The base units in words.
     pub(crate) fn in_words(&self) -> &'static str {
-        if self.system == "si" {
+        if self.system == UnitSystem::Si {
             "metre, kilogram, second and radian"
         } else {
             "foot, slug, second and radian"

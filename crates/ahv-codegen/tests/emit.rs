@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{Manifest, Options, Part, Pass, Passes, Table, Tree, emit};
 
 fn root() -> PathBuf {
@@ -156,12 +157,12 @@ fn first_difference(ours: &str, theirs: &str) -> String {
 
 #[test]
 fn si_is_another_package_in_numbers_and_units_alone() {
-    let options = |units: &str| Options {
-        units: Some(units.to_owned()),
+    let options = |units: UnitSystem| Options {
+        units: Some(units),
         ..Options::default()
     };
     let plain = emit(&TABLES.map(table), &irs(), &Options::default()).unwrap();
-    let same = emit(&TABLES.map(table), &irs(), &options("ft-slug-s-rad")).unwrap();
+    let same = emit(&TABLES.map(table), &irs(), &options(UnitSystem::FootSlug)).unwrap();
     for (path, text) in &plain {
         assert!(
             *text == same[path],
@@ -169,7 +170,7 @@ fn si_is_another_package_in_numbers_and_units_alone() {
             first_difference(text, &same[path])
         );
     }
-    let si = emit(&TABLES.map(table), &irs(), &options("si")).unwrap();
+    let si = emit(&TABLES.map(table), &irs(), &options(UnitSystem::Si)).unwrap();
     assert!(plain.keys().eq(si.keys()));
     // Without comments, the functions are the same: a unit of length does not change an equation.
     let code = |text: &str| -> Vec<String> {
@@ -225,7 +226,7 @@ fn tables_in_two_unit_systems_need_a_choice() {
         error.contains("different unit systems") && error.contains("--units"),
         "{error}"
     );
-    let units = Some("si".to_owned());
+    let units = Some(UnitSystem::Si);
     let options = Options {
         units,
         ..Options::default()
@@ -352,7 +353,26 @@ fn the_hash_is_that_of_the_values() {
 #[test]
 fn an_ir_that_was_edited_badly_is_refused() {
     let edits = [
-        ("\"input\": [\n", "\"inputs\": [\n", "has no basis `input`"),
+        (
+            "\"input\": [\n",
+            "\"inputs\": [\n",
+            "unknown variant `inputs`",
+        ),
+        (
+            "\"class\": \"constant\"",
+            "\"class\": \"konstant\"",
+            "unknown variant `konstant`",
+        ),
+        (
+            "\"status\": \"derived\"",
+            "\"status\": \"guessed\"",
+            "unknown variant `guessed`",
+        ),
+        (
+            "\"system\": \"ft-slug-s-rad\"",
+            "\"system\": \"cgs\"",
+            "unknown variant `cgs`",
+        ),
         (
             "{\"at\": [\"velocity\", \"phi\"]",
             "{\"at\": [\"velocity\", \"phy\"]",
@@ -366,10 +386,10 @@ fn an_ir_that_was_edited_badly_is_refused() {
     ];
     for (from, to, message) in edits {
         let mut irs = irs();
-        let text = irs.get_mut("com").unwrap();
+        let text = irs.get_mut("dcom").unwrap();
         assert!(text.contains(from), "no {from}");
         *text = text.replacen(from, to, 1);
-        let error = emit(&[table("com")], &irs, &Options::default())
+        let error = emit(&[table("dcom")], &irs, &Options::default())
             .unwrap_err()
             .to_string();
         assert!(error.contains(message), "{error}");

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{Core, Pass};
 
 use crate::project::Project;
@@ -43,8 +44,8 @@ pub struct Args {
     pub core_workspace: bool,
 
     /// Unit system of the models: ft-slug-s-rad or si [default: that of the tables]
-    #[arg(long, value_name = "SYSTEM", value_parser = ["ft-slug-s-rad", "si"])]
-    pub units: Option<String>,
+    #[arg(long, value_name = "SYSTEM")]
+    pub units: Option<UnitSystem>,
 
     /// Leave a pass of the emitter out, to see what it does; may be repeated. Such a tree fails --check
     #[arg(long, value_name = "NAME", conflicts_with = "check")]
@@ -86,8 +87,8 @@ impl Args {
         if self.package != PACKAGE {
             flag("--package", &self.package);
         }
-        if let Some(units) = &self.units {
-            flag("--units", units);
+        if let Some(units) = self.units {
+            flag("--units", units.name());
         }
         if self.core_workspace {
             command.push_str(" --core-workspace");

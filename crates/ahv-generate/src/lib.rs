@@ -145,7 +145,7 @@ fn emit(args: &Args, tables: &Tables, irs: &BTreeMap<String, String>) -> Result<
     let options = Options {
         package: args.package.clone(),
         core: args.core(),
-        units: args.units.clone(),
+        units: args.units,
         passes: Passes::without(&args.without_pass),
     };
     ahv_codegen::emit(&tables.parsed, irs, &options)

@@ -217,7 +217,7 @@ pub(crate) fn audit(text: &str) -> Result<String, EmitError> {
             audit.schema_version
         )));
     }
-    Ok(tidy(&render(&page(&audit))))
+    Ok(tidy(&render(&page(&audit))?))
 }
 
 fn page(audit: &Audit) -> AuditPage<'_> {

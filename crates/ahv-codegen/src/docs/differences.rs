@@ -7,7 +7,7 @@ use super::search::{largest, moving};
 use super::subject::{Subject, inline_math, readable, unit_text};
 use crate::EmitError;
 use crate::evaluate::Tape;
-use crate::ir::{ChoiceOption, Expr, Function, Model, Variable};
+use crate::ir::{Basis, ChoiceOption, Expr, Function, Model, Variable};
 
 /// The model whose rows the differences are measured against.
 const EXACT: &str = "sdcom";
@@ -226,9 +226,9 @@ fn variable<'a>(
     leaf: &str,
 ) -> Result<Known<'a>, EmitError> {
     let name = leaf.split_once('.').map_or(leaf, |(_, name)| name);
-    let bases = ["state", "input"]
+    let bases = [Basis::State, Basis::Input]
         .iter()
-        .filter_map(|basis| model.bases.get(*basis));
+        .filter_map(|basis| model.bases.get(basis));
     let mut variables = bases.flatten().enumerate();
     let found = variables.find(|(_, variable)| variable.name == name);
     let known = found.and_then(|(order, variable)| {

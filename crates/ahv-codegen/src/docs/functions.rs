@@ -7,7 +7,7 @@ use super::lines::equation;
 use super::subject::{cell, unit_text};
 use super::tree::Tex;
 use super::typeset::signed;
-use crate::ir::{Document, Expr, Function, Model, Output};
+use crate::ir::{Basis, Document, Expr, Function, Model, Output};
 
 /// Operation counts of a model by function, such as `71 operations: 30 additions, …`.
 pub(crate) type Costs = BTreeMap<String, String>;
@@ -56,10 +56,10 @@ pub(super) fn list(model: &Model, document: &Document, costs: &Costs) -> Vec<Fun
 }
 
 /// How many members a basis has.
-pub(super) fn size(model: &Model, document: &Document, basis: &str) -> usize {
+pub(super) fn size(model: &Model, document: &Document, basis: Basis) -> usize {
     model
         .bases
-        .get(basis)
+        .get(&basis)
         .map_or(document.parameters.len(), Vec::len)
 }
 
@@ -70,7 +70,7 @@ fn shape(model: &Model, document: &Document, output: &Output) -> String {
     let sizes: Vec<String> = output
         .basis
         .iter()
-        .map(|basis| format!("{} {basis}", size(model, document, basis)))
+        .map(|basis| format!("{} {basis}", size(model, document, *basis)))
         .collect();
     sizes.join(" × ")
 }
@@ -82,7 +82,7 @@ fn entries(model: &Model, document: &Document, output: &Output) -> String {
     let all: usize = output
         .basis
         .iter()
-        .map(|basis| size(model, document, basis))
+        .map(|basis| size(model, document, *basis))
         .product();
     if output.symmetric {
         let mirrored = output.entries.iter().filter(|entry| {
@@ -145,7 +145,7 @@ pub(super) fn formulas(printer: &Printer<'_>, function: &Function) -> Option<Vec
             let at: Vec<String> = entry.at.iter().map(|name| printer.variable(name)).collect();
             match output.basis.as_slice() {
                 [] => {}
-                [basis] if basis == "mode" => left = format!("{left}^{{{}}}", at.join(" ")),
+                [Basis::Mode] => left = format!("{left}^{{{}}}", at.join(" ")),
                 _ => left = format!("{left}_{{{}}}", at.join(",")),
             }
             let right = right_side(printer, &entry.expr, LONGEST_FORMULA)?;

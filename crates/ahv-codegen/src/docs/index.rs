@@ -3,7 +3,9 @@
 use askama::Template;
 
 use super::subject::Subject;
+use crate::EmitError;
 use crate::emit::render;
+use crate::ir::Basis;
 
 #[derive(Template)]
 #[template(path = "docs/index.md")]
@@ -44,7 +46,7 @@ struct ModelRow<'a> {
 }
 
 /// The index of the documentation of all tables.
-pub(super) fn page(subjects: &[Subject<'_>], further: &[Page]) -> String {
+pub(super) fn page(subjects: &[Subject<'_>], further: &[Page]) -> Result<String, EmitError> {
     let tables = subjects.iter().map(|subject| {
         let document = subject.document;
         let names: Vec<String> = document
@@ -62,7 +64,7 @@ pub(super) fn page(subjects: &[Subject<'_>], further: &[Page]) -> String {
         TableRow {
             name: &subject.table.name,
             file_name: &subject.table.file_name,
-            units: &document.units.system,
+            units: document.units.system.name(),
             models: names.join(", "),
             choices: choices.collect::<Vec<_>>().join(", "),
             sets: sets.join(", "),
@@ -70,14 +72,14 @@ pub(super) fn page(subjects: &[Subject<'_>], further: &[Page]) -> String {
     });
     let models = subjects.iter().flat_map(|subject| {
         subject.document.models.iter().map(|model| {
-            let size = |basis: &str| model.bases.get(basis).map_or(0, Vec::len);
+            let size = |basis| model.bases.get(&basis).map_or(0, Vec::len);
             ModelRow {
                 name: &model.name,
                 title: &model.title,
                 equations: &model.equations,
-                states: size("state"),
-                inputs: size("input"),
-                noises: size("noise"),
+                states: size(Basis::State),
+                inputs: size(Basis::Input),
+                noises: size(Basis::Noise),
                 functions: model.functions.len(),
                 table: &subject.table.name,
             }

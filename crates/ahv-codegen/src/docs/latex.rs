@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::symbol;
 use super::tree::{Tex, negated, power, product, sum};
-use crate::ir::{Document, Expr, Model, Quantity};
+use crate::ir::{Basis, Document, Expr, Model, Quantity};
 
 /// Nodes of an expression that is written out; a longer one is not for a reader.
 const LONGEST: usize = 3000;
@@ -56,11 +56,12 @@ impl<'a> Printer<'a> {
         let mut leaves = HashMap::new();
         let mut variables = HashMap::new();
         for (basis, members) in &model.bases {
-            let prefix = match basis.as_str() {
-                "state" => "x",
-                "input" => "u",
-                "noise" => "w",
-                _ => "t",
+            let prefix = match basis {
+                Basis::State => "x",
+                Basis::Input => "u",
+                Basis::Noise => "w",
+                Basis::Parameter => "p",
+                Basis::Argument | Basis::Mode => "t",
             };
             for variable in members {
                 leaves.insert(

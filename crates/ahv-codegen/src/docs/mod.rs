@@ -40,10 +40,13 @@ pub(crate) const TEMPLATES: [&str; 5] = [
 ];
 
 /// The page of a table, by its path in the generated package.
-pub(crate) fn emit_table(subject: &Subject<'_>) -> Tree {
-    let page = table_page::page(subject);
+///
+/// # Errors
+/// [`EmitError::Template`]
+pub(crate) fn emit_table(subject: &Subject<'_>) -> Result<Tree, EmitError> {
+    let page = table_page::page(subject)?;
     let path = format!("docs/{}-table.md", subject.table.name);
-    Tree::from([(path, tidy(&page))])
+    Ok(Tree::from([(path, tidy(&page))]))
 }
 
 /// The page and the picture of a model, by their path in the generated package.
@@ -64,15 +67,26 @@ pub(crate) fn emit_model(
 }
 
 /// The page of the passes, by its path in the generated package.
-pub(crate) fn emit_passes<'a>(models: impl Iterator<Item = (&'a Model, &'a Vec<Effect>)>) -> Tree {
-    let page = passes_page::page(models);
-    Tree::from([(format!("docs/{}", passes_page::PATH), tidy(&page))])
+///
+/// # Errors
+/// [`EmitError::Template`]
+pub(crate) fn emit_passes<'a>(
+    models: impl Iterator<Item = (&'a Model, &'a Vec<Effect>)>,
+) -> Result<Tree, EmitError> {
+    let page = passes_page::page(models)?;
+    Ok(Tree::from([(
+        format!("docs/{}", passes_page::PATH),
+        tidy(&page),
+    )]))
 }
 
 /// The first page, `docs/README.md`; `further` are pages that stand beside those of [`emit_table`].
-pub(crate) fn emit_index(subjects: &[Subject<'_>], further: &[Page]) -> Tree {
-    let page = index::page(subjects, further);
-    Tree::from([("docs/README.md".to_owned(), tidy(&page))])
+///
+/// # Errors
+/// [`EmitError::Template`]
+pub(crate) fn emit_index(subjects: &[Subject<'_>], further: &[Page]) -> Result<Tree, EmitError> {
+    let page = index::page(subjects, further)?;
+    Ok(Tree::from([("docs/README.md".to_owned(), tidy(&page))]))
 }
 
 /// Markdown without blanks at the ends of lines, or more than one empty line in a row.

@@ -10,7 +10,7 @@ use super::noise::{self, Noise};
 use super::subject::{Subject, cell, inline_math, plain_number, readable, unit_text};
 use crate::EmitError;
 use crate::emit::render;
-use crate::ir::{Function, Model};
+use crate::ir::{self, Function, Model};
 
 /// Groups of functions that are printed as formulas.
 const AS_FORMULAS: [&str; 3] = ["strict_feedback", "moments", "responses"];
@@ -57,10 +57,10 @@ pub(super) fn page(
     let document = subject.document;
     let printer = Printer::new(model, document);
     let (feedback, others) = formulas(&printer);
-    Ok(render(&ModelPage {
+    render(&ModelPage {
         file_name: &subject.table.file_name,
         table: &subject.table.name,
-        units: &document.units.system,
+        units: document.units.system.name(),
         model,
         bases: bases(subject, model),
         drift: equations::drift(&printer),
@@ -70,18 +70,18 @@ pub(super) fn page(
         differences: differences::of(subject, model)?,
         noise: noise::of(&printer),
         functions: functions::list(model, document, costs),
-    }))
+    })
 }
 
 fn bases(subject: &Subject<'_>, model: &Model) -> Vec<Basis> {
     let mut found = Vec::new();
     for (basis, title) in [
-        ("state", "States"),
-        ("input", "Inputs"),
-        ("noise", "Wiener processes"),
-        ("argument", "Other arguments"),
+        (ir::Basis::State, "States"),
+        (ir::Basis::Input, "Inputs"),
+        (ir::Basis::Noise, "Wiener processes"),
+        (ir::Basis::Argument, "Other arguments"),
     ] {
-        let variables = model.bases.get(basis);
+        let variables = model.bases.get(&basis);
         let Some(variables) = variables.filter(|variables| !variables.is_empty()) else {
             continue;
         };

@@ -5,7 +5,7 @@ use super::latex::{Printer, Style};
 use super::lines::equation;
 use super::subject::inline_math;
 use super::typeset::signed;
-use crate::ir::{Entry, Function, NoiseStructure};
+use crate::ir::{Entry, Function, NoiseClass, NoiseStructure};
 
 /// Formulas longer than this are named and counted.
 const LONGEST_FORMULA: usize = 160;
@@ -90,11 +90,11 @@ fn columns(
         Column {
             symbol: inline_math(&printer.variable(&column.name)),
             name: column.name.clone(),
-            class: column.class.clone(),
-            meaning: match column.class.as_str() {
-                "constant" => "no entry depends on the state",
-                "diagonal" => "an entry depends on the state of its own row alone",
-                _ => "entries depend on states of other rows",
+            class: column.class.to_string(),
+            meaning: match column.class {
+                NoiseClass::Constant => "no entry depends on the state",
+                NoiseClass::Diagonal => "an entry depends on the state of its own row alone",
+                NoiseClass::General => "entries depend on states of other rows",
             },
             rows: rows.join(" "),
         }

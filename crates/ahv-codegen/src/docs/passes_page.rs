@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use askama::Template;
 
 use super::index::Page;
+use crate::EmitError;
 use crate::effect::Effect;
 use crate::emit::render;
 use crate::ir::Model;
@@ -31,7 +32,9 @@ pub(crate) fn passes_page() -> Page {
 }
 
 /// The page of the passes for these models.
-pub(super) fn page<'a>(models: impl Iterator<Item = (&'a Model, &'a Vec<Effect>)>) -> String {
+pub(super) fn page<'a>(
+    models: impl Iterator<Item = (&'a Model, &'a Vec<Effect>)>,
+) -> Result<String, EmitError> {
     render(&PassesPage {
         passes: Pass::ALL,
         models: models.collect(),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::subject::is_fit;
 use super::symbol::{Run, runs};
-use crate::ir::{Document, Expr, Model, Output};
+use crate::ir::{Basis, Document, Expr, Model, Output};
 
 /// Side of a cell, in pixels.
 const CELL: usize = 24;
@@ -46,13 +46,13 @@ struct Panel {
 
 /// The picture of a model.
 pub(super) fn picture(model: &Model, document: &Document) -> String {
-    let rows = labels(model, "state");
+    let rows = labels(model, Basis::State);
     let varying = varying_quantities(model);
     let mut first = Vec::new();
     for (function, columns, title) in [
-        ("jacobians", "state", "\\partial f/\\partial x"),
-        ("jacobians", "input", "\\partial f/\\partial u"),
-        ("diffusion", "noise", "G"),
+        ("jacobians", Basis::State, "\\partial f/\\partial x"),
+        ("jacobians", Basis::Input, "\\partial f/\\partial u"),
+        ("diffusion", Basis::Noise, "G"),
     ] {
         if let Some(output) = find(model, function, columns) {
             first.push(Panel {
@@ -63,22 +63,22 @@ pub(super) fn picture(model: &Model, document: &Document) -> String {
             });
         }
     }
-    let by_parameter = find(model, "parameter_jacobian", "parameter");
+    let by_parameter = find(model, "parameter_jacobian", Basis::Parameter);
     let second = by_parameter.map(|output| grouped(model, document, output, &varying));
     draw(&model.name, &rows, &first, second.as_ref())
 }
 
 /// An output over states and another basis.
-fn find<'a>(model: &'a Model, function: &str, columns: &str) -> Option<&'a Output> {
+fn find<'a>(model: &'a Model, function: &str, columns: Basis) -> Option<&'a Output> {
     let function = model.functions.iter().find(|f| f.name == function)?;
     function
         .outputs
         .iter()
-        .find(|output| output.basis == ["state", columns])
+        .find(|output| output.basis == [Basis::State, columns])
 }
 
-fn labels(model: &Model, basis: &str) -> Vec<Vec<Run>> {
-    let members = model.bases.get(basis).map_or(&[] as &[_], Vec::as_slice);
+fn labels(model: &Model, basis: Basis) -> Vec<Vec<Run>> {
+    let members = model.bases.get(&basis).map_or(&[] as &[_], Vec::as_slice);
     let label = |symbol: &str, name: &str| {
         if symbol.is_empty() {
             words(name)
@@ -125,10 +125,10 @@ fn depends(expr: &Expr, varying: &BTreeSet<&str>) -> bool {
 fn cells(
     model: &Model,
     output: &Output,
-    columns: &str,
+    columns: Basis,
     varying: &BTreeSet<&str>,
 ) -> Vec<Vec<Cell>> {
-    let names = |basis: &str| model.bases.get(basis).map_or(&[] as &[_], Vec::as_slice);
+    let names = |basis| model.bases.get(&basis).map_or(&[] as &[_], Vec::as_slice);
     let cell = |row: &str, column: &str| {
         let entry = output
             .entries
@@ -142,7 +142,7 @@ fn cells(
             }
         })
     };
-    names("state")
+    names(Basis::State)
         .iter()
         .map(|row| {
             names(columns)
@@ -164,7 +164,10 @@ fn grouped(model: &Model, document: &Document, output: &Output, varying: &BTreeS
         }
         section_of.insert(parameter.name.as_str(), section);
     }
-    let states = model.bases.get("state").map_or(&[] as &[_], Vec::as_slice);
+    let states = model
+        .bases
+        .get(&Basis::State)
+        .map_or(&[] as &[_], Vec::as_slice);
     let cell = |row: &str, section: &str| {
         let mut count = 0;
         let mut changes = false;

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use super::subject::{
     CHOICES, Subject, cell, inline_math, is_fit, plain_number, readable, unit_text,
 };
+use crate::EmitError;
 use crate::emit::render;
 use crate::ir::{Parameter, ParameterSet};
 
@@ -72,7 +73,7 @@ struct BoundsRow {
 }
 
 /// The page of a table.
-pub(super) fn page(subject: &Subject<'_>) -> String {
+pub(super) fn page(subject: &Subject<'_>) -> Result<String, EmitError> {
     let document = subject.document;
     let bases = document
         .models
@@ -89,8 +90,8 @@ pub(super) fn page(subject: &Subject<'_>) -> String {
     render(&TablePage {
         file_name: &subject.table.file_name,
         name: &subject.table.name,
-        units: &document.units.system,
-        other_units: &document.units.other,
+        units: document.units.system.name(),
+        other_units: document.units.other.name(),
         factors: factors
             .filter(|(unit, (other, _))| *unit != other && used.contains(unit.as_str()))
             .map(|(unit, (other, factor))| [unit.clone(), other.clone(), plain_number(*factor)])
@@ -185,7 +186,7 @@ fn row(subject: &Subject<'_>, parameter: &Parameter, sets: &[&str]) -> Row {
             .map(|name| value(name).unwrap_or_default())
             .collect(),
         unit: unit_text(&parameter.unit).to_owned(),
-        status: parameter.status.clone(),
+        status: parameter.status.to_string(),
         uncertainty: percent(parameter.uncertainty),
         source: parameter.source.clone(),
     }

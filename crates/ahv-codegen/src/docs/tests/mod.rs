@@ -4,7 +4,7 @@ mod formulas;
 mod pages;
 
 use crate::Table;
-use crate::ir::Document;
+use crate::ir::{Document, UnitSystem};
 use crate::values::Values;
 
 /// The table of a model with two states, an input and a curve fit.
@@ -84,7 +84,7 @@ fn document() -> Document {
 }
 
 /// Table, IR and numbers, in the units of the table or in others.
-fn read(text: &str, system: Option<&str>) -> (Table, Document, Values) {
+fn read(text: &str, system: Option<UnitSystem>) -> (Table, Document, Values) {
     let (table, mut document) = (
         Table::parse("small.toml", text).expect("a table"),
         document(),

@@ -6,9 +6,9 @@ use super::super::{Costs, Page, Subject, emit_index, emit_model, emit_table};
 use super::{TABLE, document, read};
 use crate::Tree;
 use crate::evaluate::Tape;
-use crate::ir::Expr;
+use crate::ir::{Expr, UnitSystem};
 
-fn pages(text: &str, system: Option<&str>) -> Tree {
+fn pages(text: &str, system: Option<UnitSystem>) -> Tree {
     let (table, document, values) = read(text, system);
     let costs = Costs::from([("drift".to_owned(), "7 operations".to_owned())]);
     let subject = Subject {
@@ -16,7 +16,7 @@ fn pages(text: &str, system: Option<&str>) -> Tree {
         document: &document,
         values: &values,
     };
-    let mut tree = emit_table(&subject);
+    let mut tree = emit_table(&subject).expect("a page");
     tree.extend(emit_model(&subject, &document.models[0], &costs).expect("pages"));
     tree
 }
@@ -143,7 +143,8 @@ fn the_index_lists_models_tables_and_further_pages() {
             values: &values,
         }],
         &further,
-    );
+    )
+    .expect("a page");
     let page = &tree["docs/README.md"];
     for part in [
         "| [small](small.md) | a small model | (1)-(2) | 2 | 1 | 2 | 5 | [small](small-table.md) |",
@@ -156,7 +157,7 @@ fn the_index_lists_models_tables_and_further_pages() {
 
 #[test]
 fn other_units_reach_every_page() {
-    let tree = pages(TABLE, Some("si"));
+    let tree = pages(TABLE, Some(UnitSystem::Si));
     for (path, part) in [
         (
             "docs/small.md",
