@@ -172,7 +172,14 @@ pub fn emit(
         version: env!("CARGO_PKG_VERSION"),
     };
     tree.insert("Cargo.toml".to_owned(), render(&cargo) + "\n");
-    let manifest = manifest(tables, irs, &options.passes);
+    let mut manifest = manifest(tables, irs, &options.passes);
+    // The IRs are listed already.
+    let files = tree
+        .iter()
+        .filter(|(path, _)| manifest.written(path).is_none());
+    manifest.files = files
+        .map(|(path, text)| (path.clone(), sha256(text)))
+        .collect();
     tree.insert("manifest.json".to_owned(), manifest.render());
     Ok(tree)
 }
@@ -345,6 +352,7 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -
             .collect(),
         templates: sha256(&templates.concat()),
         without_passes: passes.left_out().map(|p| p.name().to_owned()).collect(),
+        files: BTreeMap::new(),
     }
 }
 

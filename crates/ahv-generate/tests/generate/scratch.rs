@@ -54,7 +54,7 @@ impl Scratch {
     pub(crate) fn interpreter(&self, version: &str, missing: &str, derive: &str) -> OsString {
         let path = self.folder.path().join("python");
         let probe =
-            format!("if [ \"$1\" = -c ]; then echo '{version}'; echo '{missing}'; exit; fi");
+            format!("if [ \"$2\" = -c ]; then echo '{version}'; echo '{missing}'; exit; fi");
         fs::write(&path, format!("#!/bin/sh\n{probe}\n{derive}\n")).expect("written");
         fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("executable");
         path.into()
@@ -86,7 +86,7 @@ impl Scratch {
         Surroundings {
             current_dir: self.path(""),
             python: Some(self.python.clone()),
-            cache: self.folder.path().join("cache"),
+            cache: Some(self.folder.path().join("cache")),
         }
     }
 
