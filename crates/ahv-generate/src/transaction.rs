@@ -131,8 +131,8 @@ impl Step {
         let failed = old.persist(&self.target).err()?;
         let what = if self.removes { "removed" } else { "new" };
         let kept = match failed.file.keep() {
-            Ok((_, path)) => format!("its old text is in {}", path.display()),
-            Err(error) => error.to_string(),
+            Ok((_, path)) if path.exists() => format!("its old text is in {}", path.display()),
+            _ => "its old text is lost".to_owned(),
         };
         Some(format!("{target} is {what} ({}), {kept}", failed.error))
     }
@@ -194,5 +194,122 @@ impl NewFolders {
         }
         self.0.push(folder.to_owned());
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NewFolders, Step, Transaction, copy, temporary};
+    use std::fs;
+    use std::io::Write as _;
+    use std::path::{Path, PathBuf};
+
+    /// A change of three files of which the last is refused: a folder with something in it stands there.
+    fn refused(folder: &Path) -> Transaction {
+        let mut steps = Vec::new();
+        for (name, old, new) in [
+            ("a", Some("old a"), Some("new a")),
+            ("b", None, Some("new b")),
+            ("c", Some("old c"), None),
+            ("d", None, Some("new d")),
+        ] {
+            let target = folder.join(name);
+            if let Some(old) = old {
+                fs::write(&target, old).expect("written");
+            }
+            let new = new.map(|text| {
+                let mut file = temporary(folder).expect("a file");
+                file.write_all(text.as_bytes()).expect("written");
+                file
+            });
+            let old = copy(&target).expect("copied");
+            steps.push(Step {
+                removes: new.is_none(),
+                target,
+                new,
+                old,
+            });
+        }
+        fs::create_dir_all(folder.join("d/in the way")).expect("made");
+        Transaction {
+            steps,
+            folders: NewFolders::default(),
+        }
+    }
+
+    fn files(folder: &Path) -> Vec<(String, String)> {
+        let entries = fs::read_dir(folder).expect("a folder");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        let name = |path: &PathBuf| path.file_name().expect("a name").display().to_string();
+        let mut files: Vec<(String, String)> = paths
+            .filter(|path| path.is_file())
+            .map(|path| (name(&path), fs::read_to_string(&path).expect("text")))
+            .collect();
+        files.sort();
+        files
+    }
+
+    fn named(files: &[(&str, &str)]) -> Vec<(String, String)> {
+        let owned = |(name, text): &(&str, &str)| ((*name).to_owned(), (*text).to_owned());
+        files.iter().map(owned).collect()
+    }
+
+    #[test]
+    fn what_was_changed_before_a_failure_is_undone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let failure = refused(folder.path())
+            .commit()
+            .expect_err("d is in the way");
+        let text = failure.to_string();
+        let place = folder.path().join("d");
+        assert!(
+            text.starts_with(&format!("error: cannot write {}: ", place.display())),
+            "{text}"
+        );
+        assert!(text.ends_with("help: every file is as it was"), "{text}");
+        assert_eq!(
+            files(folder.path()),
+            named(&[("a", "old a"), ("c", "old c")])
+        );
+    }
+
+    /// The copies are gone: another program removed them.
+    #[test]
+    fn what_cannot_be_undone_is_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let transaction = refused(folder.path());
+        for step in &transaction.steps {
+            if let Some(old) = &step.old {
+                fs::remove_file(old.path()).expect("removed");
+            }
+        }
+        let text = transaction
+            .commit()
+            .expect_err("d is in the way")
+            .to_string();
+        let place = |name: &str| folder.path().join(name).display().to_string();
+        for said in [
+            format!("{} is new (", place("a")),
+            format!("{} is removed (", place("c")),
+            "every other file is as it was".to_owned(),
+        ] {
+            assert!(text.contains(&said), "no {said:?} in {text}");
+        }
+        assert!(!text.contains(&place("b")), "{text}");
+        assert_eq!(files(folder.path()), named(&[("a", "new a")]));
+    }
+
+    #[test]
+    fn what_is_not_committed_leaves_nothing() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut folders = NewFolders::default();
+        folders.make(&folder.path().join("x/y")).expect("made");
+        let transaction = refused(folder.path());
+        drop((transaction, folders));
+        assert_eq!(
+            files(folder.path()),
+            named(&[("a", "old a"), ("c", "old c")])
+        );
+        assert!(!folder.path().join("x").exists());
     }
 }

@@ -4,7 +4,7 @@ use askama::Template;
 use std::collections::BTreeSet;
 
 use super::subject::{
-    CHOICES, Subject, cell, inline_math, is_fit, plain_number, readable, unit_text,
+    CHOICES, Subject, cell, inline_math, is_fit, plain_number, readable, unit_text, verbatim,
 };
 use crate::emit::render;
 use crate::ir::{Parameter, ParameterSet};
@@ -12,7 +12,7 @@ use crate::ir::{Parameter, ParameterSet};
 #[derive(Template)]
 #[template(path = "docs/table.md")]
 struct TablePage<'a> {
-    file_name: &'a str,
+    file_name: String,
     name: &'a str,
     units: &'a str,
     other_units: &'a str,
@@ -87,7 +87,7 @@ pub(super) fn page(subject: &Subject<'_>) -> String {
         .collect();
     let factors = document.units.factors.iter();
     render(&TablePage {
-        file_name: &subject.table.file_name,
+        file_name: verbatim(&subject.table.file_name),
         name: &subject.table.name,
         units: &document.units.system,
         other_units: &document.units.other,
@@ -172,7 +172,8 @@ fn row(subject: &Subject<'_>, parameter: &Parameter, sets: &[&str]) -> Row {
         let value = plain_number(subject.replacement(set, &parameter.name));
         Some(format!(
             "{value} ({}, {})",
-            replaced.status, replaced.source
+            replaced.status,
+            verbatim(&replaced.source)
         ))
     };
     Row {
@@ -187,7 +188,7 @@ fn row(subject: &Subject<'_>, parameter: &Parameter, sets: &[&str]) -> Row {
         unit: unit_text(&parameter.unit).to_owned(),
         status: parameter.status.clone(),
         uncertainty: percent(parameter.uncertainty),
-        source: parameter.source.clone(),
+        source: verbatim(&parameter.source),
     }
 }
 
@@ -263,10 +264,10 @@ fn sources(subject: &Subject<'_>) -> Vec<(String, String)> {
         .map(|r| &r.source);
     let mut found: Vec<(String, String)> = Vec::new();
     for key in document.parameters.iter().map(|p| &p.source).chain(of_sets) {
-        if !found.iter().any(|(known, _)| known == key)
+        if !found.iter().any(|(known, _)| *known == verbatim(key))
             && let Some(text) = subject.table.text(&["sources", key])
         {
-            found.push((key.clone(), cell(text)));
+            found.push((verbatim(key), verbatim(text)));
         }
     }
     found
