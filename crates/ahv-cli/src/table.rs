@@ -152,7 +152,8 @@ fn is_about(ratio: f64, expected: f64) -> bool {
 /// A fault at its line and column, or in a file as a whole.
 fn fault(shown: &str, text: &str, span: Option<Range<usize>>, message: &str) -> Failure {
     // What stands in a table must not act on a terminal.
-    let acts = |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let acts =
+        |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let message = message.replace(acts, "\u{fffd}");
     let before = span.and_then(|span| text.get(..span.start));
     Failure::Request(match before {
