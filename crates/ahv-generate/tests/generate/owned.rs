@@ -4,14 +4,14 @@ use crate::scratch::Scratch;
 use std::fs;
 use std::os::unix::fs::symlink;
 
-const DCOM: &str = "generator/tables/dcom.toml";
+const COM: &str = "generator/tables/com.toml";
 const MODE: &str = "generator/tables/flexible_mode.toml";
 const MANIFEST: &str = "generated/manifest.json";
 const DRIFT: &str = "generated/src/flexible_mode/drift.rs";
 
 #[test]
 fn a_folder_that_was_not_generated_is_not_touched() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     fs::create_dir_all(scratch.path("mine/src")).expect("made");
     scratch.write("mine/src/lib.rs", "//! My work.\n");
     scratch.write("mine/notes.md", "Mine.\n");
@@ -31,7 +31,7 @@ fn a_folder_that_was_not_generated_is_not_touched() {
 /// With the keys of one of ahv, too.
 #[test]
 fn the_manifest_of_another_program_gives_no_leave() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     fs::create_dir_all(scratch.path("ext/src")).expect("made");
     for manifest in [
         "{ \"manifest_version\": 3 }\n",
@@ -52,7 +52,7 @@ fn the_manifest_of_another_program_gives_no_leave() {
 
 #[test]
 fn a_table_that_went_takes_its_files_along() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     fs::remove_file(scratch.path(MODE)).expect("removed");
     assert!(
         scratch
@@ -78,7 +78,7 @@ fn a_table_that_went_takes_its_files_along() {
 /// Line ends are git's; they are no edit.
 #[test]
 fn what_was_edited_is_kept_and_reported() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     fs::remove_file(scratch.path(MODE)).expect("removed");
     let edited = scratch.read(DRIFT) + "// mine\n";
     scratch.write(DRIFT, &edited);
@@ -101,7 +101,7 @@ fn what_was_edited_is_kept_and_reported() {
 
 #[test]
 fn own_files_in_the_generated_folder_are_kept() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     // One says that it was generated, and is not listed all the same.
     let own = [
         ("generated/src/com/mine.rs", "fn mine() {}\n"),
@@ -114,7 +114,7 @@ fn own_files_in_the_generated_folder_are_kept() {
     for (path, text) in own {
         scratch.write(path, text);
     }
-    scratch.edit(DCOM, "value = 4.6773,", "value = 4.7773,");
+    scratch.edit(COM, "value = 4.6773,", "value = 4.7773,");
     let text = scratch.disagreement(&[]);
     let end =
         "Move the stray files away (ahv removes only what it wrote), and run:  ahv generate\n";
@@ -136,7 +136,7 @@ fn own_files_in_the_generated_folder_are_kept() {
 /// The manifests of older versions hold no list of files.
 #[test]
 fn a_manifest_without_a_list_gives_no_leave_to_remove() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     let before = scratch.snapshot("generated");
     let text = scratch.read(MANIFEST);
     let list = text.find(",\n  \"files\"").expect("a list");
@@ -156,11 +156,11 @@ fn a_manifest_without_a_list_gives_no_leave_to_remove() {
 /// Both sides of a merge conflict say what ahv wrote.
 #[test]
 fn a_manifest_in_conflict_still_lists_the_files() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     let text = scratch.read(MANIFEST);
     let line = text
         .lines()
-        .find(|line| line.contains("\"dcom\":"))
+        .find(|line| line.contains("\"com\":"))
         .expect("there");
     let theirs = line.replace(['a', 'b', '1'], "c");
     let conflict = format!("<<<<<<< ours\n{line}\n=======\n{theirs}\n>>>>>>> theirs");
@@ -173,7 +173,7 @@ fn a_manifest_in_conflict_still_lists_the_files() {
 /// A file where a table that is new puts one of its own.
 #[test]
 fn a_file_that_the_manifest_does_not_list_is_not_overwritten() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     let table = scratch.read(MODE);
     fs::remove_file(scratch.path(MODE)).expect("removed");
     scratch.generate(&[]).expect("generated");
@@ -189,7 +189,7 @@ fn a_file_that_the_manifest_does_not_list_is_not_overwritten() {
 
 #[test]
 fn links_are_stray_and_never_followed() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     fs::create_dir(scratch.path("victim")).expect("made");
     scratch.write("victim/work.rs", "fn work() {}\n");
     for (target, link) in [
@@ -219,15 +219,15 @@ fn links_are_stray_and_never_followed() {
 /// Nothing is written behind a link, to a folder or to a file.
 #[test]
 fn a_link_in_the_place_of_a_folder_is_refused() {
-    for part in ["src", "src/dcom", "src/dcom/nominal.rs"] {
-        let scratch = Scratch::new();
+    for part in ["src", "src/com", "src/com/nominal.rs"] {
+        let scratch = Scratch::small();
         let place = format!("generated/{part}");
         fs::rename(scratch.path(&place), scratch.path("elsewhere")).expect("moved");
         symlink(scratch.path("elsewhere"), scratch.path(&place)).expect("linked");
         // Reading is harmless, and where nothing differs nothing is written.
         assert!(scratch.check(&[]).expect("checked").agrees());
         scratch.generate(&[]).expect("nothing to do");
-        scratch.edit(DCOM, "value = 4.6773,", "value = 4.7773,");
+        scratch.edit(COM, "value = 4.6773,", "value = 4.7773,");
         let before = scratch.snapshot("");
         let message = scratch.generate(&[]).err().expect("refused").to_string();
         assert!(
@@ -240,7 +240,7 @@ fn a_link_in_the_place_of_a_folder_is_refused() {
 
 #[test]
 fn a_pipe_in_the_tree_is_not_waited_for() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     scratch.make_pipe("generated/src/pipe.rs");
     let text = scratch.generate(&[]).expect("generated").text();
     assert!(

@@ -33,7 +33,7 @@ fn eventually(what: &str, done: impl Fn() -> bool) {
 #[test]
 fn a_signal_ends_the_work_and_what_is_temporary() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
-        let mut scratch = Scratch::new();
+        let mut scratch = Scratch::small();
         let started = scratch.path("started");
         let derive = format!(
             "echo $$ > {0}.part; mv {0}.part {0}; exec sleep 60",
@@ -71,7 +71,7 @@ fn is_empty(folder: &Path) -> bool {
 /// Without any place for a cache, for nothing is kept.
 #[test]
 fn the_check_from_the_ir_needs_no_home() {
-    let scratch = Scratch::new();
+    let scratch = Scratch::small();
     let mut command = scratch.process(&["--check", "--from-ir"]);
     for variable in ["HOME", "AHV_CACHE_DIR", "XDG_CACHE_HOME", "AHV_PYTHON"] {
         command.env_remove(variable);
@@ -89,7 +89,7 @@ fn the_check_from_the_ir_needs_no_home() {
 /// The interpreter sees none of the variables that change a Python, but the search path of its caller.
 #[test]
 fn the_variables_of_python_do_not_reach_it() {
-    let mut scratch = Scratch::new();
+    let mut scratch = Scratch::small();
     let ir = scratch.path("../ir");
     let seen = scratch.path("seen");
     let derive = format!(

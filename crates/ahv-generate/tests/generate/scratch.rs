@@ -54,6 +54,14 @@ impl Scratch {
         scratch
     }
 
+    /// Without the largest table, and so a few times faster.
+    pub(crate) fn small() -> Self {
+        let scratch = Self::new();
+        fs::remove_file(scratch.path("generator/tables/dcom.toml")).expect("removed");
+        scratch.generate(&[]).expect("generated");
+        scratch
+    }
+
     /// A script that says it is a Python of that version without these modules, and derives so.
     pub(crate) fn interpreter(&self, version: &str, missing: &str, derive: &str) -> OsString {
         let path = self.folder.path().join("python");
