@@ -2,7 +2,8 @@
 
 `evaluate` writes CasADi's own values of a model at points that the oracle drew.
 
-Exit codes: 0 done, 2 a table is at fault (its diagnostics stand on standard output as JSON).
+Exit codes: 0 done, 1 it cannot be done (standard error says why), 2 a table is at fault (its diagnostics stand on
+standard output as JSON).
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+import traceback
 from pathlib import Path
 
 from . import audit, ir, reference
@@ -43,7 +45,19 @@ def main() -> int:
     except OSError as error:
         print(f"error: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        # The driver, which the same signal reaches, says so.
+        return 1
+    except Exception as error:
+        print(f"error: {_escaped(error)}", file=sys.stderr)
+        return 1
     return 0
+
+
+def _escaped(error: Exception) -> str:
+    """An exception that nobody expected, in one line with its place."""
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {error} ({Path(place.filename).name}, line {place.lineno})"
 
 
 def _derive(tables: list[Path], out: Path) -> None:
@@ -57,7 +71,14 @@ def _derive(tables: list[Path], out: Path) -> None:
             diagnostics += error.diagnostics
             continue
         printed = printed or "sdcom_printed" in table.models
-        texts[table.name] = ir.render(table, [BUILDERS[name](table) for name in table.models])
+        try:
+            texts[table.name] = ir.render(table, [BUILDERS[name](table) for name in table.models])
+        except (MemoryError, OSError):
+            raise
+        except Exception as error:
+            # What the checks of a table let through is a fault of that table all the same.
+            message = f"the models cannot be derived from this table: {_escaped(error)}"
+            diagnostics.append(Diagnostic(path.name, ("table", "models"), "value", message))
     if diagnostics:
         raise TableError(diagnostics)
     if printed:

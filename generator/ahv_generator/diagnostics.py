@@ -6,6 +6,18 @@ import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+_LONGEST = 60
+
+
+def shortened(text: str) -> str:
+    """A text of a table for a message: its start, where it is long."""
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+
+
+def _visible(text: str) -> str:
+    """A message in one line, without characters that act on a terminal."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
 
 @dataclass(frozen=True)
 class Diagnostic:
@@ -23,8 +35,8 @@ class Diagnostic:
             "file": self.file,
             "path": list(self.path),
             "part": self.part,
-            "message": self.message,
-            "help": self.help,
+            "message": _visible(self.message),
+            "help": None if self.help is None else _visible(self.help),
         }
 
 

@@ -9,7 +9,11 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from .diagnostics import shortened
+
 _FACTOR = re.compile(r"([A-Za-z]\w*)(?:\^([1-9]))?")
+# Of a monomial; derivatives multiply its variables by others.
+HIGHEST_DEGREE = 9
 
 Powers = tuple[tuple[str, int], ...]
 
@@ -33,13 +37,17 @@ def parse_monomial(key: str, allowed: Iterable[str]) -> Powers:
     if key == "1":
         return ()
     for part in key.split("*"):
-        match = _FACTOR.fullmatch(part.strip())
+        match = _FACTOR.fullmatch(part.strip(" "))
         if match is None:
-            raise MonomialError(f"`{key}` is not a monomial; write it like `alpha`, `alpha^2` or `phi*alpha^3`")
+            message = f"`{shortened(key)}` is not a monomial; write it like `alpha`, `alpha^2` or `phi*alpha^3`"
+            raise MonomialError(message)
         name = match[1]
         if name not in order:
-            raise MonomialError(f"`{name}` is not a variable of this quantity", name)
+            raise MonomialError(f"`{shortened(name)}` is not a variable of this quantity", name)
         powers[name] = powers.get(name, 0) + int(match[2] or 1)
+    degree = sum(powers.values())
+    if degree > HIGHEST_DEGREE:
+        raise MonomialError(f"`{shortened(key)}` is of degree {degree}; the highest is {HIGHEST_DEGREE}")
     return tuple((name, powers[name]) for name in order if name in powers)
 
 

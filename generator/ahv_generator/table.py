@@ -372,7 +372,8 @@ class _Reader:
         inertia, *couplings = numbers = self._masses(replacing)
         if replacing and numbers == self._masses(""):
             return  # Told of the table itself.
-        if any(couplings) and inertia <= sum(coupling**2 for coupling in couplings):
+        # A product overflows to infinity, a power to an exception.
+        if any(couplings) and inertia <= sum(coupling * coupling for coupling in couplings):
             message = "`I_yy` must exceed the sum of the squares of `psi_i`: no mass matrix is like this"
             self.faults.value(path, message)
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +14,9 @@ import mpmath
 import pytest
 from oracle_support import TABLE_OF
 
-from ahv_generator import ir
+from ahv_generator import audit, ir
+from ahv_generator.__main__ import main
+from ahv_generator.diagnostics import TableError
 from ahv_generator.expression import ExpressionError
 from ahv_generator.models import BUILDERS
 from ahv_generator.reference import columns, expanded, labels
@@ -37,6 +41,57 @@ def test_ir_is_byte_identical_whatever_the_hash_seed(tmp_path: Path) -> None:
     runs = [derive(tmp_path / seed, seed) for seed in ("0", "1", "4242")]
     assert sorted(runs[0]) == ["audit.json", *(f"{name}.json" for name in NAMES)]
     assert runs[0] == runs[1] == runs[2]
+
+
+def broken(*_: object) -> str:
+    raise OverflowError("too large")
+
+
+def test_a_derivation_that_breaks_down_is_a_fault_of_its_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["derive", "--out", str(tmp_path), str(TABLES / "com.toml")]
+    monkeypatch.setattr(sys, "argv", ["ahv_generator", *arguments])
+    monkeypatch.setattr(ir, "render", broken)
+    assert main() == 2
+    (fault,) = json.loads(capsys.readouterr().out)["diagnostics"]
+    assert (fault["file"], fault["path"], fault["part"]) == ("com.toml", ["table", "models"], "value")
+    assert "OverflowError: too large (test_derivation.py, line " in fault["message"]
+
+
+def test_no_exception_leaves_as_a_traceback(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = tmp_path / "dcom.toml"
+    table.write_text((TABLES / "dcom.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    monkeypatch.setattr(sys, "argv", ["ahv_generator", "derive", "--out", str(tmp_path), str(table)])
+    monkeypatch.setattr(ir, "render", lambda *_: "")
+    monkeypatch.setattr(audit, "render", broken)
+    assert main() == 1
+    assert re.fullmatch(r"error: OverflowError: too large \(.*\)\n", capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("value", ["1e308", "-1e308", "1e-320", "9223372036854775807"])
+@pytest.mark.parametrize("name", NAMES)
+def test_no_value_is_too_much_for_the_checks(tmp_path: Path, name: str, value: str) -> None:
+    text = (TABLES / f"{name}.toml").read_text(encoding="utf-8")
+    path = tmp_path / f"{name}.toml"
+    for place in re.finditer(r"(?<=value = )[-+.\de]+", text):
+        path.write_text(text[: place.start()] + value + text[place.end() :], encoding="utf-8")
+        try:
+            load(path)
+        except TableError:
+            pass
+
+
+def test_a_monomial_of_the_highest_degree_has_all_its_derivatives(tmp_path: Path) -> None:
+    text = (TABLES / "com.toml").read_text(encoding="utf-8")
+    path = tmp_path / "com.toml"
+    monomial = '"alpha^5*delta_e^4" = { value = 1.0, unit = "1/rad^9" }'
+    path.write_text(re.sub(r"(?m)^(\[C_[LDM]\])$", rf"\1\n{monomial}", text), encoding="utf-8")
+    table = load(path)
+    text = ir.render(table, [BUILDERS[name](table) for name in table.models])
+    assert "c_m_alpha_5_delta_e_4" in text
 
 
 def test_a_value_does_not_reach_the_ir(tmp_path: Path) -> None:

@@ -51,6 +51,10 @@ CASES = [
     (CL_ALPHA, CL_ALPHA.replace('"alpha"', '"eta_1*eta_2"'), ("C_L", "eta_1*eta_2"), "affine", None),
     (CL_ALPHA, CL_ALPHA + '\n"delta_e*alpha" = { value = 1.0, unit = "1/rad^2" }\n'
      '"alpha*delta_e" = { value = 1.0, unit = "1/rad^2" }', ("C_L", "alpha*delta_e"), "same monomial", None),
+    (CL_ALPHA, CL_ALPHA.replace('"alpha"', '"alpha^5*alpha^6"'), ("C_L", "alpha^5*alpha^6"),
+     "`alpha^5*alpha^6` is of degree 11; the highest is 9", None),
+    (CL_ALPHA, CL_ALPHA.replace('"alpha"', '"alpha^9*delta_e"'), ("C_L", "alpha^9*delta_e"), "of degree 10", None),
+    (CL_ALPHA, CL_ALPHA.replace('"alpha"', '"alpha\\n"'), ("C_L", "alpha\n"), "not a monomial", None),
     ("m = { value = 300.0", "mass = { value = 300.0", ("vehicle", "mass"), "unknown key", None),
     ("m = { value = 300.0", "m = { value = -300.0", ("vehicle", "m", "value"), "positive", None),
     ("value = 0.44838", "value = 0.0", ("C_L", "delta_c", "value"), "divides", None),
@@ -120,6 +124,14 @@ def test_fault_is_named_where_it_stands(
     assert help is None or any(help in (d.help or "") for d in found), [d.help for d in found]
 
 
+def test_a_message_shows_no_control_character(tmp_path: Path) -> None:
+    key = '"x\\u001b\\u202e\\n"'
+    (fault,) = faults(tmp_path, CL_ALPHA, CL_ALPHA + f'\n{key} = {{ value = 1.0, unit = "1" }}')
+    message = fault.as_json()["message"]
+    assert isinstance(message, str)
+    assert r"`x\x1b\u202e\n` is not a monomial" in message
+
+
 def test_missing_coefficient_of_the_canard_law(tmp_path: Path) -> None:
     line = next(x for x in (TABLES / "dcom.toml").read_text(encoding="utf-8").splitlines() if "0.44838" in x)
     (fault,) = faults(tmp_path, line + "\n", "")
@@ -140,6 +152,7 @@ def test_missing_parameter_and_quantity_are_named(tmp_path: Path) -> None:
 LIGHT = [
     ("I_yy = { value = 5.0e5", "I_yy = { value = 249944.0", ("vehicle", "I_yy", "value")),
     ("psi_1 = { value = 401.86", "psi_1 = { value = -650.0", ("vehicle", "I_yy", "value")),
+    ("psi_1 = { value = 401.86", "psi_1 = { value = 1e200", ("vehicle", "I_yy", "value")),
     (
         '[sets."section5.3"]',
         '[sets."section5.3".vehicle]\nI_yy = { value = 86723.0, unit = "slug*ft" }',

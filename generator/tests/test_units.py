@@ -64,6 +64,24 @@ def test_what_is_no_unit_is_rejected(text: str) -> None:
         units.conversion(text, units.SI)
 
 
+def test_both_readers_of_units_have_one_grammar() -> None:
+    cases = (Path(__file__).parent / "units.txt").read_text(encoding="utf-8").splitlines()
+    for case in cases:
+        taken, text = case[:1], case[1:].removeprefix(" ")
+        if taken == "+":
+            assert units.factor(text, text) == 1.0, text
+        elif taken == "-":
+            with pytest.raises(units.UnitError):
+                units.factor(text, text)
+
+
+@pytest.mark.parametrize("depth", [2, 40_000])
+def test_brackets_are_not_too_deep(depth: int) -> None:
+    with pytest.raises(units.UnitError) as caught:
+        units.factor("(" * depth + "ft" + ")" * depth, "ft")
+    assert len(str(caught.value)) < 200
+
+
 def in_si(text: str) -> str:
     """A table with every number and unit turned into SI."""
 

@@ -3,9 +3,9 @@
 mod unit;
 mod values;
 
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
+use std::{fs, io};
 
 use toml_edit::{Document, Item};
 
@@ -29,7 +29,7 @@ impl Table {
     /// [`Failure::Request`] if it cannot be read, or is not TOML.
     pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
-        let text = fs::read_to_string(path)
+        let text = text_of(path)
             .map_err(|error| Failure::Request(format!("cannot read {shown}: {error}")))?;
         match Document::parse(text.clone()) {
             Ok(document) => Ok(Self {
@@ -64,6 +64,7 @@ impl Table {
         let help = format!("the unit here is `{expected}`");
         let found = Unit::parse(text).ok_or_else(|| {
             let known = "known are ft, slug, lb, m, kg, N, s, rad and deg, with *, / and ^";
+            let text = shortened(text);
             self.fault(&path, &format!("`{text}` is no unit; {known}; {help}"))
         })?;
         match Unit::parse(expected).and_then(|expected| found.in_terms_of(&expected)) {
@@ -125,12 +126,35 @@ impl Table {
     }
 }
 
+/// The text of a regular file: a pipe would wait for a writer, a device has no end.
+fn text_of(path: &Path) -> io::Result<String> {
+    let kind = fs::metadata(path)?.file_type();
+    if kind.is_file() || kind.is_dir() {
+        fs::read_to_string(path)
+    } else {
+        let message = "it is a pipe, a socket or a device, not a file";
+        Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+    }
+}
+
+/// The start of a text, in characters that do not act on a terminal.
+fn shortened(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let start: String = text.chars().take(LONGEST).collect();
+    let more = if start.len() < text.len() { "..." } else { "" };
+    format!("{}{more}", start.escape_debug())
+}
+
 fn is_about(ratio: f64, expected: f64) -> bool {
     (ratio / expected - 1.0).abs() < 1e-9
 }
 
 /// A fault at its line and column, or in a file as a whole.
 fn fault(shown: &str, text: &str, span: Option<Range<usize>>, message: &str) -> Failure {
+    // What stands in a table must not act on a terminal.
+    let acts =
+        |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let message = message.replace(acts, "\u{fffd}");
     let before = span.and_then(|span| text.get(..span.start));
     Failure::Request(match before {
         Some(before) => {

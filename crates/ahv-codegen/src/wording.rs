@@ -66,6 +66,24 @@ pub(crate) fn vector_impl<'a>(
     Ok(format::vector(vector, &lines))
 }
 
+/// A text of a user in one line: what cannot be seen, or turns the direction of what follows, as its code.
+pub(crate) fn visible(text: &str) -> String {
+    let hidden = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
+            || matches!(c, '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+    };
+    let mut line = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\t' => line.push(' '),
+            c if hidden(c) => line.extend(c.escape_unicode()),
+            c => line.push(c),
+        }
+    }
+    line
+}
+
 /// A text in lines of a comment's width.
 pub(crate) fn wrapped(text: &str) -> Vec<String> {
     const WIDTH: usize = 110;

@@ -1,22 +1,22 @@
 //! The tree on disk against the tree that the tables give.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::fs::FileType;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use ahv_codegen::{AUDIT, Manifest, Table, Tree};
+use ahv_codegen::{AUDIT, Manifest, Table, Tree, sha256};
 use serde::Serialize;
 use similar::{ChangeTag, TextDiff};
 
 use crate::failure::Failure;
+use crate::files;
+use crate::manifest::{self, MANIFEST};
 use crate::project::slashed;
 
 /// Folders that hold nothing but generated files. Elsewhere a file that the tables do not give is
 /// somebody's own.
 const OWNED: [&str; 3] = ["docs", "ir", "src"];
-
-/// Says from what the tree was made.
-pub(crate) const MANIFEST: &str = "manifest.json";
 
 /// How a file differs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -30,6 +30,32 @@ pub enum Status {
     Stray,
 }
 
+/// Why a stray file is not removed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kept {
+    /// No manifest says that ahv wrote it.
+    Unlisted,
+    /// It is not what ahv wrote.
+    Edited,
+    /// It leads to a place that may be anybody's.
+    Link,
+    /// A pipe, a socket or a device.
+    Special,
+}
+
+impl Kept {
+    /// The reason, after "kept: ".
+    pub(crate) fn reason(self) -> &'static str {
+        match self {
+            Self::Unlisted => "ahv did not write it",
+            Self::Edited => "it was edited after ahv wrote it",
+            Self::Link => "it is a link, and ahv follows none",
+            Self::Special => "it is not a regular file",
+        }
+    }
+}
+
 /// A file on disk that is not as the tables give it.
 #[derive(Debug, Clone)]
 pub struct Difference {
@@ -37,6 +63,8 @@ pub struct Difference {
     pub path: String,
     /// How it differs.
     pub status: Status,
+    /// Why generating leaves a stray file where it is; `None` where it does not.
+    pub kept: Option<Kept>,
     /// What is on disk.
     pub(crate) old: String,
     /// What the tables give.
@@ -48,14 +76,20 @@ impl Difference {
         Self {
             path,
             status,
+            kept: None,
             old: String::new(),
             new: String::new(),
         }
     }
 
-    /// An IR that is not what the table gives. Only a derivation could tell what that is.
-    fn untold_ir(table: &str) -> Self {
+    /// An IR that is not what the table gives. What that is, only a derivation can find out.
+    fn unknown_ir(table: &str) -> Self {
         Self::without_text(ir_path(table), Status::Differs)
+    }
+
+    /// The text that the file is to have; none for one that is to go.
+    pub(crate) fn replacement(&self) -> Option<&str> {
+        (self.status != Status::Stray).then_some(&self.new)
     }
 
     /// Lines added and removed.
@@ -94,20 +128,46 @@ pub(crate) fn differences(out: &Path, tree: &Tree) -> Result<Vec<Difference>, Fa
         found.push(Difference {
             path: path.clone(),
             status,
+            kept: None,
             old,
             new: new.clone(),
         });
     }
-    for path in owned_files(out)? {
+    let written = manifest::on_disk(out);
+    for (path, kind) in owned_files(out)? {
         // What stands where a folder belongs is in the way, not stray.
         let folder = format!("{path}/");
         if !tree.contains_key(&path) && !tree.keys().any(|it| it.starts_with(&folder)) {
-            found.push(Difference::without_text(path, Status::Stray));
+            let kept = kept(out, &path, kind, &written);
+            found.push(Difference {
+                kept,
+                ..Difference::without_text(path, Status::Stray)
+            });
         }
     }
-    // The manifest comes last: it changes with everything, and a reader looks for the cause.
+    // The manifest comes last: it changes with everything, and a reader looks for the cause. And it
+    // is written last: until then the old one says what may be removed.
     found.sort_by(|a, b| (a.path == MANIFEST, &a.path).cmp(&(b.path == MANIFEST, &b.path)));
     Ok(found)
+}
+
+/// Why a stray file must stay: ahv removes what it wrote, as it wrote it, and nothing else.
+fn kept(out: &Path, path: &str, kind: FileType, written: &[Manifest]) -> Option<Kept> {
+    if kind.is_symlink() {
+        return Some(Kept::Link);
+    }
+    if !kind.is_file() {
+        return Some(Kept::Special);
+    }
+    let mut recorded = written.iter().filter_map(|it| it.written(path)).peekable();
+    if recorded.peek().is_none() {
+        return Some(Kept::Unlisted);
+    }
+    let hash = match read(&out.join(path)) {
+        Ok(OnDisk::Text(text)) => sha256(&text),
+        _ => return Some(Kept::Edited),
+    };
+    recorded.all(|it| it != hash).then_some(Kept::Edited)
 }
 
 /// The IRs that lie in the tree, by table name, and those that ought to.
@@ -133,28 +193,13 @@ pub(crate) fn checked_in_irs(
     Ok((irs, missing))
 }
 
-/// What the tree on disk says that it was made from, if it can be read.
-pub(crate) fn manifest(out: &Path) -> Option<Manifest> {
-    let text = fs::read_to_string(out.join(MANIFEST)).ok()?;
-    Manifest::parse(&text).ok()
-}
-
-/// Whether the folder's manifest is one of ahv, perhaps with the markers of a merge conflict or of
-/// another version.
-pub(crate) fn is_generated(out: &Path) -> bool {
-    let text = fs::read(out.join(MANIFEST)).unwrap_or_default();
-    let text = String::from_utf8_lossy(&text);
-    let names = |key: &str| text.contains(&format!("\"{key}\""));
-    Manifest::parse(&text).is_ok() || (names("emitter") && names("templates"))
-}
-
 /// The IRs that were derived from other tables than there are now.
 pub(crate) fn stale_irs(manifest: Option<&Manifest>, tables: &[Table]) -> Vec<Difference> {
     let recorded = |table: &Table| manifest.and_then(|it| it.tables.get(&table.name));
     tables
         .iter()
         .filter(|table| recorded(table) != Some(&table.sha256()))
-        .map(|table| Difference::untold_ir(&table.name))
+        .map(|table| Difference::unknown_ir(&table.name))
         .collect()
 }
 
@@ -171,7 +216,7 @@ pub(crate) fn edited_irs(manifest: Option<&Manifest>, tree: &Tree) -> Vec<Differ
         .ir
         .keys()
         .filter(edited)
-        .map(|table| Difference::untold_ir(table))
+        .map(|table| Difference::unknown_ir(table))
         .collect()
 }
 
@@ -188,7 +233,7 @@ enum OnDisk {
 }
 
 fn read(path: &Path) -> Result<OnDisk, Failure> {
-    match fs::read(path) {
+    match files::read(path) {
         Ok(bytes) => Ok(match String::from_utf8(bytes) {
             Ok(text) => OnDisk::Text(text.replace("\r\n", "\n")),
             Err(error) => OnDisk::NotText(String::from_utf8_lossy(error.as_bytes()).into_owned()),
@@ -204,15 +249,15 @@ fn read(path: &Path) -> Result<OnDisk, Failure> {
     }
 }
 
-/// All files below the owned folders, hidden ones excepted. Links to folders are followed.
-fn owned_files(out: &Path) -> Result<BTreeSet<String>, Failure> {
-    let (mut files, mut seen) = (BTreeSet::new(), BTreeSet::new());
-    let mut folders: Vec<PathBuf> = OWNED.iter().map(|name| out.join(name)).collect();
+/// Everything below the owned folders but folders and hidden files. Links are found, not followed.
+fn owned_files(out: &Path) -> Result<BTreeMap<String, FileType>, Failure> {
+    let mut files = BTreeMap::new();
+    let mut folders: Vec<PathBuf> = OWNED
+        .iter()
+        .map(|name| out.join(name))
+        .filter(|folder| !folder.is_symlink())
+        .collect();
     while let Some(folder) = folders.pop() {
-        // A link may lead back to where it lies.
-        if fs::canonicalize(&folder).is_ok_and(|real| !seen.insert(real)) {
-            continue;
-        }
         let entries = match fs::read_dir(&folder) {
             Ok(entries) => entries,
             Err(error) => match error.kind() {
@@ -222,14 +267,14 @@ fn owned_files(out: &Path) -> Result<BTreeSet<String>, Failure> {
         };
         for entry in entries {
             let entry = entry.map_err(Failure::file("read", &folder))?;
+            let path = entry.path();
+            let kind = entry.file_type().map_err(Failure::file("read", &path))?;
             if entry.file_name().to_string_lossy().starts_with('.') {
                 continue;
-            } else if fs::metadata(entry.path()).is_ok_and(|it| it.is_dir()) {
-                folders.push(entry.path());
+            } else if kind.is_dir() {
+                folders.push(path);
             } else {
-                files.insert(slashed(
-                    entry.path().strip_prefix(out).unwrap_or(&entry.path()),
-                ));
+                files.insert(slashed(path.strip_prefix(out).unwrap_or(&path)), kind);
             }
         }
     }

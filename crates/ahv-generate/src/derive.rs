@@ -10,6 +10,7 @@ use ahv_codegen::AUDIT;
 use serde::Deserialize;
 
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::progress::Progress;
 use crate::python::{Generator, last_lines};
 use crate::tables::{Diagnostic, Tables};
@@ -34,9 +35,9 @@ pub(crate) fn derive(
         let mut command = python.command();
         command.args(["derive", "--out"]).arg(folder.path());
         command.args(tables.sources.iter().map(|source| &source.path));
-        command
-            .output()
-            .map_err(|error| Failure::new(format!("cannot run Python: {error}")))?
+        interrupt::output(&mut command, |error| {
+            Failure::new(format!("cannot run Python: {error}"))
+        })?
     };
     if !output.status.success() {
         return Err(failure(&output, tables));

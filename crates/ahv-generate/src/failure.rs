@@ -35,13 +35,28 @@ impl TableFault {
         Self {
             message: message.into(),
             help,
-            table: NamedSource::new(file, text.to_owned()),
+            table: NamedSource::new(file, visible(text)),
             span: (start..end).into(),
         }
     }
 }
 
-/// Why generation stopped. Exit code 2.
+/// A text whose control characters and marks of direction cannot act on a terminal, of the same length in bytes.
+fn visible(text: &str) -> String {
+    let acts = |c: char| {
+        (c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
+            || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    let replaced = |c: char| match c.len_utf8() {
+        _ if !acts(c) => c,
+        1 => '?',
+        2 => '\u{bf}',
+        _ => char::REPLACEMENT_CHARACTER,
+    };
+    text.chars().map(replaced).collect()
+}
+
+/// Why generation stopped. Exit code 2, but after a signal.
 #[derive(Debug)]
 pub enum Failure {
     /// Tables that say what they may not.
@@ -52,6 +67,11 @@ pub enum Failure {
         message: String,
         /// What to do about it.
         help: Option<String>,
+    },
+    /// SIGINT or SIGTERM. Exit code 128 + the signal's number.
+    Interrupted {
+        /// The number of the signal.
+        signal: usize,
     },
 }
 
@@ -69,7 +89,7 @@ impl Failure {
                 message,
                 help: Some(help.into()),
             },
-            tables @ Self::Tables(_) => tables,
+            other => other,
         }
     }
 
@@ -77,6 +97,15 @@ impl Failure {
     pub(crate) fn file(deed: &str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let message = format!("cannot {deed} {}", path.display());
         move |error| Self::new(format!("{message}: {error}"))
+    }
+
+    /// The exit code that says so.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Interrupted { signal } => u8::try_from(128 + signal).unwrap_or(crate::FAILED),
+            _ => crate::FAILED,
+        }
     }
 
     /// The text for standard error: drawn on a terminal, plain ASCII elsewhere.
@@ -113,6 +142,7 @@ impl Failure {
                     let _ = writeln!(text, "  help: {help}");
                 }
             }
+            Self::Interrupted { .. } => text.push_str("interrupted: no file was changed\n"),
         }
         text
     }

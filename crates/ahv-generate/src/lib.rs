@@ -8,12 +8,16 @@ mod args;
 mod compare;
 mod derive;
 mod failure;
+mod files;
+mod interrupt;
+mod manifest;
 mod progress;
 mod project;
 mod python;
 mod report;
 mod surroundings;
 mod tables;
+mod transaction;
 mod write;
 
 use std::collections::BTreeMap;
@@ -23,7 +27,7 @@ use std::time::Instant;
 use ahv_codegen::{Options, Passes, Tree};
 
 pub use args::Args;
-pub use compare::{Difference, Status};
+pub use compare::{Difference, Kept, Status};
 pub use failure::{Failure, TableFault};
 pub use project::Project;
 pub use python::environment;
@@ -37,22 +41,25 @@ use tables::Tables;
 pub const AGREES: u8 = 0;
 /// Exit code of `--check`: tree and tables differ.
 pub const DIFFERS: u8 = 1;
-/// Exit code: bad input, or generation could not do its work. Nothing was written.
+/// Exit code: bad input, or generation could not do its work. Every file is as it was, or named in the message.
 pub const FAILED: u8 = 2;
 
-/// Does what the command line asks for, prints the result, and gives the exit code.
+/// Does what the command line asks for, prints the result, and returns the exit code. After SIGINT or SIGTERM
+/// that is 130 or 143, and temporary files are removed.
 #[must_use]
 pub fn run(args: &Args) -> u8 {
     match answer(args) {
         Ok(code) => code,
         Err(failure) => {
             complain(&failure.render());
-            FAILED
+            failure.exit_code()
         }
     }
 }
 
 fn answer(args: &Args) -> Result<u8, Failure> {
+    interrupt::listen()
+        .map_err(|error| Failure::new(format!("cannot listen to signals: {error}")))?;
     let surroundings = Surroundings::of_process()?;
     if args.check {
         let checked = check(args, &surroundings)?;
@@ -94,7 +101,8 @@ fn print(text: &str) -> Result<(), Failure> {
 /// Derives, emits, and brings the tree on disk up to date.
 ///
 /// # Errors
-/// Bad tables, no usable Python, or a tree that cannot be written; the tree is then as it was.
+/// Bad tables, no usable Python, a signal, or a tree that cannot be written; the tree is then as it was, or the
+/// message names the files that are new.
 pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, Failure> {
     let project = Project::locate(args, surroundings);
     let (tree, _, seconds) = derive_and_emit(args, surroundings, &project)?;
@@ -161,7 +169,7 @@ fn check_from_ir(args: &Args, project: &Project) -> Result<(Vec<Difference>, Own
     if !missing.is_empty() {
         return Ok((missing, owners));
     }
-    let manifest = compare::manifest(&project.out);
+    let manifest = manifest::whole(&project.out);
     match emit(args, &tables, &irs) {
         Ok(tree) => {
             let mut found = compare::differences(&project.out, &tree)?;

@@ -11,6 +11,9 @@ use crate::compare::{Difference, Status};
 use crate::project::Project;
 use crate::tables::Tables;
 
+/// Why a person must act on a stray file.
+const KEPT_BY_HAND: &str = "ahv removes only what it wrote";
+
 /// Wall-clock time of the two steps.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct Seconds {
@@ -67,7 +70,12 @@ impl Generated {
     fn of(&self, status: Status) -> impl Iterator<Item = &(String, Difference)> {
         self.differences
             .iter()
-            .filter(move |(_, difference)| difference.status == status)
+            .filter(move |(_, it)| it.status == status && it.kept.is_none())
+    }
+
+    /// Stray files that were left where they are.
+    fn kept(&self) -> impl Iterator<Item = &(String, Difference)> {
+        self.differences.iter().filter(|(_, it)| it.kept.is_some())
     }
 
     /// For people.
@@ -79,16 +87,24 @@ impl Generated {
             let _ = match difference.status {
                 Status::Differs => writeln!(text, "{path}  +{added} −{removed}"),
                 Status::Missing => writeln!(text, "{path}  created, +{added}"),
-                Status::Stray => writeln!(text, "{path}  removed: no table gives it"),
+                Status::Stray => match difference.kept {
+                    None => writeln!(text, "{path}  removed: no table gives it"),
+                    Some(kept) => writeln!(
+                        text,
+                        "{path}  stray, kept: no table gives it, and {}",
+                        kept.reason()
+                    ),
+                },
             };
         }
         let count = |status| self.of(status).count();
-        let (changed, created, removed) = (
+        let (changed, created, removed, kept) = (
             count(Status::Differs),
             count(Status::Missing),
             count(Status::Stray),
+            self.kept().count(),
         );
-        if self.differences.is_empty() {
+        if changed + created + removed == 0 {
             text.push_str("nothing changed");
         } else {
             let files = if changed == 1 { "file" } else { "files" };
@@ -96,6 +112,9 @@ impl Generated {
                 text,
                 "{changed} {files} changed, {created} created, {removed} removed"
             );
+        }
+        if kept > 0 {
+            let _ = write!(text, ", {kept} stray kept");
         }
         let Seconds { derive, emit } = self.seconds;
         let _ = writeln!(text, " (derive {derive:.2} s, emit {emit:.2} s)");
@@ -110,10 +129,14 @@ impl Generated {
             let (added, removed) = difference.counts();
             json!({ "path": path, "added": added, "removed": removed })
         });
+        let kept = self
+            .kept()
+            .map(|(path, difference)| json!({ "path": path, "reason": difference.kept }));
         let value = json!({
             "changed": changed.collect::<Vec<_>>(),
             "created": paths(Status::Missing),
             "removed": paths(Status::Stray),
+            "kept": kept.collect::<Vec<_>>(),
             "up_to_date": self.differences.is_empty(),
             "seconds": self.seconds,
         });
@@ -170,19 +193,37 @@ impl Checked {
             let _ = match difference.status {
                 Status::Differs => writeln!(text, "error: {path} does not match {table}"),
                 Status::Missing => writeln!(text, "error: {path} is missing: {table} gives it"),
-                Status::Stray => writeln!(text, "error: {path} is stray: no table gives it"),
+                Status::Stray => match difference.kept {
+                    None => writeln!(text, "error: {path} is stray: no table gives it"),
+                    Some(kept) => writeln!(
+                        text,
+                        "error: {path} is stray: no table gives it, and {}",
+                        kept.reason()
+                    ),
+                },
             };
             text.push_str(&difference.diff(path));
         }
-        let (count, it) = match self.differences.len() {
+        let total = self.differences.len();
+        let kept = self.differences.iter().filter(|(_, it)| it.kept.is_some());
+        let kept = kept.count();
+        let (count, it) = match total {
             1 => ("1 file differs".to_owned(), "it"),
             count => (format!("{count} files differ"), "them"),
         };
-        let _ = writeln!(
-            text,
-            "{count}. To bring {it} up to date, run:  {}",
-            self.command
-        );
+        let _ = match kept {
+            0 => writeln!(
+                text,
+                "{count}. To bring {it} up to date, run:  {}",
+                self.command
+            ),
+            _ if kept == total => writeln!(text, "{count}. Move {it} away: {KEPT_BY_HAND}"),
+            _ => writeln!(
+                text,
+                "{count}. Move the stray files away ({KEPT_BY_HAND}), and run:  {}",
+                self.command
+            ),
+        };
         text
     }
 
@@ -190,7 +231,12 @@ impl Checked {
     #[must_use]
     pub fn json(&self) -> String {
         let differing = self.differences.iter().map(|(path, difference)| {
-            json!({ "path": path, "status": difference.status, "diff": difference.diff(path) })
+            json!({
+                "path": path,
+                "status": difference.status,
+                "diff": difference.diff(path),
+                "kept": difference.kept,
+            })
         });
         let value = json!({
             "agree": self.agrees(),

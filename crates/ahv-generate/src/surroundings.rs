@@ -2,7 +2,7 @@
 
 use std::env;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
@@ -13,28 +13,33 @@ pub struct Surroundings {
     pub current_dir: PathBuf,
     /// `AHV_PYTHON`: the interpreter to use instead of an environment of its own.
     pub python: Option<OsString>,
-    /// Where Python environments and the unpacked generator are kept.
-    pub cache: PathBuf,
+    /// Where Python environments and the unpacked generator are kept; none where nothing names a place.
+    pub cache: Option<PathBuf>,
 }
 
 impl Surroundings {
     /// Those of this process.
     ///
     /// # Errors
-    /// No current folder, or no folder in which a cache could lie.
+    /// No current folder.
     pub fn of_process() -> Result<Self, Failure> {
         let current_dir = env::current_dir()
             .map_err(|error| Failure::new(format!("there is no current folder: {error}")))?;
         // An empty variable is how shells and CI say "not set".
         let variable = |name: &str| env::var_os(name).filter(|value| !value.is_empty());
-        let cache = cache_folder(variable).ok_or_else(|| {
-            Failure::new("found no folder for the cache: HOME is not set")
-                .with_help("set AHV_CACHE_DIR to a folder that can be written")
-        })?;
         Ok(Self {
-            cache: current_dir.join(cache),
+            cache: cache_folder(variable).map(|cache| current_dir.join(cache)),
             python: variable("AHV_PYTHON"),
             current_dir,
+        })
+    }
+
+    /// The folder of the cache, which only a derivation needs.
+    pub(crate) fn cache(&self) -> Result<&Path, Failure> {
+        self.cache.as_deref().ok_or_else(|| {
+            Failure::new("found no folder for the cache: HOME is not set").with_help(
+                "set AHV_CACHE_DIR to a folder that can be written; `--check --from-ir` needs none",
+            )
         })
     }
 }

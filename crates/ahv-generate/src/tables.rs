@@ -8,6 +8,7 @@ use ahv_codegen::{Part, Table};
 use serde::Deserialize;
 
 use crate::failure::{Failure, TableFault};
+use crate::files;
 use crate::project::Project;
 
 /// A table's file.
@@ -49,7 +50,7 @@ impl Tables {
         let (mut sources, mut parsed, mut faults) = (Vec::new(), Vec::new(), Vec::new());
         for path in paths {
             let shown = project.shown(&path);
-            let bytes = fs::read(&path)
+            let bytes = files::read(&path)
                 .map_err(|error| Failure::new(format!("cannot read {shown}: {error}")))?;
             match parse(&path, &shown, bytes) {
                 Ok((text, table)) => {

@@ -16,7 +16,7 @@ fn surroundings(folder: &Path) -> Surroundings {
     Surroundings {
         current_dir: folder.to_owned(),
         python: None,
-        cache: folder.join("cache"),
+        cache: Some(folder.join("cache")),
     }
 }
 

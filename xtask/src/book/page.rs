@@ -105,10 +105,20 @@ fn converted<'a>(
                 events.push(event);
                 events.push(Event::Html("</div>\n".into()));
             }
+            // Nothing in a page is markup of its own: what looks like it is text, and comments are not shown.
+            Event::Html(raw) | Event::InlineHtml(raw) => {
+                if !is_comment(&raw) {
+                    events.push(Event::Text(raw));
+                }
+            }
             other => events.push(other),
         }
     }
     Ok(events)
+}
+
+fn is_comment(html: &str) -> bool {
+    html.starts_with("<!--") && html.trim_end().ends_with("-->")
 }
 
 /// Gives every heading a fragment, and the page its title.

@@ -80,3 +80,22 @@ fn links_that_lead_nowhere_are_errors() {
         assert!(problem.contains(said), "{problem}");
     }
 }
+
+/// A text of a user that came through the generated pages, or none: no page gets markup from it.
+#[test]
+fn html_in_a_page_is_text() {
+    let root = project(&[(
+        "README.md",
+        "<!-- Made by a program. -->\n# P\n\nA <b onclick=\"x()\">word</b>.\n\n<script>alert(1)</script>\n\n\
+         | a |\n|---|\n| <img src=x onerror=y> |\n",
+    )]);
+    let out = root.path().join("book");
+    assert_eq!(build(root.path(), &out), Ok(1));
+    let index = page(&out, "index.html");
+    for raw in ["<script", "<img", "<b ", "Made by"] {
+        assert!(!index.contains(raw), "{raw} in {index}");
+    }
+    for text in ["&lt;script&gt;alert(1)", "&lt;img src=x", "&lt;b onclick"] {
+        assert!(index.contains(text), "no {text} in {index}");
+    }
+}

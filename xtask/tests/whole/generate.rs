@@ -152,6 +152,18 @@ fn bad_tables_have_exit_code_2_and_a_place() {
             "did you mean `gust_rms`?",
         ),
         (
+            "a degree too high",
+            slope,
+            &slope.replace("alpha", "alpha^5*alpha^6"),
+            "is of degree 11; the highest is 9",
+        ),
+        (
+            "a key in two lines",
+            slope,
+            &slope.replace("alpha", "alpha\\n"),
+            "`alpha\\n` is not a monomial",
+        ),
+        (
             "unit system",
             "units = \"ft-slug-s-rad\"",
             "units = \"SI\"",
@@ -264,6 +276,37 @@ fn no_python() {
     // The check from the IR needs none.
     let mut command = scratch.command(&["--check", "--from-ir"]);
     assert_eq!(crate::common::answer(command.env("PATH", "")).code, 0);
+}
+
+/// Python variables that would send it elsewhere, keep it waiting, or make its output unreadable.
+#[test]
+fn hostile_variables_of_python_change_nothing() {
+    let scratch = Scratch::new();
+    let modules = scratch.path("modules");
+    fs::create_dir(&modules).expect("made");
+    for name in ["json", "argparse", "sitecustomize", "usercustomize"] {
+        let text = "raise RuntimeError('the wrong module')\n";
+        fs::write(modules.join(format!("{name}.py")), text).expect("written");
+    }
+    let hostile = |command: &mut Command| {
+        for (name, value) in [
+            ("PYTHONHOME", "/nowhere"),
+            ("PYTHONINSPECT", "1"),
+            ("PYTHONIOENCODING", "utf-16"),
+            ("PYTHONUTF8", "0"),
+            ("PYTHONWARNINGS", "error"),
+            ("PYTHONOPTIMIZE", "2"),
+            ("PYTHONPLATLIBDIR", "nowhere"),
+        ] {
+            command.env(name, value);
+        }
+        let answer = crate::common::answer(command.env("PYTHONPATH", &modules));
+        assert_eq!(answer.code, 0, "{}", answer.stderr);
+        assert!(answer.stdout.contains("agrees with"), "{}", answer.stdout);
+    };
+    hostile(&mut scratch.command(&["--check"]));
+    let python = crate::common::generation_python();
+    hostile(scratch.command(&["--check"]).env("AHV_PYTHON", python));
 }
 
 #[test]

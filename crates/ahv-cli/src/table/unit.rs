@@ -8,8 +8,7 @@ pub(super) struct Unit {
 }
 
 /// The units by name.
-const KNOWN: [(&str, [f64; 4], f64); 10] = [
-    ("1", [0.0; 4], 1.0),
+const KNOWN: [(&str, [f64; 4], f64); 9] = [
     ("ft", [1.0, 0.0, 0.0, 0.0], FOOT),
     ("slug", [0.0, 1.0, 0.0, 0.0], SLUG),
     ("lb", [1.0, 1.0, -2.0, 0.0], POUND),
@@ -29,13 +28,19 @@ const POUND: f64 = 0.453_592_37 * 9.806_65;
 const SLUG: f64 = POUND / FOOT;
 
 impl Unit {
+    const ONE: Self = Self {
+        powers: [0.0; 4],
+        size: 1.0,
+    };
+
     /// A degree in radians.
     pub(super) const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-    /// Reads `slug/ft^3`, `(ft*slug)^0.5/s`, `1/rad`; `None` if it is no unit.
+    /// Reads `slug/ft^3`, `(ft*slug)^0.5/s`, `1/rad`; `None` if it is no unit. The grammar is that of the generator:
+    /// brackets hold names alone, so that no text is too deep.
     pub(super) fn parse(text: &str) -> Option<Self> {
-        let mut rest = text.trim();
-        let unit = product(&mut rest)?;
+        let mut rest = text;
+        let unit = product(&mut rest, power)?;
         rest.is_empty().then_some(unit)
     }
 
@@ -61,41 +66,58 @@ impl Unit {
     }
 }
 
-/// Reads powers joined by `*` and `/` from the start of `rest`.
-fn product(rest: &mut &str) -> Option<Unit> {
-    let mut unit = power(rest)?;
+/// Reads factors joined by `*` and `/` from the start of `rest`.
+fn product(rest: &mut &str, factor: fn(&mut &str) -> Option<Unit>) -> Option<Unit> {
+    let mut unit = factor(rest)?;
     loop {
         unit = if let Some(after) = rest.strip_prefix('*') {
             *rest = after;
-            unit.times(power(rest)?)
+            unit.times(factor(rest)?)
         } else if let Some(after) = rest.strip_prefix('/') {
             *rest = after;
-            unit.times(power(rest)?.power(-1.0))
+            unit.times(factor(rest)?.power(-1.0))
         } else {
             return Some(unit);
         };
     }
 }
 
-/// Reads a name or a product in brackets, with an exponent or without.
+/// Reads 1, a name or a product of names in brackets, with an exponent or without.
 fn power(rest: &mut &str) -> Option<Unit> {
     let base = if let Some(inside) = rest.strip_prefix('(') {
         *rest = inside;
-        let unit = product(rest)?;
+        let unit = product(rest, name)?;
         *rest = rest.strip_prefix(')')?;
         unit
+    } else if let Some(after) = rest.strip_prefix('1') {
+        *rest = after;
+        Unit::ONE
     } else {
-        let word = taken(rest, |c| c.is_ascii_alphanumeric());
-        let &(_, powers, size) = KNOWN.iter().find(|(name, ..)| *name == word)?;
-        Unit { powers, size }
+        name(rest)?
     };
     let Some(after) = rest.strip_prefix('^') else {
         return Some(base);
     };
     *rest = after;
-    let exponent = taken(rest, |c| c.is_ascii_digit() || c == '.' || c == '-');
-    let exponent = exponent.parse::<f64>().ok().filter(|it| it.is_finite())?;
-    Some(base.power(exponent))
+    Some(base.power(exponent(rest)?))
+}
+
+fn name(rest: &mut &str) -> Option<Unit> {
+    let word = taken(rest, |c| c.is_ascii_alphabetic());
+    let &(_, powers, size) = KNOWN.iter().find(|(name, ..)| *name == word)?;
+    Some(Unit { powers, size })
+}
+
+/// One or two digits, and up to three behind a point.
+fn exponent(rest: &mut &str) -> Option<f64> {
+    let text = taken(rest, |c| c.is_ascii_digit() || c == '.');
+    let (whole, fraction) = match text.split_once('.') {
+        Some((whole, fraction)) => (whole, Some(fraction)),
+        None => (text, None),
+    };
+    let allowed = (1..=2).contains(&whole.len())
+        && fraction.is_none_or(|it| (1..=3).contains(&it.len()) && !it.contains('.'));
+    text.parse().ok().filter(|_| allowed)
 }
 
 /// Takes the longest start of `rest` whose characters all are `wanted`.
@@ -118,7 +140,7 @@ mod tests {
     #[test]
     fn units_are_compared() {
         assert_eq!(ratio("slug*ft", "ft*slug"), Some(1.0));
-        assert_eq!(ratio("1/(ft*slug)^0.5", "(ft*slug)^-0.5"), Some(1.0));
+        assert_eq!(ratio("1/(ft*slug)^0.5", "1/(slug*ft)^0.5"), Some(1.0));
         let [acceleration, metre] = [ratio("lb/slug", "ft/s^2"), ratio("ft", "m")];
         assert!((acceleration.expect("the same") - 1.0).abs() < 1e-15);
         assert_eq!(metre, Some(0.3048));
@@ -127,12 +149,23 @@ mod tests {
         assert_eq!(ratio("ft", "s"), None);
     }
 
+    /// What the generator's reader takes and refuses, too.
     #[test]
-    fn what_is_no_unit_is_refused() {
-        for text in [
-            "", "furlong", "ft/", "(ft", "ft)", "ft^", "ft^x", "ft s", "*ft", "2",
-        ] {
-            assert_eq!(Unit::parse(text), None, "{text}");
+    fn both_readers_have_one_grammar() {
+        let cases = include_str!("../../../../generator/tests/units.txt");
+        for case in cases.lines().filter(|line| !line.starts_with('#')) {
+            let (taken, text) = case.split_at(1);
+            let text = text.strip_prefix(' ').unwrap_or(text);
+            assert_eq!(Unit::parse(text).is_some(), taken == "+", "{text:?}");
+        }
+    }
+
+    #[test]
+    fn brackets_are_not_too_deep_for_the_stack() {
+        for depth in [2, 40_000] {
+            let text = format!("{}ft{}", "(".repeat(depth), ")".repeat(depth));
+            assert_eq!(Unit::parse(&text), None, "{depth}");
+            assert_eq!(Unit::parse(&"(".repeat(depth)), None, "{depth}");
         }
     }
 }

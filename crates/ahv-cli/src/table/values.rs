@@ -284,7 +284,10 @@ fn coefficient(quantity: &str, key: &str) -> Option<String> {
                 let known = VARIABLES.iter().position(|&variable| variable == name);
                 let rank = match known {
                     Some(rank) => rank,
-                    None => VARIABLES.len() + name.strip_prefix("eta_")?.parse::<usize>().ok()?,
+                    None => {
+                        let mode: usize = name.strip_prefix("eta_")?.parse().ok()?;
+                        mode.checked_add(VARIABLES.len())?
+                    }
                 };
                 powers.push((rank, name, exponent));
             }

@@ -212,7 +212,7 @@ fn a_table_in_si_is_the_same_vehicle() {
 
 #[test]
 fn faults_are_told_with_their_place() {
-    let bad: [(&str, &str, &str, &[&str]); 12] = [
+    let bad: [(&str, &str, &str, &[&str]); 14] = [
         (
             "com.toml",
             "\"alpha\" = { value = 4.6773",
@@ -291,6 +291,18 @@ fn faults_are_told_with_their_place() {
             &["unknown earth `flta`; did you mean `flat`?"],
         ),
         ("com.toml", "[choices]", "[choices", &["table.toml:"]),
+        (
+            "com.toml",
+            "\"alpha\" = { value = 4.6773",
+            "\"eta_18446744073709551615\" = { value = 4.6773",
+            &["unknown monomial `eta_18446744073709551615`"],
+        ),
+        (
+            "com.toml",
+            "\"alpha\" = { value = 4.6773",
+            "\"al\\u001b\\u202epha\" = { value = 4.6773",
+            &["unknown monomial `al\u{fffd}\u{fffd}pha`"],
+        ),
     ];
     for (table, from, to, parts) in bad {
         let edited = Edited::new(table, from, to);
@@ -349,4 +361,35 @@ fn faults_are_told_with_their_place() {
             "com.toml",
         ],
     );
+}
+
+/// A pipe has no end until somebody writes to it: whoever reads it waits.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_no_table() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let pipe = folder.path().join("com.toml");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.expect("mkfifo runs").success());
+    let pipe = pipe.to_str().expect("UTF-8");
+    fail(
+        &["trim", "--model", "com", "--table", pipe],
+        2,
+        &["com.toml: it is a pipe, a socket or a device, not a file"],
+    );
+}
+
+/// The text of a unit neither ends the program nor fills the screen.
+#[test]
+fn a_unit_of_many_brackets_is_refused() {
+    let unit = format!("{}ft{}", "(".repeat(40_000), ")".repeat(40_000));
+    let from = "S = { value = 17.0, unit = \"ft\"";
+    let edited = Edited::new(
+        "com.toml",
+        from,
+        &from.replace("\"ft\"", &format!("{unit:?}")),
+    );
+    let words = ["trim", "--model", "com", "--table", &edited.path()];
+    let output = fail(&words, 2, &["(((...` is no unit; known are ft"]);
+    assert!(output.stderr.len() < 500);
 }

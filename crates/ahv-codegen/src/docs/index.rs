@@ -2,7 +2,7 @@
 
 use askama::Template;
 
-use super::subject::Subject;
+use super::subject::{Subject, verbatim};
 use crate::EmitError;
 use crate::emit::render;
 use crate::ir::Basis;
@@ -27,7 +27,7 @@ pub(crate) struct Page {
 
 struct TableRow<'a> {
     name: &'a str,
-    file_name: &'a str,
+    file_name: String,
     units: &'a str,
     models: String,
     choices: String,
@@ -63,7 +63,7 @@ pub(super) fn page(subjects: &[Subject<'_>], further: &[Page]) -> Result<String,
         let sets: Vec<&str> = document.sets.iter().map(|set| set.name.as_str()).collect();
         TableRow {
             name: &subject.table.name,
-            file_name: &subject.table.file_name,
+            file_name: verbatim(&subject.table.file_name),
             units: document.units.system.name(),
             models: names.join(", "),
             choices: choices.collect::<Vec<_>>().join(", "),

@@ -7,7 +7,7 @@ use super::equations::{self, Section, SymbolRow};
 use super::functions::{self, Costs, FunctionRow};
 use super::latex::Printer;
 use super::noise::{self, Noise};
-use super::subject::{Subject, cell, inline_math, plain_number, readable, unit_text};
+use super::subject::{Subject, cell, inline_math, plain_number, readable, unit_text, verbatim};
 use crate::EmitError;
 use crate::emit::render;
 use crate::ir::{self, Function, Model};
@@ -20,7 +20,7 @@ const STRICT_FEEDBACK: &str = "strict_feedback";
 #[derive(Template)]
 #[template(path = "docs/model.md")]
 struct ModelPage<'a> {
-    file_name: &'a str,
+    file_name: String,
     table: &'a str,
     units: &'a str,
     model: &'a Model,
@@ -58,7 +58,7 @@ pub(super) fn page(
     let printer = Printer::new(model, document);
     let (feedback, others) = formulas(&printer);
     render(&ModelPage {
-        file_name: &subject.table.file_name,
+        file_name: verbatim(&subject.table.file_name),
         table: &subject.table.name,
         units: document.units.system.name(),
         model,

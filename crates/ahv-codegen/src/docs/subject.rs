@@ -4,6 +4,7 @@ use crate::Table;
 use crate::ir::{Choice, ChoiceOption, Document, Parameter, ParameterSet};
 pub(super) use crate::values::CHOICES;
 use crate::values::Values;
+use crate::wording::visible;
 
 /// Sections of a table that hold parameters of the vehicle and its surroundings rather than a curve fit.
 const PLAIN_SECTIONS: [&str; 5] = ["vehicle", "environment", "modes", "noise", CHOICES];
@@ -85,6 +86,26 @@ pub(super) fn unit_text(unit: &str) -> &str {
 /// Text in a cell of a Markdown table.
 pub(super) fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
+}
+
+/// Text of a user in a cell of a Markdown table: it shows as it stands, whatever it means in Markdown or HTML.
+pub(super) fn verbatim(text: &str) -> String {
+    let text = visible(text);
+    let mut escaped = String::with_capacity(text.len());
+    let (mut rest, mut in_word) = (text.chars().peekable(), false);
+    while let Some(c) = rest.next() {
+        match c {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            // Inside a word an underscore means nothing.
+            '_' if in_word && rest.peek().is_some_and(|c| c.is_alphanumeric()) => escaped.push(c),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '|' | '$' | '~' => escaped.extend(['\\', c]),
+            _ => escaped.push(c),
+        }
+        in_word = c.is_alphanumeric();
+    }
+    escaped
 }
 
 /// A formula in a cell of a Markdown table, or in a sentence.

@@ -4,7 +4,7 @@ use askama::Template;
 use std::collections::BTreeSet;
 
 use super::subject::{
-    CHOICES, Subject, cell, inline_math, is_fit, plain_number, readable, unit_text,
+    CHOICES, Subject, cell, inline_math, is_fit, plain_number, readable, unit_text, verbatim,
 };
 use crate::EmitError;
 use crate::emit::render;
@@ -13,7 +13,7 @@ use crate::ir::{Parameter, ParameterSet};
 #[derive(Template)]
 #[template(path = "docs/table.md")]
 struct TablePage<'a> {
-    file_name: &'a str,
+    file_name: String,
     name: &'a str,
     units: &'a str,
     other_units: &'a str,
@@ -88,7 +88,7 @@ pub(super) fn page(subject: &Subject<'_>) -> Result<String, EmitError> {
         .collect();
     let factors = document.units.factors.iter();
     render(&TablePage {
-        file_name: &subject.table.file_name,
+        file_name: verbatim(&subject.table.file_name),
         name: &subject.table.name,
         units: document.units.system.name(),
         other_units: document.units.other.name(),
@@ -173,7 +173,8 @@ fn row(subject: &Subject<'_>, parameter: &Parameter, sets: &[&str]) -> Row {
         let value = plain_number(subject.replacement(set, &parameter.name));
         Some(format!(
             "{value} ({}, {})",
-            replaced.status, replaced.source
+            replaced.status,
+            verbatim(&replaced.source)
         ))
     };
     Row {
@@ -188,7 +189,7 @@ fn row(subject: &Subject<'_>, parameter: &Parameter, sets: &[&str]) -> Row {
         unit: unit_text(&parameter.unit).to_owned(),
         status: parameter.status.to_string(),
         uncertainty: percent(parameter.uncertainty),
-        source: parameter.source.clone(),
+        source: verbatim(&parameter.source),
     }
 }
 
@@ -264,10 +265,10 @@ fn sources(subject: &Subject<'_>) -> Vec<(String, String)> {
         .map(|r| &r.source);
     let mut found: Vec<(String, String)> = Vec::new();
     for key in document.parameters.iter().map(|p| &p.source).chain(of_sets) {
-        if !found.iter().any(|(known, _)| known == key)
+        if !found.iter().any(|(known, _)| *known == verbatim(key))
             && let Some(text) = subject.table.text(&["sources", key])
         {
-            found.push((key.clone(), cell(text)));
+            found.push((verbatim(key), verbatim(text)));
         }
     }
     found

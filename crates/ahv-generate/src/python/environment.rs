@@ -4,8 +4,9 @@ use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::{interpreter, last_lines, package};
+use super::{interpreter, isolated, last_lines, package};
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::progress::Progress;
 use crate::surroundings::Surroundings;
 
@@ -23,7 +24,7 @@ pub fn environment(
     requirements: &str,
     surroundings: &Surroundings,
 ) -> Result<PathBuf, Failure> {
-    let parent = surroundings.cache.join("python");
+    let parent = surroundings.cache()?.join("python");
     let key = package::key([requirements]);
     if let Some(python) = finished(&parent, &key) {
         return Ok(python);
@@ -39,7 +40,10 @@ pub fn environment(
     let _progress = Progress::announced(format!(
         "setting up the Python environment for {purpose} (once)"
     ));
-    set_up(base, &folder, requirements)?;
+    // What a failure or a signal leaves is of no use.
+    set_up(base, &folder, requirements).inspect_err(|_| {
+        let _ = fs::remove_dir_all(&folder);
+    })?;
     Ok(python_in(&folder))
 }
 
@@ -85,9 +89,9 @@ fn set_up(base: &str, folder: &Path, requirements: &str) -> Result<(), Failure> 
     if folder.exists() {
         fs::remove_dir_all(folder).map_err(Failure::file("remove", folder))?;
     }
-    let mut venv = Command::new(base);
+    let mut venv = isolated(base);
     venv.args(["-m", "venv"]).arg(folder);
-    run(venv).map_err(|reason| {
+    run(&mut venv, |reason| {
         Failure::new(format!(
             "{base} cannot make a virtual environment: {reason}"
         ))
@@ -98,7 +102,11 @@ fn set_up(base: &str, folder: &Path, requirements: &str) -> Result<(), Failure> 
 
     let list = folder.join("requirements.txt");
     fs::write(&list, requirements).map_err(Failure::file("write", &list))?;
-    let mut pip = Command::new(python_in(folder));
+    let mut pip = isolated(python_in(folder));
+    // Where pip unpacks, so that it goes with the folder.
+    for variable in ["TMPDIR", "TEMP", "TMP"] {
+        pip.env(variable, folder);
+    }
     pip.args([
         "-m",
         "pip",
@@ -109,7 +117,7 @@ fn set_up(base: &str, folder: &Path, requirements: &str) -> Result<(), Failure> 
     ])
     .args(["--require-hashes", "--only-binary", ":all:", "-r"])
     .arg(&list);
-    run(pip).map_err(|reason| {
+    run(&mut pip, |reason| {
         Failure::new(format!(
             "pip could not install the Python packages: {reason}"
         ))
@@ -125,20 +133,17 @@ fn set_up(base: &str, folder: &Path, requirements: &str) -> Result<(), Failure> 
         .map_err(Failure::file("write", &marker))
 }
 
-/// Runs a program; when it fails, the end of what it said.
-fn run(mut command: Command) -> Result<(), String> {
-    let output = command
-        .env_remove("PYTHONPATH")
-        .output()
-        .map_err(|error| error.to_string())?;
+/// Runs a program; when it fails, `failed` gets the end of what it said.
+fn run(command: &mut Command, failed: impl Fn(String) -> Failure) -> Result<(), Failure> {
+    let output = interrupt::output(command, |error| failed(error.to_string()))?;
     if output.status.success() {
         return Ok(());
     }
-    // venv tells its troubles on standard output.
+    // venv writes its errors to standard output.
     let said = if output.stderr.is_empty() {
         &output.stdout
     } else {
         &output.stderr
     };
-    Err(format!("{}{}", output.status, last_lines(said)))
+    Err(failed(format!("{}{}", output.status, last_lines(said))))
 }

@@ -4,8 +4,9 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::process::Command;
 
-use super::{MODULES, last_lines};
+use super::{MODULES, given_command, isolated, last_lines};
 use crate::failure::Failure;
+use crate::interrupt;
 
 const OLDEST: Version = Version(3, 11);
 const NAMES: [&str; 5] = [
@@ -16,7 +17,8 @@ const NAMES: [&str; 5] = [
     "python",
 ];
 /// Prints the version, then those of the named modules that it does not find.
-const PROBE: &str = "import sys, importlib.util as u
+const PROBE: &str = "import os, sys, importlib.util as u
+sys.path = [p for p in sys.path if p] + os.environ.get('PYTHONPATH', '').split(os.pathsep)
 print(*sys.version_info[:2])
 print(*[m for m in sys.argv[1:] if u.find_spec(m) is None])";
 
@@ -39,8 +41,9 @@ pub(super) fn given(python: &OsStr) -> Result<PathBuf, Failure> {
             MODULES.join(" and ")
         ))
     };
-    let (version, missing) =
-        probe(python, &MODULES).map_err(|reason| fail(format!("which cannot be run: {reason}")))?;
+    let (version, missing) = probe(given_command(python), &MODULES, |reason| {
+        fail(format!("which cannot be run: {reason}"))
+    })?;
     if version < OLDEST {
         return Err(fail(format!(
             "which is Python {version}; generation needs {OLDEST}"
@@ -56,9 +59,10 @@ pub(super) fn given(python: &OsStr) -> Result<PathBuf, Failure> {
 pub(super) fn find() -> Result<(&'static str, Version), Failure> {
     let mut too_old = Vec::new();
     for name in NAMES {
-        match probe(OsStr::new(name), &[]) {
+        match probe(isolated(name), &[], Failure::new) {
             Ok((version, _)) if version >= OLDEST => return Ok((name, version)),
             Ok((version, _)) => too_old.push(format!("{name} is {version}")),
+            Err(interrupted @ Failure::Interrupted { .. }) => return Err(interrupted),
             // Not there, or a version manager's stand-in for one that is not there.
             Err(_) => {}
         }
@@ -74,16 +78,19 @@ pub(super) fn find() -> Result<(&'static str, Version), Failure> {
     .with_help("install one, or set AHV_PYTHON to its path; `--check --from-ir` needs none"))
 }
 
-fn probe(python: &OsStr, modules: &[&str]) -> Result<(Version, Vec<String>), String> {
-    let output = Command::new(python)
-        .args(["-c", PROBE])
-        .args(modules)
-        .output()
-        .map_err(|error| error.to_string())?;
+fn probe(
+    mut python: Command,
+    modules: &[&str],
+    failed: impl Fn(String) -> Failure,
+) -> Result<(Version, Vec<String>), Failure> {
+    python.args(["-c", PROBE]).args(modules);
+    let output = interrupt::output(&mut python, |error| failed(error.to_string()))?;
     if !output.status.success() {
-        return Err(format!("{}{}", output.status, last_lines(&output.stderr)));
+        let said = last_lines(&output.stderr);
+        return Err(failed(format!("{}{said}", output.status)));
     }
-    answer(&String::from_utf8_lossy(&output.stdout)).ok_or_else(|| "it is no Python".to_owned())
+    answer(&String::from_utf8_lossy(&output.stdout))
+        .ok_or_else(|| failed("it is no Python".to_owned()))
 }
 
 fn answer(text: &str) -> Option<(Version, Vec<String>)> {

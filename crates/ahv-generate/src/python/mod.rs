@@ -5,7 +5,7 @@ mod interpreter;
 mod package;
 
 use std::env;
-use std::ffi::OsString;
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -16,59 +16,96 @@ pub use environment::environment;
 
 /// What the derivation imports, and an interpreter named by `AHV_PYTHON` must therefore have.
 const MODULES: [&str; 2] = ["casadi", "pint"];
+/// How Python starts the report of an exception.
+const TRACEBACK: &str = "Traceback (most recent call last)";
 const REQUIREMENTS: &str = include_str!("../../python/requirements.txt");
 
 /// An interpreter that can run the generator, and the folder of the generator.
 pub(crate) struct Generator {
     interpreter: PathBuf,
-    search_path: OsString,
+    given: bool,
+    package: PathBuf,
 }
 
 /// The interpreter that `AHV_PYTHON` names, else one of ahv's own environment.
 pub(crate) fn for_generation(surroundings: &Surroundings) -> Result<Generator, Failure> {
-    let (interpreter, inherited) = match &surroundings.python {
-        // Its modules may be found through the caller's PYTHONPATH, so that stays.
-        Some(given) => (interpreter::given(given)?, env::var_os("PYTHONPATH")),
-        None => (environment("generation", REQUIREMENTS, surroundings)?, None),
+    let interpreter = match &surroundings.python {
+        Some(given) => interpreter::given(given)?,
+        None => environment("generation", REQUIREMENTS, surroundings)?,
     };
-    let package = package::unpack(&surroundings.cache)?;
-    let folders = [package]
-        .into_iter()
-        .chain(inherited.iter().flat_map(env::split_paths));
-    let search_path = env::join_paths(folders).map_err(|error| {
-        Failure::new(format!(
-            "the cache folder cannot stand in PYTHONPATH: {error}"
-        ))
-        .with_help("set AHV_CACHE_DIR to another folder")
-    })?;
     Ok(Generator {
         interpreter,
-        search_path,
+        given: surroundings.python.is_some(),
+        package: package::unpack(surroundings.cache()?)?,
     })
 }
 
 impl Generator {
-    /// `python -m ahv_generator`, ready for its arguments.
+    /// The generator, ready for its arguments.
     pub(crate) fn command(&self) -> Command {
-        let mut command = Command::new(&self.interpreter);
+        let mut command = if self.given {
+            given_command(self.interpreter.as_os_str())
+        } else {
+            isolated(&self.interpreter)
+        };
         // -P: a file in the current folder must not be taken for a module.
-        command.args(["-P", "-X", "utf8", "-m", "ahv_generator"]);
-        command.env("PYTHONPATH", &self.search_path);
+        command.args(["-P", "-X", "utf8"]).arg(&self.package);
         command
     }
 }
 
-/// The end of what a program printed, as further lines of a message.
+/// A Python that no variable of the environment changes: not where it looks for modules, not how it prints, not
+/// what it does at its end.
+fn isolated(python: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(python);
+    for (name, _) in env::vars_os() {
+        if name.to_string_lossy().starts_with("PYTHON") {
+            command.env_remove(name);
+        }
+    }
+    command.arg("-E");
+    command
+}
+
+/// The same for the interpreter that `AHV_PYTHON` names. Its modules may lie in the caller's PYTHONPATH: the program
+/// that runs appends that itself, so that it hides nothing of the standard library.
+fn given_command(python: &OsStr) -> Command {
+    let mut command = isolated(python);
+    if let Some(path) = env::var_os("PYTHONPATH") {
+        command.env("PYTHONPATH", path);
+    }
+    command
+}
+
+/// The end of what a program printed, as further lines of a message. Of a traceback of Python only what it is about.
 pub(crate) fn last_lines(output: &[u8]) -> String {
     const KEPT: usize = 12;
     let text = String::from_utf8_lossy(output);
+    let traceback = text.contains(TRACEBACK);
+    let frame = |line: &str| line.starts_with(TRACEBACK) || line.starts_with(' ');
     let lines: Vec<&str> = text
         .lines()
-        .filter(|line| !line.trim().is_empty())
+        .filter(|line| !line.trim().is_empty() && !(traceback && frame(line)))
         .collect();
     let first = lines.len().saturating_sub(KEPT);
     lines[first..]
         .iter()
         .map(|line| format!("\n    {}", line.trim_end()))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::last_lines;
+
+    #[test]
+    fn of_a_traceback_the_error_is_left() {
+        let said = "warning\nTraceback (most recent call last):\n  File \"a.py\", line 1, in f\n    f()\n    ^^^\n\
+                    OverflowError: too large\n";
+        assert_eq!(
+            last_lines(said.as_bytes()),
+            "\n    warning\n    OverflowError: too large"
+        );
+        assert_eq!(last_lines(b"one\n  two\n"), "\n    one\n      two");
+    }
 }

@@ -10,11 +10,25 @@ use crate::failure::Failure;
 /// Paths below `ahv_generator/` and texts.
 const PACKAGE: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/modules.rs"));
 
+/// What runs when Python is given the folder. What the caller's PYTHONPATH names comes last.
+const LAUNCHER: &str = "import os
+import sys
+
+sys.path += filter(None, os.environ.get(\"PYTHONPATH\", \"\").split(os.pathsep))
+
+from ahv_generator.__main__ import main
+
+sys.exit(main())
+";
+
 /// The folder that holds `ahv_generator/`, named after the content, so that two versions of this
 /// program never meet in it.
 pub(super) fn unpack(cache: &Path) -> Result<PathBuf, Failure> {
     let parent = cache.join("generator");
-    let folder = parent.join(key(PACKAGE.iter().flat_map(|(name, text)| [*name, *text])));
+    let folder = parent.join(key(PACKAGE
+        .iter()
+        .flat_map(|(name, text)| [*name, *text])
+        .chain([LAUNCHER])));
     if folder.is_dir() {
         return Ok(folder);
     }
@@ -26,6 +40,8 @@ pub(super) fn unpack(cache: &Path) -> Result<PathBuf, Failure> {
         fs::create_dir_all(folder).map_err(Failure::file("make", folder))?;
         fs::write(&path, text).map_err(Failure::file("write", &path))?;
     }
+    let launcher = scratch.path().join("__main__.py");
+    fs::write(&launcher, LAUNCHER).map_err(Failure::file("write", &launcher))?;
     // A rename makes the folder appear whole, or not at all when another process was faster.
     match fs::rename(scratch.path(), &folder) {
         Err(_) if folder.is_dir() => Ok(folder),

@@ -80,6 +80,32 @@ fn a_file_that_cannot_be_read() {
     );
 }
 
+/// A pipe has no end until somebody writes to it: whoever reads it waits.
+#[test]
+fn a_pipe_is_no_table() {
+    let scratch = Scratch::new();
+    fs::remove_file(scratch.path(COM)).expect("removed");
+    scratch.make_pipe(COM);
+    let message = scratch.refusal();
+    assert!(
+        message.starts_with("error: cannot read generator/tables/com.toml: it is a pipe"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_text_of_a_table_does_not_act_on_a_terminal() {
+    let scratch = Scratch::new();
+    let hostile = "[C_L # \u{1b}[2J\u{85}\u{202e}";
+    scratch.edit(COM, "[C_L]", hostile);
+    let message = scratch.refusal();
+    assert!(message.contains("[C_L # ?[2J\u{bf}\u{fffd}"), "{message}");
+    assert!(
+        !message.contains(['\u{1b}', '\u{85}', '\u{202e}']),
+        "{message}"
+    );
+}
+
 #[test]
 fn no_tables() {
     let scratch = Scratch::new();
@@ -158,6 +184,14 @@ fn a_derivation_that_breaks_down_is_shown() {
         );
         assert!(message.contains("ImportError: no libcasadi"), "{message}");
     }
+    let traceback = "Traceback (most recent call last):\\n  File \"x.py\", line 1, in f\\n    f()\\nOverflowError: 34\\n";
+    let derive = format!("printf '{traceback}' >&2; exit 1");
+    scratch.use_python(scratch.interpreter("3 11", "", &derive));
+    let message = scratch.refusal();
+    assert!(
+        message.ends_with("(exit status: 1)\n    OverflowError: 34"),
+        "{message}"
+    );
     scratch.use_python(scratch.interpreter("3 11", "", "true"));
     assert!(scratch.refusal().contains("left no IR for table \"com\""));
 }

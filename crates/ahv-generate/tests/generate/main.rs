@@ -2,7 +2,9 @@
 #![cfg(unix)]
 
 mod bad_tables;
+mod owned;
 mod passes;
+mod process;
 mod python;
 mod scratch;
 mod tree;

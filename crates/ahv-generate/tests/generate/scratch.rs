@@ -3,13 +3,17 @@
 //! with what a test gives it. The real derivation is tested by `xtask`.
 
 use std::ffi::OsString;
-use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
 
 use ahv_generate::{Args, Checked, Failure, Generated, Surroundings};
 use clap::Parser as _;
 use tempfile::TempDir;
+
+/// Holds the command line of a process.
+pub(crate) const LINE: &str = "AHV_TEST_LINE";
 
 const REPOSITORY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
@@ -50,11 +54,19 @@ impl Scratch {
         scratch
     }
 
+    /// Without the largest table, and so a few times faster.
+    pub(crate) fn small() -> Self {
+        let scratch = Self::new();
+        fs::remove_file(scratch.path("generator/tables/dcom.toml")).expect("removed");
+        scratch.generate(&[]).expect("generated");
+        scratch
+    }
+
     /// A script that says it is a Python of that version without these modules, and derives so.
     pub(crate) fn interpreter(&self, version: &str, missing: &str, derive: &str) -> OsString {
         let path = self.folder.path().join("python");
         let probe =
-            format!("if [ \"$1\" = -c ]; then echo '{version}'; echo '{missing}'; exit; fi");
+            format!("if [ \"$2\" = -c ]; then echo '{version}'; echo '{missing}'; exit; fi");
         fs::write(&path, format!("#!/bin/sh\n{probe}\n{derive}\n")).expect("written");
         fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("executable");
         path.into()
@@ -82,11 +94,41 @@ impl Scratch {
         self.write(relative, text.replacen(from, to, 1));
     }
 
+    /// Lists a file in the manifest as one that ahv wrote as it is now.
+    pub(crate) fn list(&self, file: &str) {
+        let hash = ahv_codegen::sha256(&self.read(&format!("generated/{file}")));
+        self.edit(
+            "generated/manifest.json",
+            "\"files\": {\n",
+            &format!("\"files\": {{\n    {file:?}: {hash:?},\n"),
+        );
+    }
+
+    pub(crate) fn make_pipe(&self, relative: &str) {
+        let made = Command::new("mkfifo").arg(self.path(relative)).status();
+        assert!(made.expect("mkfifo runs").success());
+    }
+
+    /// This test program as a process of its own that generates here; its temporary files lie in `temporary`.
+    pub(crate) fn process(&self, line: &[&str]) -> Command {
+        let mut command = Command::new(env::current_exe().expect("a program"));
+        let temporary = self.path("temporary");
+        fs::create_dir_all(&temporary).expect("made");
+        command
+            .args(["--exact", "process::generate_in_a_process", "--nocapture"])
+            .current_dir(self.path(""))
+            .env(LINE, line.join(" "))
+            .env("AHV_PYTHON", &self.python)
+            .env("AHV_CACHE_DIR", self.folder.path().join("cache"))
+            .env("TMPDIR", temporary);
+        command
+    }
+
     fn surroundings(&self) -> Surroundings {
         Surroundings {
             current_dir: self.path(""),
             python: Some(self.python.clone()),
-            cache: self.folder.path().join("cache"),
+            cache: Some(self.folder.path().join("cache")),
         }
     }
 

@@ -1,0 +1,120 @@
+//! Generation as a process: its exit codes, its signals and its environment.
+
+use crate::scratch::{LINE, Scratch, args};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use std::{env, fs, process, thread};
+
+/// What [`Scratch::process`] runs; nothing in the run of all tests.
+#[test]
+fn generate_in_a_process() {
+    if let Ok(line) = env::var(LINE) {
+        let line: Vec<&str> = line.split_whitespace().collect();
+        process::exit(ahv_generate::run(&args(&line)).into());
+    }
+}
+
+fn is_alive(pid: &str) -> bool {
+    let mut kill = Command::new("kill");
+    let done = kill.args(["-0", pid]).stderr(Stdio::null()).status();
+    done.expect("kill runs").success()
+}
+
+fn eventually(what: &str, done: impl Fn() -> bool) {
+    let start = Instant::now();
+    while !done() {
+        assert!(start.elapsed() < Duration::from_secs(30), "{what}");
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The program ends with what it started, and leaves nothing of what it wrote.
+#[test]
+fn a_signal_ends_the_work_and_what_is_temporary() {
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let mut scratch = Scratch::small();
+        let started = scratch.path("started");
+        let derive = format!(
+            "echo $$ > {0}.part; mv {0}.part {0}; exec sleep 60",
+            started.display()
+        );
+        scratch.use_python(scratch.interpreter("3 11", "", &derive));
+        let before = scratch.snapshot("generated");
+        let child = scratch.process(&[]).stderr(Stdio::piped()).spawn();
+        let child = child.expect("it runs");
+        eventually("no derivation", || started.exists());
+        let python = fs::read_to_string(&started).expect("a number");
+        assert!(is_alive(python.trim()));
+        assert!(!is_empty(&scratch.path("temporary")));
+
+        let mut kill = Command::new("kill");
+        kill.arg(format!("-{signal}")).arg(child.id().to_string());
+        assert!(kill.status().expect("kill runs").success());
+        let output = child.wait_with_output().expect("it ends");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{said}");
+        assert!(said.contains("interrupted: no file was changed"), "{said}");
+        eventually("the derivation goes on", || !is_alive(python.trim()));
+        assert!(
+            is_empty(&scratch.path("temporary")),
+            "a temporary file is left"
+        );
+        assert!(before == scratch.snapshot("generated"));
+    }
+}
+
+fn is_empty(folder: &Path) -> bool {
+    fs::read_dir(folder).expect("a folder").next().is_none()
+}
+
+/// Without any place for a cache, for nothing is kept.
+#[test]
+fn the_check_from_the_ir_needs_no_home() {
+    let scratch = Scratch::small();
+    let mut command = scratch.process(&["--check", "--from-ir"]);
+    for variable in ["HOME", "AHV_CACHE_DIR", "XDG_CACHE_HOME", "AHV_PYTHON"] {
+        command.env_remove(variable);
+    }
+    let output = command.output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    command.env(LINE, "--check");
+    let output = command.output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("HOME is not set"), "{said}");
+}
+
+/// The interpreter sees none of the variables that change a Python, but the search path of its caller.
+#[test]
+fn the_variables_of_python_do_not_reach_it() {
+    let mut scratch = Scratch::small();
+    let ir = scratch.path("../ir");
+    let seen = scratch.path("seen");
+    let derive = format!(
+        "env | grep '^PYTHON' > {}; cp {}/*.json \"$8\"",
+        seen.display(),
+        ir.display()
+    );
+    scratch.use_python(scratch.interpreter("3 11", "", &derive));
+    let mut command = scratch.process(&["--check"]);
+    for variable in [
+        "PYTHONHOME",
+        "PYTHONINSPECT",
+        "PYTHONIOENCODING",
+        "PYTHONSTARTUP",
+    ] {
+        command.env(variable, "hostile");
+    }
+    let output = command
+        .env("PYTHONPATH", "/modules")
+        .output()
+        .expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert_eq!(
+        fs::read_to_string(seen).expect("a list"),
+        "PYTHONPATH=/modules\n"
+    );
+}
