@@ -1,6 +1,9 @@
 //! Closed loops: stability of the result, and what would break it.
 #![forbid(unsafe_code)]
 
+#[path = "common/closed_loop.rs"]
+mod closed_loop;
+
 use ahv_analysis::backstepping::{Backstepping, DESIGN, Design};
 use ahv_analysis::track::{
     ACTUATORS, Controller, Flight, Increments, LinearTracker, LoopState, Manoeuvre, PERIOD,
@@ -441,4 +444,15 @@ fn an_actuator_lags_and_tells_its_limits() {
     let (position, limits) = elevator.moved(bound, 2.0 * bound, 0.01);
     assert_eq!(position, bound);
     assert!(limits.position && !limits.rate);
+}
+
+#[test]
+fn the_documentation_has_the_tables_of_the_code() {
+    let documentation = include_str!("../../../docs/closed-loop.md");
+    for table in closed_loop::tables() {
+        assert!(
+            documentation.contains(&table),
+            "docs/closed-loop.md lacks a table of `cargo run --release -p ahv-analysis --example closed_loop`:\n{table}"
+        );
+    }
 }
