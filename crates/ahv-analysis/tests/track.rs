@@ -449,10 +449,21 @@ fn an_actuator_lags_and_tells_its_limits() {
 #[test]
 fn the_documentation_has_the_tables_of_the_code() {
     let documentation = include_str!("../../../docs/closed-loop.md");
-    for table in closed_loop::tables() {
-        assert!(
-            documentation.contains(&table),
-            "docs/closed-loop.md lacks a table of `cargo run --release -p ahv-analysis --example closed_loop`:\n{table}"
-        );
-    }
+    let tables = closed_loop::tables();
+    let mut lacking = tables
+        .iter()
+        .filter(|table| !documentation.contains(*table))
+        .peekable();
+    assert!(
+        lacking.peek().is_none(),
+        "docs/closed-loop.md lacks tables of `cargo run --release -p ahv-analysis --example closed_loop`:\n{}",
+        lacking.map(String::as_str).collect::<Vec<_>>().join("\n")
+    );
+}
+
+#[test]
+fn the_gains_lie_between_the_unstable_pole_and_the_unstable_zero() {
+    let [pole, zero] = closed_loop::unstable(&calm(NOMINAL));
+    assert!(pole > 0.0 && DESIGN.alpha.decay > pole && DESIGN.pitch_rate.decay > pole);
+    assert!(DESIGN.gamma.decay < zero && DESIGN.filters[1] < zero);
 }

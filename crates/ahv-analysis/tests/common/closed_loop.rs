@@ -1,20 +1,23 @@
 //! The tables of `docs/closed-loop.md`.
 
 use ahv_analysis::backstepping::{Backstepping, DESIGN, Design, Loop};
+use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::deviations;
 use ahv_analysis::track::{
     ACTUATORS, Controller, Flight, Increments, LoopState, Manoeuvre, PERIOD, SUBSTEPS, Trial,
     silent,
 };
+use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::{Bounds, Vector};
 use ahv_integrate::WienerSource;
 use ahv_models::dcom::{self, NOMINAL, Parameters, STATE_BOUNDS};
 use ahv_models::sdcom;
+use nalgebra::DMatrix;
 
 /// Flights of each measurement.
-const FLIGHTS: u64 = 10;
-/// Student's 97.5 % point for one degree of freedom less.
-const STUDENT: f64 = 2.262_157;
+const FLIGHTS: u64 = 20;
+/// Student's 97.5 % point for one degree of freedom less than flights.
+const STUDENT: f64 = 2.093_024;
 /// Samples between two that count, for the standard deviations of the errors.
 const EVERY: usize = 25;
 const LOOPS: [&str; 5] = ["V", "h", "γ", "α", "Q"];
@@ -26,9 +29,11 @@ pub(crate) fn tables() -> Vec<String> {
         experiment(&trial),
         boxes(),
         design(&trial),
+        limits_of_gains(&trial),
         weights(),
         calm(&trial),
         observers(&trial),
+        check(&trial),
     ]
 }
 
@@ -165,6 +170,44 @@ fn design(trial: &Trial) -> String {
     )
 }
 
+/// Rightmost pole of SDCOM at its trim and rightmost zero from φ, δe to V, γ, in 1/s.
+pub(crate) fn unstable(trial: &Trial) -> [f64; 2] {
+    let model = sdcom::Model::new(&trial.believed);
+    let level = SteadyFlight::new(trial.manoeuvre.velocity.from, trial.manoeuvre.altitude.from);
+    let at = trim(&model, &level).expect("a trim");
+    let system = linearize(&model, &at.state, &at.input, &["phi", "delta_e"], &[]).expect("finite");
+    let outputs = DMatrix::from_fn(2, system.a.nrows(), |row, column| {
+        f64::from(u8::from(column == [0, 2][row]))
+    });
+    // C B is regular: held outputs leave the inputs −(C B)⁻¹ C A x.
+    let held = (&outputs * &system.b).try_inverse().expect("regular") * &outputs * &system.a;
+    let without = &system.a - &system.b * held;
+    [system.a, without].map(|matrix| {
+        let parts = matrix.complex_eigenvalues();
+        parts
+            .iter()
+            .map(|root| root.re)
+            .fold(f64::NEG_INFINITY, f64::max)
+    })
+}
+
+fn limits_of_gains(trial: &Trial) -> String {
+    let [pole, zero] = unstable(trial);
+    table(
+        &["SDCOM at its trim", "1/s"],
+        &[
+            vec![
+                "unstable pole, of the short period".to_owned(),
+                format!("{pole:.3}"),
+            ],
+            vec![
+                "unstable zero, from φ, δe to V, γ".to_owned(),
+                format!("{zero:.3}"),
+            ],
+        ],
+    )
+}
+
 /// n of the loops at the trim, in 1/s.
 fn added_by_noise(trial: &Trial) -> [f64; 5] {
     let controller = trial.backstepping();
@@ -238,7 +281,12 @@ fn errors_at<M: AsRef<[f64]>>(at: &LoopState<M>, trial: &Trial, time: f64) -> [f
 fn weights() -> String {
     let by_state = deviations::<sdcom::State<f64>>();
     let by_input = deviations::<sdcom::Input<f64>>();
-    let row = |name: &str, value: f64, unit: &str| vec![name.to_owned(), format!("{value} {unit}")];
+    let row = |name: &str, value: f64, unit: &str| {
+        vec![
+            name.to_owned(),
+            format!("{value} {unit}").trim_end().to_owned(),
+        ]
+    };
     assert!(by_state.chi_1.is_infinite() && by_state.chi_3.is_infinite());
     table(
         &["state or input", "deviation that costs 1"],
@@ -248,7 +296,7 @@ fn weights() -> String {
             row("γ", by_state.gamma, "rad"),
             row("α", by_state.alpha, "rad"),
             row("Q", by_state.pitch_rate, "rad/s"),
-            row("φ", by_input.phi, "1"),
+            row("φ", by_input.phi, ""),
             row("δe", by_input.delta_e, "rad"),
         ],
     )
@@ -258,13 +306,18 @@ fn flown<C: Controller>(trial: &Trial, controller: &C) -> Vec<Flight> {
     trial.fly(controller, || ()).expect("a trim")
 }
 
-/// The errors of one flight without noise.
-fn calm(trial: &Trial) -> String {
-    let trial = Trial {
+/// One flight without noise. The controller knows the noise that the vehicle does not have here.
+fn quiet(trial: &Trial) -> Trial {
+    Trial {
         truth: silent(trial.truth),
         runs: 1,
         ..*trial
-    };
+    }
+}
+
+/// The errors of one flight without noise.
+fn calm(trial: &Trial) -> String {
+    let trial = quiet(trial);
     let row = |name: &str, flights: Vec<Flight>| {
         let [velocity, altitude, gamma] = flights[0].errors.map(|error| error.rms);
         vec![
@@ -335,6 +388,46 @@ fn observers(trial: &Trial) -> String {
             "with observers",
             "without",
             "difference and its interval of 95 %",
+        ],
+        &rows,
+    )
+}
+
+/// States and actuators of the flight without noise, for a program that does the same.
+fn check(trial: &Trial) -> String {
+    let trial = quiet(trial);
+    let flight = &flown(&trial, &trial.backstepping())[0];
+    let rows: Vec<_> = flight
+        .samples
+        .iter()
+        .filter(|sample| sample.time % 15.0 == 0.0)
+        .map(|sample| {
+            let (x, u) = (&sample.state, &sample.input);
+            let angles = [x.gamma, x.alpha, x.pitch_rate, u.delta_e];
+            let [gamma, alpha, pitch_rate, delta_e] =
+                angles.map(|angle| format!("{:.6}", angle.to_degrees()));
+            vec![
+                format!("{:.0}", sample.time),
+                format!("{:.5}", x.velocity),
+                format!("{:.4}", x.altitude),
+                gamma,
+                alpha,
+                pitch_rate,
+                format!("{:.6}", u.phi),
+                delta_e,
+            ]
+        })
+        .collect();
+    table(
+        &[
+            "t [s]",
+            "V [ft/s]",
+            "h [ft]",
+            "γ [deg]",
+            "α [deg]",
+            "Q [deg/s]",
+            "φ",
+            "δe [deg]",
         ],
         &rows,
     )
