@@ -20,7 +20,8 @@ const TERMS: usize = 8;
 /// ∫ exp(A s) BBᵀ exp(Aᵀ s) ds. The law has no error at any dt but that of rounding. The noise is additive: Itô and Stratonovich agree.
 ///
 /// Found by series for a small part of the step, and doubling; no case of damping is special. Tested up to ‖A‖ dt =
-/// 25 000, where the variance of one process is exact to 10⁻¹³. With a scalar of several lanes a direction that has no variance in one lane is left out of L in all.
+/// 25 000, where the variance of one process is exact to 10⁻¹³. With a scalar of several lanes a direction that has no
+/// variance in one lane is left out of L in all.
 ///
 /// What shares its noise with other states goes into one transition: with A = [0, 0; 0, −a] and
 /// BBᵀ = [1, b; b, b²] it is the joint law of the Wiener increment, from 0, and of the coloured noise that it drives.
