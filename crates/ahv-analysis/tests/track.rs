@@ -449,6 +449,10 @@ fn an_actuator_lags_and_tells_its_limits() {
 #[test]
 fn the_documentation_has_the_tables_of_the_code() {
     let documentation = include_str!("../../../docs/closed-loop.md");
+    for slow in ["δe through a lag of {} rad/s", "(1 − e^{−{} T})"] {
+        let sentence = slow.replace("{}", &DESIGN.elevator.to_string());
+        assert!(documentation.contains(&sentence), "{sentence}");
+    }
     let tables = closed_loop::tables();
     let mut lacking = tables
         .iter()

@@ -161,7 +161,7 @@ fn design(trial: &Trial) -> String {
             "loop",
             "c [1/s]",
             "r",
-            "r / s",
+            "r / σ_z",
             "n [1/s]",
             "filter ω [rad/s]",
             "observer l [1/s]",
