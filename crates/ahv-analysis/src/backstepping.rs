@@ -12,7 +12,7 @@ use crate::track::{Controller, PERIOD, Reference};
 pub struct Loop {
     /// Decay c of the error, in 1/s.
     pub decay: f64,
-    /// Scale r of the error in the Lyapunov function, in the unit of the state: about twice its standard deviation.
+    /// Scale r of the error in the Lyapunov function, in the unit of the state.
     pub scale: f64,
 }
 
@@ -37,7 +37,7 @@ pub struct Design {
     pub elevator: f64,
 }
 
-/// The design that `ahv track` flies. `docs/closed-loop.md` says how each number was chosen.
+/// The design that `ahv track` flies. `docs/closed-loop.md` has its numbers, beside the errors that were measured with it.
 pub const DESIGN: Design = Design {
     velocity: Loop {
         decay: 0.4,

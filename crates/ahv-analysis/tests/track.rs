@@ -1,6 +1,9 @@
 //! Closed loops: stability of the result, and what would break it.
 #![forbid(unsafe_code)]
 
+#[path = "common/closed_loop.rs"]
+mod closed_loop;
+
 use ahv_analysis::backstepping::{Backstepping, DESIGN, Design};
 use ahv_analysis::track::{
     ACTUATORS, Controller, Flight, Increments, LinearTracker, LoopState, Manoeuvre, PERIOD,
@@ -441,4 +444,36 @@ fn an_actuator_lags_and_tells_its_limits() {
     let (position, limits) = elevator.moved(bound, 2.0 * bound, 0.01);
     assert_eq!(position, bound);
     assert!(limits.position && !limits.rate);
+}
+
+#[test]
+fn the_documentation_has_the_tables_of_the_code() {
+    let documentation = include_str!("../../../docs/closed-loop.md");
+    for slow in ["δe through a lag of {} rad/s", "(1 − e^{−{} T})"] {
+        let sentence = slow.replace("{}", &DESIGN.elevator.to_string());
+        assert!(documentation.contains(&sentence), "{sentence}");
+    }
+    let tables = closed_loop::tables();
+    let mut lacking = tables
+        .iter()
+        .filter(|table| !documentation.contains(*table))
+        .peekable();
+    assert!(
+        lacking.peek().is_none(),
+        "docs/closed-loop.md lacks tables of `cargo run --release -p ahv-analysis --example closed_loop`:\n{}",
+        lacking.map(String::as_str).collect::<Vec<_>>().join("\n")
+    );
+}
+
+#[test]
+fn the_gains_lie_between_the_unstable_pole_and_the_unstable_zero() {
+    let [pole, zero] = closed_loop::unstable(&calm(NOMINAL));
+    assert!(pole > 0.0);
+    for above in [DESIGN.alpha.decay, DESIGN.pitch_rate.decay] {
+        assert!(above > pole, "{above} {pole}");
+    }
+    let [_, of_alpha, _] = DESIGN.filters;
+    for below in [DESIGN.gamma.decay, of_alpha] {
+        assert!(below < zero, "{below} {zero}");
+    }
 }

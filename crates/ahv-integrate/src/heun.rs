@@ -10,8 +10,8 @@ use crate::error::{accept, step_size};
 /// Reads dx = f dt + G ∘ dW: drift and diffusion as the model has them, but in the Stratonovich sense. A model whose
 /// f and G are meant in the Itô sense wants [`ItoHeun`]; for additive noise the two agree.
 ///
-/// Strong order 1 where the columns of G commute, 1/2 elsewhere; weak order 1; order 2 without noise
-/// (Rümelin 1982; Kloeden and Platen 1992).
+/// Strong order 1 where the columns of G commute, 1/2 elsewhere. Weak order 2 for additive noise, 1 elsewhere. Order 2
+/// without noise (Rümelin 1982; Kloeden and Platen 1992).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StratonovichHeun {
     dt: f64,
@@ -47,8 +47,8 @@ impl StratonovichHeun {
 /// The Heun method converges to the Stratonovich solution; this one takes the correction ½ Σ L^k b^k off the
 /// drift first, at both ends of the step, and so converges to the Itô solution of dx = f dt + G dW. For any noise.
 ///
-/// Strong order 1 where the columns of G commute, 1/2 elsewhere; weak order 1; order 2 without noise
-/// (Rümelin 1982; Kloeden and Platen 1992).
+/// Strong order 1 where the columns of G commute, 1/2 elsewhere. Weak order 2 for additive noise, 1 elsewhere. Order 2
+/// without noise (Rümelin 1982; Kloeden and Platen 1992).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoHeun {
     dt: f64,

@@ -12,11 +12,11 @@
 //! | scheme | noise | strong order | weak order |
 //! |---|---|---|---|
 //! | [`ItoEulerMaruyama`] | any | 1/2, additive 1 | 1 |
-//! | [`StratonovichHeun`], [`ItoHeun`] | any | 1/2, commutative 1 | 1 |
+//! | [`StratonovichHeun`], [`ItoHeun`] | any | 1/2, commutative 1 | 1, additive 2 |
 //! | [`ItoMilstein`] | commutative | 1 | 1 |
 //! | [`ItoSra1`] | additive | 3/2 | 2 |
 //! | [`ItoDri1`] | any | none | 2 |
-//! | [`ItoStrangSplitting`] | coloured noise exact, else the inner scheme's | none | the inner scheme's, to 2 |
+//! | [`ItoStrangSplitting`] | coloured noise exact, else the inner scheme's | none | 2 with an inner scheme of weak order 2, else 1 |
 //! | [`LinearTransition`] | linear equations with additive noise | exact in law | exact |
 //!
 //! Noise comes from the caller: [`WienerSource`], [`NormalStream`], [`KeyedNormals`], [`NormalLanes`], a [`BrownianPath`]

@@ -21,7 +21,7 @@ struct Pivot {
 
 /// The order of elimination of a matrix, with the entries that fill in: from the pattern alone, at compile time.
 ///
-/// Pivots stay on the diagonal; the next one is always that with the fewest products to take (Markowitz 1957).
+/// Pivots stay on the diagonal; the next one is that with the fewest products to take (Markowitz 1957).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Elimination {
     pivots: [Pivot; MOST],

@@ -12,9 +12,13 @@ use crate::{ItoHeun, LinearTransition, NoiseError, StepError};
 ///
 /// Half a step of the Ornstein–Uhlenbeck processes by their exact transition, a step of the other states by a scheme of
 /// the caller's with the processes held, half a step of the processes again (Strang 1968). The processes have their exact
-/// law, with the covariance of those that share white noise, at any step size. Weak order 2 where the scheme for the
-/// other states has it, else that scheme's; the step has to resolve the processes' decay only as far as the other states
-/// feel it. As a strong scheme it has no order: the normal numbers stand for no Wiener path.
+/// law, with the covariance of those that share white noise, at any step size. The step has to resolve the processes'
+/// decay only as far as the other states feel it.
+///
+/// The weak order is 2 with a scheme of weak order 2 for the other states, else 1. [`step_heun`](Self::step_heun) has order
+/// 2 if the columns of the other states are additive, and order 1 if they are not; [`step`](Self::step) with
+/// [`ItoDri1`](crate::ItoDri1) has order 2 for any columns. There is no strong order: the normal numbers stand for no Wiener
+/// path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoStrangSplitting<R, const N: usize> {
     half: LinearTransition<R, N>,
@@ -118,7 +122,7 @@ impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
         accept(x, self.coloured_half(model, next, second))
     }
 
-    /// The same with [`ItoHeun`] for the other states; `dw` are the Wiener increments over the step, in s^½, of which those
+    /// The same with [`ItoHeun`] for the other states: weak order 2 if their noise is additive, else 1. `dw` are the Wiener increments over the step, in s^½, of which those
     /// that drive coloured noise are not used.
     ///
     /// # Errors

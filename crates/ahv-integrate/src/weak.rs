@@ -93,11 +93,11 @@ impl<W> WeakIncrements<W> {
 /// methods for the weak approximation of Itô stochastic differential equations"). Expectations converge, not paths: the
 /// increments take few values and stand for no Wiener path.
 ///
-/// The iterated integral of channels k < l is (Î_k Î_l − Ĩ_k Ĩ_l)/2. With Ĩ_k √h in the place of the product, a form in
-/// use, the integrals of (k, l) and (k, l') are correlated, and the order is 1 from three columns on that do not commute.
+/// The iterated integral of channels k < l is (Î_k Î_l − Ĩ_k Ĩ_l)/2. The form with Ĩ_k √h in the place of the product is
+/// not used: it correlates the integrals of (k, l) and (k, l').
 ///
-/// A step costs three drifts and, for each column whose [`StochasticModel::noise_class`] is not `Constant`, nine noise
-/// increments.
+/// A step costs three drifts, one noise increment and up to nine more for each column whose
+/// [`StochasticModel::noise_class`] is not `Constant`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoDri1 {
     dt: f64,

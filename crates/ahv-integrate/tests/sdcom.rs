@@ -309,3 +309,17 @@ fn the_gust_is_additive_by_its_type_and_splits_too() {
     let splitting = ItoStrangSplitting::<f64, 4>::new(&model, &x, &u, 0.02);
     assert!(splitting.is_ok(), "{splitting:?}");
 }
+
+/// The splitting with Heun has weak order 2 only where these vanish: `docs/integrators.md`.
+#[test]
+fn columns_of_its_white_noise_change_along_each_other() {
+    let (model, x, u) = (model(), start(), input());
+    let index = |name| <sdcom::Noise<f64> as Vector<f64>>::index_of(name).expect("a channel");
+    for (along, column) in [("w_alpha", "w_alpha"), ("w_alpha", "w_gamma")] {
+        let (along, column) = (index(along), index(column));
+        let derivative = model.iterated_increment(&x, &u, |j, k| {
+            f64::from(u8::from((j, k) == (along, column)))
+        });
+        assert!(derivative.to_array().iter().any(|entry| *entry != 0.0));
+    }
+}

@@ -4,16 +4,19 @@
 mod common;
 #[path = "common/normal.rs"]
 mod normal;
-#[allow(dead_code, reason = "another test measures the orders")]
 #[path = "common/order.rs"]
 mod order;
 #[allow(dead_code, reason = "another test measures the orders")]
 #[path = "common/strong.rs"]
 mod strong;
 
-use ahv_integrate::{ItoHeun, ItoMilstein, ItoSra1, StepError, StratonovichHeun};
+use ahv_integrate::{
+    ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, StepError, StratonovichHeun,
+    WeakIncrements, WienerIntegrals,
+};
 use normal::{Normal, refined};
-use strong::{Curved, NO_INPUT, START, Spiral, T_END, Two};
+use order::observed_order;
+use strong::{Curved, NO_INPUT, Plane, START, Spiral, T_END, Two};
 
 #[test]
 fn equal_increments_give_equal_bits() {
@@ -63,4 +66,55 @@ fn bad_steps_are_errors_and_keep_the_state() {
         );
     }
     assert_eq!(x, START);
+}
+
+/// A step of [`Curved`] without noise.
+type Still = fn(f64, &mut Plane<f64>) -> Result<(), StepError<f64>>;
+
+#[test]
+fn without_noise_the_schemes_have_the_orders_of_their_documentation() {
+    const ZERO: Two<f64> = Two { w_1: 0.0, w_2: 0.0 };
+    let schemes: [(&str, f64, Still); 6] = [
+        ("ItoEulerMaruyama", 1.0, |dt, x| {
+            ItoEulerMaruyama::new(dt).step(&Curved, x, &NO_INPUT, &ZERO)
+        }),
+        ("ItoMilstein", 1.0, |dt, x| {
+            ItoMilstein::new(dt).step(&Curved, x, &NO_INPUT, &ZERO)
+        }),
+        ("StratonovichHeun", 2.0, |dt, x| {
+            StratonovichHeun::new(dt).step(&Curved, x, &NO_INPUT, &ZERO)
+        }),
+        ("ItoHeun", 2.0, |dt, x| {
+            ItoHeun::new(dt).step(&Curved, x, &NO_INPUT, &ZERO)
+        }),
+        ("ItoSra1", 2.0, |dt, x| {
+            let still = WienerIntegrals { dw: ZERO, dz: ZERO };
+            ItoSra1::new(dt).step(&Curved, x, &NO_INPUT, &still)
+        }),
+        ("ItoDri1", 3.0, |dt, x| {
+            let (three_point, two_point) = (ZERO, ZERO);
+            let still = WeakIncrements {
+                three_point,
+                two_point,
+            };
+            ItoDri1::new(dt).step(&Curved, x, &NO_INPUT, &still)
+        }),
+    ];
+    for (name, order, step) in schemes {
+        let end = |steps: u32| {
+            let mut x = START;
+            for _ in 0..steps {
+                step(T_END / f64::from(steps), &mut x).expect("the drift is bounded by the state");
+            }
+            x
+        };
+        let truth = end(1 << 14);
+        let points = [16, 32, 64, 128].map(|steps| {
+            let x = end(steps);
+            let error = (x.re - truth.re).hypot(x.im - truth.im);
+            (T_END / f64::from(steps), error)
+        });
+        let observed = observed_order(&points);
+        assert!((observed - order).abs() < 0.15, "{name}: {observed}");
+    }
 }

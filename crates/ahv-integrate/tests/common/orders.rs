@@ -63,7 +63,7 @@ pub(crate) fn flight() -> dcom::Model<f64> {
     dcom::Model::new(&dcom::NOMINAL)
 }
 
-fn steppers() -> [Stepper; 7] {
+fn steppers() -> [Stepper; 8] {
     [
         Stepper {
             name: "`Euler`",
@@ -121,6 +121,14 @@ fn steppers() -> [Stepper; 7] {
             from: [16, 48],
             dense: None,
         },
+        Stepper {
+            name: "`Exponential` with the modes of another set",
+            order: 4,
+            mode: |dt, x| Exponential::new(dt, [other_mode()]).step(&mode(), x, &FORCE),
+            flight: |dt, x| Exponential::new(dt, other_modes()).step(&flight(), x, &FLIGHT_INPUT),
+            from: [48, 128],
+            dense: None,
+        },
     ]
 }
 
@@ -130,8 +138,22 @@ fn linear_mode() -> FlexibleMode {
         .expect("the model has these states")
 }
 
+/// A mode with the frequency and damping of set 5.3.
+fn other_mode() -> FlexibleMode {
+    let p = dcom::SECTION5_3;
+    FlexibleMode::new::<flexible_mode::Model<f64>>("eta", "eta_dot", p.omega_1, p.zeta_1)
+        .expect("the model has these states")
+}
+
 pub(crate) fn flight_modes() -> [FlexibleMode; 3] {
-    let p = dcom::NOMINAL;
+    modes_of(&dcom::NOMINAL)
+}
+
+fn other_modes() -> [FlexibleMode; 3] {
+    modes_of(&dcom::SECTION5_3)
+}
+
+fn modes_of(p: &dcom::Parameters<f64>) -> [FlexibleMode; 3] {
     let mode = |position, rate, omega, zeta| {
         FlexibleMode::new::<dcom::Model<f64>>(position, rate, omega, zeta)
             .expect("the model has these states")

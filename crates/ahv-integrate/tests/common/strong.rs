@@ -157,19 +157,77 @@ impl StochasticModel for Curved {
     fn noise_class(_: usize) -> NoiseClass {
         NoiseClass::Constant
     }
+
+    fn noise_commutes(_: usize, _: usize) -> bool {
+        true
+    }
+}
+
+impl ItoCorrected for Curved {
+    fn ito_correction(&self, _: &Plane<f64>, _: &Nothing<f64>) -> Plane<f64> {
+        Plane { re: 0.0, im: 0.0 }
+    }
+}
+
+impl DifferentiableNoise for Curved {
+    fn iterated_increment(
+        &self,
+        _: &Plane<f64>,
+        _: &Nothing<f64>,
+        _: impl FnMut(usize, usize) -> f64,
+    ) -> Plane<f64> {
+        Plane { re: 0.0, im: 0.0 }
+    }
 }
 
 impl AdditiveNoise for Curved {}
+impl CommutativeNoise for Curved {}
 
-/// Root mean square errors of SRA1 at t = 1 over the step sizes 2⁻⁴ to 2⁻⁹ against 2⁻¹³, and their slope.
-pub(crate) fn sra1_order() -> f64 {
-    let (finest, levels) = (13, 4..=9);
-    let run = |level: usize, steps: &[WienerIntegrals<Two<f64>>]| {
-        let (stepper, mut x) = (ItoSra1::new(dt(level)), START);
+/// dx = −x dt + dW₁, dy = (x − y) dt + x dW₂: two columns that do not commute, of which neither has an Itô correction.
+pub(crate) struct Area;
+
+impl Model for Area {
+    type Scalar = f64;
+    type State = Plane<f64>;
+    type Input = Nothing<f64>;
+
+    fn drift(&self, x: &Plane<f64>, _: &Nothing<f64>) -> Plane<f64> {
+        Plane {
+            re: -x.re,
+            im: x.re - x.im,
+        }
+    }
+}
+
+impl StochasticModel for Area {
+    type Noise = Two<f64>;
+
+    fn noise_increment(&self, x: &Plane<f64>, _: &Nothing<f64>, dw: &Two<f64>) -> Plane<f64> {
+        Plane {
+            re: dw.w_1,
+            im: x.re * dw.w_2,
+        }
+    }
+}
+
+impl ItoCorrected for Area {
+    fn ito_correction(&self, _: &Plane<f64>, _: &Nothing<f64>) -> Plane<f64> {
+        Plane { re: 0.0, im: 0.0 }
+    }
+}
+
+/// A step with ΔW and ΔZ.
+pub(crate) type IntegralStep =
+    fn(f64, &mut Plane<f64>, &WienerIntegrals<Two<f64>>) -> Result<(), StepError<f64>>;
+
+/// Root mean square errors of a scheme at t = 1 over the step sizes 2⁻³ to 2⁻⁸ against `reference` at 2⁻¹², and their
+/// slope.
+pub(crate) fn refined_order(step: IntegralStep, reference: IntegralStep) -> f64 {
+    let (finest, levels) = (12, 3..=8);
+    let run = |step: IntegralStep, level: usize, steps: &[WienerIntegrals<Two<f64>>]| {
+        let mut x = START;
         for integrals in steps {
-            stepper
-                .step(&Curved, &mut x, &NO_INPUT, integrals)
-                .expect("the drift is bounded by the state");
+            step(dt(level), &mut x, integrals).expect("the drift is bounded by the state");
         }
         x
     };
@@ -177,11 +235,23 @@ pub(crate) fn sra1_order() -> f64 {
     let mut normal = Normal(5);
     for _ in 0..150 {
         let path = refined::<Two<f64>>(&mut normal, T_END, finest);
-        let end = run(finest, &path[finest]);
+        let end = run(reference, finest, &path[finest]);
         for (level, square) in levels.clone().zip(&mut squares) {
-            let x = run(level, &path[level]);
+            let x = run(step, level, &path[level]);
             *square += (x.re - end.re).powi(2) + (x.im - end.im).powi(2);
         }
     }
     slope(levels, &squares)
+}
+
+/// The strong order on [`Curved`], against SRA1.
+pub(crate) fn curved_order(step: IntegralStep) -> f64 {
+    refined_order(step, |dt, x, w| {
+        ItoSra1::new(dt).step(&Curved, x, &NO_INPUT, w)
+    })
+}
+
+/// The strong order on [`Area`], against itself.
+pub(crate) fn area_order(step: IntegralStep) -> f64 {
+    refined_order(step, step)
 }

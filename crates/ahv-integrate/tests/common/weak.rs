@@ -2,8 +2,8 @@
 //! step are known.
 
 use ahv_core::{
-    AdditiveNoise, ColouredNoise, DifferentiableNoise, ItoCorrected, Model, NoiseClass,
-    StochasticModel, Vector,
+    AdditiveNoise, ColouredNoise, CommutativeNoise, DifferentiableNoise, ItoCorrected, Model,
+    NoiseClass, StochasticModel, Vector,
 };
 use ahv_integrate::{StepError, WeakIncrements};
 
@@ -13,6 +13,7 @@ use super::order::observed_order;
 vector!(Pair, a, b);
 vector!(Three, w_1, w_2, w_3);
 vector!(One, w);
+vector!(Two, coloured, white);
 vector!(Nothing, held);
 
 pub(crate) const NO_INPUT: Nothing<f64> = Nothing { held: 0.0 };
@@ -217,8 +218,25 @@ pub(crate) fn weak_order(step: Step, model: &Linear, exact: &Linear) -> f64 {
     observed_order(&points)
 }
 
-/// da = (−a/2 + 4b/5) dt, driven by the coloured noise db = −2b dt + dW.
-pub(crate) struct Driven;
+/// da = (−a/2 + 4b/5) dt + (p + q a) dW₂, driven by the coloured noise db = −2b dt + dW₁. One of p and q is 0, so that
+/// the second moments obey an equation of their own.
+#[derive(Clone, Copy)]
+pub(crate) struct Driven {
+    additive: f64,
+    multiplicative: f64,
+}
+
+/// The white noise is additive.
+pub(crate) const ADDITIVE: Driven = Driven {
+    additive: 0.9,
+    multiplicative: 0.0,
+};
+
+/// The Itô correction of the white noise is not 0.
+pub(crate) const MULTIPLICATIVE: Driven = Driven {
+    additive: 0.0,
+    multiplicative: 0.9,
+};
 
 const DRIVEN: Matrix = [[-0.5, 0.8], [0.0, -2.0]];
 
@@ -233,24 +251,32 @@ impl Model for Driven {
 }
 
 impl StochasticModel for Driven {
-    type Noise = One<f64>;
+    type Noise = Two<f64>;
 
-    fn noise_increment(&self, _: &Pair<f64>, _: &Nothing<f64>, dw: &One<f64>) -> Pair<f64> {
-        Pair { a: 0.0, b: dw.w }
+    fn noise_increment(&self, x: &Pair<f64>, _: &Nothing<f64>, dw: &Two<f64>) -> Pair<f64> {
+        Pair {
+            a: (self.additive + self.multiplicative * x.a) * dw.white,
+            b: dw.coloured,
+        }
     }
 
-    fn noise_class(_: usize) -> NoiseClass {
-        NoiseClass::Constant
+    fn noise_class(channel: usize) -> NoiseClass {
+        match channel {
+            0 => NoiseClass::Constant,
+            _ => NoiseClass::Diagonal,
+        }
     }
 }
 
 impl ItoCorrected for Driven {
-    fn ito_correction(&self, _: &Pair<f64>, _: &Nothing<f64>) -> Pair<f64> {
-        Pair::splat(0.0)
+    fn ito_correction(&self, x: &Pair<f64>, _: &Nothing<f64>) -> Pair<f64> {
+        let column = self.additive + self.multiplicative * x.a;
+        Pair {
+            a: 0.5 * self.multiplicative * column,
+            b: 0.0,
+        }
     }
 }
-
-impl AdditiveNoise for Driven {}
 
 impl ColouredNoise for Driven {
     fn decay(&self, state: usize) -> Option<f64> {
@@ -258,8 +284,15 @@ impl ColouredNoise for Driven {
     }
 }
 
-/// A step of [`Driven`] with two standard normal numbers, linear in state and numbers.
-pub(crate) type LinearStep = fn(f64, &mut Pair<f64>, [f64; 2]) -> Result<(), StepError<f64>>;
+/// A step of a [`Driven`] with the increments of its white noise and two standard normal numbers for the coloured one,
+/// affine in the state, linear in the numbers.
+pub(crate) type DrivenStep = fn(
+    f64,
+    &Driven,
+    &mut Pair<f64>,
+    &WeakIncrements<Two<f64>>,
+    [f64; 2],
+) -> Result<(), StepError<f64>>;
 
 /// S M Sᵀ.
 fn congruence(s: &Matrix, m: &Matrix) -> Matrix {
@@ -271,30 +304,56 @@ fn congruence(s: &Matrix, m: &Matrix) -> Matrix {
     })
 }
 
-/// E[x xᵀ] of [`Driven`] after one time unit in `steps` steps, from the step's own matrices S and L: S M Sᵀ + L Lᵀ.
-fn driven_moments(step: LinearStep, start: Matrix, steps: u32) -> Matrix {
-    let column = |x: [f64; 2], z: [f64; 2]| {
-        let mut x = Pair::from(x);
-        step(1.0 / f64::from(steps), &mut x, z).expect("a linear step is finite");
-        x.to_array()
-    };
-    let matrix = |[p, q]: [[f64; 2]; 2]| [[p[0], q[0]], [p[1], q[1]]];
-    let unit = [[1.0, 0.0], [0.0, 1.0]];
-    let s = matrix(unit.map(|x| column(x, [0.0; 2])));
-    let l = matrix(unit.map(|z| column([0.0; 2], z)));
-    let noise = congruence(&l, &unit);
+/// E[x xᵀ] after one time unit in `steps` steps: a step is S x + L z + c, of which S and c depend on the outcome of the
+/// white noise, and takes M to the mean of S M Sᵀ + L Lᵀ + c cᵀ.
+fn driven_moments(step: DrivenStep, model: &Driven, start: Matrix, steps: u32) -> Matrix {
+    let dt = 1.0 / f64::from(steps);
+    let parts: Vec<(f64, Matrix, Matrix)> = outcomes(dt)
+        .iter()
+        .map(|(probability, increments)| {
+            let moved = |x: [f64; 2], z: [f64; 2]| {
+                let mut x = Pair::from(x);
+                step(dt, model, &mut x, increments, z).expect("a linear step is finite");
+                x.to_array()
+            };
+            let free = moved([0.0; 2], [0.0; 2]);
+            let matrix =
+                |[p, q]: [[f64; 2]; 2]| std::array::from_fn(|i| [p[i] - free[i], q[i] - free[i]]);
+            let unit = [[1.0, 0.0], [0.0, 1.0]];
+            let s = matrix(unit.map(|x| moved(x, [0.0; 2])));
+            let l = matrix(unit.map(|z| moved([0.0; 2], z)));
+            let noise = congruence(&l, &unit);
+            let noise =
+                std::array::from_fn(|i| std::array::from_fn(|j| noise[i][j] + free[i] * free[j]));
+            (*probability, s, noise)
+        })
+        .collect();
     (0..steps).fold(start, |m, _| {
-        let carried = congruence(&s, &m);
-        std::array::from_fn(|i| std::array::from_fn(|j| carried[i][j] + noise[i][j]))
+        let mut mean = [[0.0; 2]; 2];
+        for (probability, s, noise) in &parts {
+            let carried = congruence(s, &m);
+            for (i, row) in mean.iter_mut().enumerate() {
+                for (j, entry) in row.iter_mut().enumerate() {
+                    *entry += probability * (carried[i][j] + noise[i][j]);
+                }
+            }
+        }
+        mean
     })
 }
 
-/// The observed order of the second moments of [`Driven`]; the truth is a fine solution of their equation.
-pub(crate) fn driven_order(step: LinearStep) -> f64 {
+/// The observed order of the second moments of `model`; the truth is a fine solution of their equation.
+pub(crate) fn driven_order(step: DrivenStep, model: &Driven) -> f64 {
     let start = [[1.0, 0.5], [0.5, 0.25]];
     let rate = |m: &Matrix| -> Matrix {
         let product = |i: usize, j: usize| DRIVEN[i][0] * m[0][j] + DRIVEN[i][1] * m[1][j];
-        let white = [[0.0, 0.0], [0.0, 1.0]];
+        let white = [
+            [
+                model.additive.powi(2) + model.multiplicative.powi(2) * m[0][0],
+                0.0,
+            ],
+            [0.0, 1.0],
+        ];
         std::array::from_fn(|i| {
             std::array::from_fn(|j| product(i, j) + product(j, i) + white[i][j])
         })
@@ -313,10 +372,120 @@ pub(crate) fn driven_order(step: LinearStep) -> f64 {
         }
     }
     let points = [8, 16, 32, 64, 128, 256].map(|steps| {
-        let m = driven_moments(step, start, steps);
+        let m = driven_moments(step, model, start, steps);
         let error = |i: usize, j: usize| m[i][j] - truth[i][j];
         let size = error(0, 0).hypot(error(0, 1)).hypot(error(1, 1));
         (1.0 / f64::from(steps), size)
+    });
+    observed_order(&points)
+}
+
+/// dx = −x dt + dW, dy = (x² − y) dt + dW/2: a nonlinear drift with additive noise, whose moments obey linear equations.
+pub(crate) struct Parabola;
+
+impl Model for Parabola {
+    type Scalar = f64;
+    type State = Pair<f64>;
+    type Input = Nothing<f64>;
+
+    fn drift(&self, x: &Pair<f64>, _: &Nothing<f64>) -> Pair<f64> {
+        Pair {
+            a: -x.a,
+            b: x.a * x.a - x.b,
+        }
+    }
+}
+
+impl StochasticModel for Parabola {
+    type Noise = One<f64>;
+
+    fn noise_increment(&self, _: &Pair<f64>, _: &Nothing<f64>, dw: &One<f64>) -> Pair<f64> {
+        Pair {
+            a: dw.w,
+            b: 0.5 * dw.w,
+        }
+    }
+
+    fn noise_class(_: usize) -> NoiseClass {
+        NoiseClass::Constant
+    }
+}
+
+impl ItoCorrected for Parabola {
+    fn ito_correction(&self, _: &Pair<f64>, _: &Nothing<f64>) -> Pair<f64> {
+        Pair::splat(0.0)
+    }
+}
+
+impl DifferentiableNoise for Parabola {
+    fn iterated_increment(
+        &self,
+        _: &Pair<f64>,
+        _: &Nothing<f64>,
+        _: impl FnMut(usize, usize) -> f64,
+    ) -> Pair<f64> {
+        Pair::splat(0.0)
+    }
+}
+
+impl AdditiveNoise for Parabola {}
+impl CommutativeNoise for Parabola {}
+
+/// A step of [`Parabola`] with two standard normal numbers: ΔW = √h times the first.
+pub(crate) type ParabolaStep = fn(f64, &mut Pair<f64>, [f64; 2]) -> Result<(), StepError<f64>>;
+
+/// E x², E y and E y² of [`Parabola`] after `t` from `start`, by Taylor's series of the equation of its moments.
+fn parabola_moments(start: Pair<f64>, t: f64) -> [f64; 3] {
+    let Pair { a: x, b: y } = start;
+    // 1, E x, E x², E x⁴, E y, E x² y, E y².
+    let rate = |[one, x, x2, x4, y, x2y, y2]: [f64; 7]| {
+        [
+            0.0,
+            -x,
+            one - 2.0 * x2,
+            6.0 * x2 - 4.0 * x4,
+            x2 - y,
+            x4 + x + y - 3.0 * x2y,
+            0.25 * one + 2.0 * (x2y - y2),
+        ]
+    };
+    let mut total = [1.0, x, x * x, x.powi(4), y, x * x * y, y * y];
+    let mut term = total;
+    for n in 1..30 {
+        term = rate(term).map(|v| v * t / f64::from(n));
+        total = std::array::from_fn(|i| total[i] + term[i]);
+    }
+    let [_, _, x2, _, y, _, y2] = total;
+    [x2, y, y2]
+}
+
+/// The observed order of E x², E y and E y² of [`Parabola`]. Every outcome of numbers of few values is visited that have the moments of
+/// the normal ones as far as weak order 2 asks for: three values of the first, two of the second.
+pub(crate) fn parabola_order(step: ParabolaStep) -> f64 {
+    fn means(step: ParabolaStep, dt: f64, x: Pair<f64>, steps: u32) -> [f64; 3] {
+        if steps == 0 {
+            return [x.a * x.a, x.b, x.b * x.b];
+        }
+        let (root, mut sum) = (3.0_f64.sqrt(), [0.0; 3]);
+        for (z, probability) in [(-root, 1.0 / 6.0), (0.0, 2.0 / 3.0), (root, 1.0 / 6.0)] {
+            for v in [-1.0, 1.0] {
+                let mut next = x;
+                step(dt, &mut next, [z, v]).expect("the state stays finite");
+                let after = means(step, dt, next, steps - 1);
+                for (sum, after) in sum.iter_mut().zip(after) {
+                    *sum += 0.5 * probability * after;
+                }
+            }
+        }
+        sum
+    }
+    let (start, t) = (Pair { a: 1.0, b: 0.5 }, 0.125);
+    let truth = parabola_moments(start, t);
+    let points = [2, 3, 4, 5, 6].map(|steps| {
+        let dt = t / f64::from(steps);
+        let found = means(step, dt, start, steps);
+        let error: f64 = (0..3).map(|i| (found[i] - truth[i]).powi(2)).sum();
+        (dt, error.sqrt())
     });
     observed_order(&points)
 }
