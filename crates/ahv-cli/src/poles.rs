@@ -119,17 +119,20 @@ fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Re
         inputs: system.inputs,
         outputs: system.outputs,
     };
-    if let Some(folder) = &arguments.out {
-        let svg = figure::figure(&roots).svg();
-        let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
+    let folder = arguments.out.as_deref();
+    // Whatever fails, the rest is reported; the picture comes last.
+    let written = folder.map_or(Ok(()), |folder| {
         output::folder(folder)?;
-        roots.csv(&folder.join("poles.csv"))?;
-        output::write(&folder.join("poles.svg"), svg)?;
-    }
-    match arguments.json {
+        roots.csv(&folder.join("poles.csv"))
+    });
+    let printed = match arguments.json {
         true => output::print_json(&roots.json()),
         false => print(&roots.text()),
-    }
+    };
+    let drawn = folder.map_or(Ok(()), |folder| {
+        output::picture(&folder.join("poles.svg"), figure::figure(&roots).svg())
+    });
+    written.and(printed).and(drawn)
 }
 
 fn pair(root: Complex<f64>) -> [f64; 2] {

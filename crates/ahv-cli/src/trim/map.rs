@@ -147,22 +147,27 @@ impl<'a, M: FlightModel> Map<'a, M> {
         )
     }
 
-    /// Writes the points as CSV and the picture.
+    /// Writes the points as CSV.
     ///
     /// # Errors
     ///
     /// [`Failure`] if a file cannot be written.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
-        let svg = self.figure().svg();
-        let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
-        output::folder(folder)?;
         let mut csv = CsvFile::create(&folder.join("trim_map.csv"))?;
         csv.row(&self.header())?;
         for cell in &self.cells {
             csv.row(&self.record(cell))?;
         }
-        csv.finish()?;
-        output::write(&folder.join("trim_map.svg"), svg)
+        csv.finish()
+    }
+
+    /// Draws the picture.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`] if the file cannot be written.
+    pub(super) fn draw(&self, folder: &Path) -> Result<(), Failure> {
+        output::picture(&folder.join("trim_map.svg"), self.figure().svg())
     }
 
     fn header(&self) -> Vec<String> {
