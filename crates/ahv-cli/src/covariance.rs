@@ -121,7 +121,7 @@ where
     if let Some(folder) = folder {
         output::folder(folder)?;
     }
-    let _progress = Progress::start(Work {
+    let progress = Progress::start(Work {
         command: "covariance",
         unit: "",
         total: None,
@@ -139,6 +139,7 @@ where
         vehicle: &vehicle,
         arguments,
     };
+    drop(progress);
     // Whatever fails, the rest is reported; the picture comes last.
     let written = folder.map_or(Ok(()), |folder| outcome.write(folder));
     let printed = if arguments.json {
@@ -257,7 +258,7 @@ impl<M: FlightModel> Outcome<'_, M> {
         let _ = write!(
             text,
             "\n{:.1} % of the standard deviations lie in their interval; {lost} flights broke down",
-            100.0 * self.share_inside()
+            Shown(100.0 * self.share_inside())
         );
         text
     }

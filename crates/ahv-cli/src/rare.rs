@@ -189,7 +189,12 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
         );
         // Writing into a String cannot fail.
         for level in &self.estimate.levels {
-            let _ = write!(text, "\n  {}: {:.3}", show(level.value, unit), level.share);
+            let _ = write!(
+                text,
+                "\n  {}: {:.3}",
+                show(level.value, unit),
+                Shown(level.share)
+            );
         }
         let _ = write!(
             text,

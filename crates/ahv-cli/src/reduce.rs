@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
-use crate::number;
+use crate::number::{self, Shown};
 use crate::output;
 use crate::progress::{Progress, Work};
 use crate::simulate::grid::positive;
@@ -328,12 +328,14 @@ fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Str
         let when = mode.max_abs_std_error_time;
         let when = when.map_or_else(
             || "in the long run".to_owned(),
-            |time| format!("at {time:.4} s"),
+            |time| format!("at {:.4} s", Shown(time)),
         );
         let sample = |estimate: &Estimate| {
             format!(
                 "{:.6} [{:.6}, {:.6}]",
-                estimate.value, estimate.low, estimate.high
+                Shown(estimate.value),
+                Shown(estimate.low),
+                Shown(estimate.high)
             )
         };
         // Writing into a String cannot fail.
@@ -344,17 +346,17 @@ fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Str
              std of eta {:.6}, of chi {:.6}; they differ by {:.6} at most, {when}\n  \
              sampled at {} s: eta {}, chi {}\n",
             index + 1,
-            mode.omega,
-            mode.zeta,
-            mode.sigma,
-            mode.decay,
-            mode.intensity,
-            mode.variance_ratio,
-            mode.spectrum_ratio_at_zero,
-            mode.eta_std,
-            mode.chi_std,
-            mode.max_abs_std_error,
-            experiment.steps as f64 * experiment.dt,
+            Shown(mode.omega),
+            Shown(mode.zeta),
+            Shown(mode.sigma),
+            Shown(mode.decay),
+            Shown(mode.intensity),
+            Shown(mode.variance_ratio),
+            Shown(mode.spectrum_ratio_at_zero),
+            Shown(mode.eta_std),
+            Shown(mode.chi_std),
+            Shown(mode.max_abs_std_error),
+            Shown(experiment.steps as f64 * experiment.dt),
             sample(&mode.monte_carlo.eta_std),
             sample(&mode.monte_carlo.chi_std),
         );

@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::condition::Vehicle;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::number;
 use crate::output;
 use crate::vehicle::FlightModel;
 
@@ -184,11 +185,11 @@ impl<'a, M: FlightModel> Map<'a, M> {
     }
 
     fn record(&self, cell: &Cell<M>) -> Vec<String> {
-        let mut record = vec![cell.velocity.to_string(), cell.altitude.to_string()];
+        let mut record = vec![number::cell(cell.velocity), number::cell(cell.altitude)];
         match &cell.result {
             Ok(trim) => {
                 record.push("true".to_owned());
-                record.extend(QUANTITIES.map(|it| it.of::<M>(trim).to_string()));
+                record.extend(QUANTITIES.map(|it| number::cell(it.of::<M>(trim))));
                 record.push(String::new());
             }
             Err(error) => {
