@@ -7,6 +7,7 @@ use std::path::Path;
 use ahv_analysis::disperse::{
     Contribution, Distribution, Kind, Part, Quantity, SolutionError, Spread,
 };
+use ahv_analysis::linearize::LinearizeError;
 use ahv_analysis::statistics::Estimate;
 use ahv_analysis::trim::TrimError;
 use ahv_core::{Vector, first_outside};
@@ -71,6 +72,12 @@ fn reason(error: &SolutionError) -> String {
         }
         SolutionError::Trim(TrimError::NoConvergence { .. }) => {
             "no trim: no convergence".to_owned()
+        }
+        SolutionError::Trim(TrimError::NonFinite { name, .. }) => {
+            format!("no trim: the derivative of {name} is not finite")
+        }
+        SolutionError::Linearize(LinearizeError::NonFinite { row, column, .. }) => {
+            format!("no roots: the derivative of {row} by {column} is not finite")
         }
         other => other.to_string(),
     }
