@@ -51,9 +51,7 @@ impl Progress {
             if io::stderr().is_terminal() {
                 show_bar(work, wait, done);
             } else {
-                while wait(LINE_INTERVAL) {
-                    complain(&work.line(done(), started.elapsed()));
-                }
+                say_lines(wait, || complain(&work.line(done(), started.elapsed())));
             }
         });
         Self {
@@ -81,6 +79,13 @@ impl Drop for Progress {
             // A bar that failed is no failure of the work.
             let _ = thread.join();
         }
+    }
+}
+
+/// A line each time that the work is still going on.
+fn say_lines(mut wait: impl FnMut(Duration) -> bool, mut say: impl FnMut()) {
+    while wait(LINE_INTERVAL) {
+        say();
     }
 }
 
@@ -152,7 +157,20 @@ fn count(value: f64) -> String {
 mod tests {
     use std::time::Duration;
 
-    use super::Work;
+    use super::{Work, say_lines};
+
+    #[test]
+    fn there_is_a_line_every_ten_seconds_and_none_of_short_work() {
+        for lines in [0, 3] {
+            let (mut waited, mut said) = (Duration::ZERO, 0);
+            let wait = |time| {
+                waited += time;
+                waited <= Duration::from_secs(10 * lines)
+            };
+            say_lines(wait, || said += 1);
+            assert_eq!(said, lines);
+        }
+    }
 
     #[test]
     fn a_line_says_what_how_far_how_fast_and_how_long() {
