@@ -49,7 +49,7 @@ enum Command {
     #[cfg(feature = "generate")]
     Generate(generate::Arguments),
     #[command(flatten)]
-    Model(ModelCommand),
+    Model(Box<ModelCommand>),
 }
 
 /// What is done with the generated models.

@@ -173,7 +173,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             )
         };
         let mut text = format!(
-            "{}: {}, {}\n{} of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second on {} threads\n\
+            "{}: {}, {}\n{} of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second, threads {}\n\
              at the end, mean and standard deviation with intervals of 95 %, 0.5 % and 99.5 % points",
             M::NAME,
             self.ready.place,
