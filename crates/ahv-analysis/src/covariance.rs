@@ -46,7 +46,7 @@ pub enum CovarianceError {
         imaginary: f64,
     },
     /// The Lyapunov equation is too badly conditioned.
-    #[error("the Lyapunov equation is solved to {residual} of its terms only")]
+    #[error("the Lyapunov equation is solved to {residual:?} of its terms only")]
     Inaccurate {
         /// Residual over the largest term.
         residual: f64,
@@ -67,7 +67,7 @@ pub enum CovarianceError {
         members: u64,
     },
     /// State or covariance is not finite, or a variance is negative: the step is too long, or the flight diverges.
-    #[error("at {time} s the {what} of {name} is {value}")]
+    #[error("at {time} s the {what} of {name} is {value:?}")]
     Diverged {
         /// In s.
         time: f64,

@@ -10,9 +10,13 @@ mod slopes;
 mod solution;
 mod spread;
 
-use ahv_core::Vector;
-use rayon::prelude::*;
+use std::convert::Infallible;
+use std::sync::atomic::Ordering;
 
+use ahv_core::Vector;
+
+use crate::monte_carlo::Control;
+use crate::ordered::in_order;
 use crate::parametric::Parametric;
 use crate::trim::SteadyFlight;
 
@@ -83,13 +87,14 @@ pub struct Member<X, U> {
     pub values: Vec<Option<f64>>,
 }
 
-/// Vehicles 0 to `members` − 1 of `draws`, each in the flight of `nominal`.
+/// Vehicles 0 to `members` − 1 of `draws`, each in the flight of `nominal`; fewer if `control` stops the work.
 ///
 /// A member does not depend on the others, nor on the number of threads.
 pub fn disperse<M>(
     draws: &Draws<M::Parameters>,
     nominal: &Nominal<M::State, M::Input>,
     members: u64,
+    control: &Control,
 ) -> Vec<Member<M::State, M::Input>>
 where
     M: Parametric,
@@ -98,18 +103,22 @@ where
     M::Input: Send + Sync,
 {
     let member = |number| {
+        if control.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
         let solution = solve::<M>(&draws.member(number), &nominal.flight);
         let values = match &solution {
             Ok(solution) => nominal.values_of(solution),
             Err(_) => vec![None; nominal.quantities.len()],
         };
-        Member {
+        control.done.fetch_add(1, Ordering::Relaxed);
+        Ok::<_, Infallible>(Some(Member {
             number,
             solution,
             values,
-        }
+        }))
     };
-    (0..members).into_par_iter().map(member).collect()
+    in_order(0..members, member).unwrap_or_else(|never| match never {})
 }
 
 /// The spread of each quantity over `members`; `None` where fewer than two have it.

@@ -18,6 +18,7 @@ pub mod ensemble;
 pub mod linearize;
 pub mod lqr;
 pub mod monte_carlo;
+mod ordered;
 pub mod parametric;
 pub mod poles;
 pub mod reduce;

@@ -40,7 +40,7 @@ pub enum LinearizeError {
     #[error("the model has no state called {0}")]
     UnknownOutput(String),
     /// A derivative is infinite or NaN.
-    #[error("the derivative of {row} by {column} is {value}")]
+    #[error("the derivative of {row} by {column} is {value:?}")]
     NonFinite {
         /// Row of the drift.
         row: &'static str,

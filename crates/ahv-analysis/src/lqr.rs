@@ -41,7 +41,7 @@ pub enum LqrError {
         name: &'static str,
     },
     /// A weight is not symmetric, Q has a negative or R a non-positive eigenvalue.
-    #[error("the weight {name} must be symmetric and {must}; its least eigenvalue is {least}")]
+    #[error("the weight {name} must be symmetric and {must}; its least eigenvalue is {least:?}")]
     Weight {
         /// The matrix.
         name: &'static str,
@@ -52,7 +52,7 @@ pub enum LqrError {
     },
     /// No input moves a mode that does not decay.
     #[error(
-        "not stabilizable: no input moves the mode {real:+} {imaginary:+}i, which does not decay"
+        "not stabilizable: no input moves the mode {real:+?} {imaginary:+?}i, which does not decay"
     )]
     NotStabilizable {
         /// Real part of its eigenvalue, in 1/s.
@@ -62,7 +62,7 @@ pub enum LqrError {
     },
     /// The weight Q does not see a mode that does not decay.
     #[error(
-        "not detectable: no weighted state shows the mode {real:+} {imaginary:+}i, which does not decay"
+        "not detectable: no weighted state shows the mode {real:+?} {imaginary:+?}i, which does not decay"
     )]
     NotDetectable {
         /// Real part of its eigenvalue, in 1/s.

@@ -55,7 +55,7 @@ pub enum MonteCarloError {
     )]
     NoFma,
     /// A step that is not positive and finite.
-    #[error("the step must be positive and finite, not {0} s")]
+    #[error("the step must be positive and finite, not {0:?} s")]
     StepSize(f64),
     /// Stopped before a member had flown.
     #[error("stopped before the first members had flown")]

@@ -40,7 +40,7 @@ pub struct Mode {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ReduceError {
     /// A parameter that must be positive and finite is not.
-    #[error("{name} must be positive and finite, not {value}")]
+    #[error("{name} must be positive and finite, not {value:?}")]
     NotPositive {
         /// Name of the parameter.
         name: &'static str,
@@ -48,7 +48,7 @@ pub enum ReduceError {
         value: f64,
     },
     /// The parameters are so large or small that a moment is not representable.
-    #[error("the {name} of the mode with these parameters is {value}")]
+    #[error("the {name} of the mode with these parameters is {value:?}")]
     OutOfRange {
         /// Name of the moment.
         name: &'static str,

@@ -145,7 +145,7 @@ pub enum TrimError {
         name: &'static str,
     },
     /// A derivative is infinite or NaN where the search starts.
-    #[error("the derivative of {name} is {value} where the trim starts")]
+    #[error("the derivative of {name} is {value:?} where the trim starts")]
     NonFinite {
         /// Row of the drift.
         name: &'static str,

@@ -4,6 +4,7 @@
 use ahv_analysis::disperse::{
     Distribution, DrawError, Draws, Group, Kind, Nominal, Spread, disperse, slopes, solve, spreads,
 };
+use ahv_analysis::monte_carlo::Control;
 use ahv_analysis::parametric::Parametric;
 use ahv_analysis::sensitivity::RootVectors;
 use ahv_analysis::trim::SteadyFlight;
@@ -225,7 +226,7 @@ fn small_uncertainties_spread_as_slopes_say() {
     let draws = Draws::new(dcom::NOMINAL, small, Distribution::Uniform, groups, 4).expect("sound");
     let about = Nominal::new::<dcom::Model<f64>>(&dcom::NOMINAL, level()).expect("it trims");
     let slopes = slopes::<dcom::Model<f64>>(&draws, &about).expect("derivatives");
-    let members = disperse::<dcom::Model<f64>>(&draws, &about, MEMBERS);
+    let members = disperse::<dcom::Model<f64>>(&draws, &about, MEMBERS, &Control::default());
     let spreads = spreads(&members, about.quantities.len());
     for (index, (quantity, spread)) in about.quantities.iter().zip(spreads).enumerate() {
         let spread = spread.expect("numbers");
@@ -254,7 +255,7 @@ fn members_do_not_depend_on_each_other() {
     let about = Nominal::new::<sdcom::Model<f64>>(&dcom::NOMINAL, level()).expect("it trims");
     let on = |threads, members| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let run = || disperse::<sdcom::Model<f64>>(&draws, &about, members);
+        let run = || disperse::<sdcom::Model<f64>>(&draws, &about, members, &Control::default());
         pool.expect("threads").install(run)
     };
     let (one, two) = (on(1, 40), on(2, 60));
@@ -276,7 +277,7 @@ fn failures_are_counted_with_their_reasons() {
     let draws = draws(Distribution::Uniform, Vec::new());
     let flight = level().within(&dcom::INPUT_BOUNDS);
     let about = Nominal::new::<dcom::Model<f64>>(&dcom::NOMINAL, flight).expect("it trims");
-    let members = disperse::<dcom::Model<f64>>(&draws, &about, 100);
+    let members = disperse::<dcom::Model<f64>>(&draws, &about, 100, &Control::default());
     let failed: Vec<_> = members
         .iter()
         .filter_map(|it| it.solution.as_ref().err())

@@ -1,6 +1,8 @@
 //! The engine against the steppers of `ahv-integrate`, member by member, and against laws that are known.
 #![forbid(unsafe_code)]
 
+use std::sync::atomic::Ordering;
+
 use ahv_analysis::monte_carlo::{
     Control, Dcom, Experiment, Feedback, Flown, Mode, MonteCarloError, Scheme, Sdcom, Seen,
 };
@@ -286,11 +288,54 @@ fn a_scheme_that_does_not_go_says_why() {
 #[test]
 fn what_is_stopped_tells_of_what_was_flown() {
     let control = Control::default();
-    control
-        .stop
-        .store(true, std::sync::atomic::Ordering::Relaxed);
+    control.stop.store(true, Ordering::Relaxed);
     let stopped = experiment(Scheme::Heun, 1e-3, vec![10]).run(100, 1, &control);
     assert_eq!(stopped.err(), Some(MonteCarloError::Stopped));
+}
+
+/// Whatever is complete is reported, of one group of members or more, with the bits of a run of so many.
+#[test]
+fn a_stopped_run_is_a_run_of_the_members_that_were_flown() {
+    // Two tasks of 16 members are in flight, or of 64.
+    for (steps, enough, in_flight) in [(400, 40, 32), (10, 2100, 128)] {
+        let experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, steps / 2, steps]);
+        let control = Control::default();
+        let mut listed = Vec::new();
+        let stopped = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while control.done.load(Ordering::Relaxed) < enough * steps {
+                    std::thread::yield_now();
+                }
+                control.stop.store(true, Ordering::Relaxed);
+            });
+            experiment.run_and_list(1_000_000, 2, &control, |first, seen| {
+                listed.extend(
+                    (first..)
+                        .zip(seen)
+                        .map(|(member, seen)| (member, seen.last)),
+                );
+            })
+        });
+        let stopped = stopped.expect("some are flown");
+        assert!((enough - in_flight..1_000_000).contains(&stopped.members));
+        assert_eq!((stopped.asked, stopped.members % 8), (1_000_000, 0));
+        let whole = experiment.run(stopped.members, 1, &Control::default());
+        let whole = whole.expect("it goes");
+        assert_eq!(stopped.digest, whole.digest);
+        for (a, b) in stopped.snapshots.iter().zip(&whole.snapshots) {
+            assert_eq!((a.members, &a.covariance), (b.members, &b.covariance));
+            for (a, b) in a.states.iter().zip(&b.states) {
+                assert_eq!((a.mean, a.std, a.quantiles), (b.mean, b.std, b.quantiles));
+            }
+        }
+        let members: Vec<u64> = (0..stopped.members).collect();
+        assert!(listed.iter().map(|it| &it.0).eq(&members));
+        let last = members.len() - 1;
+        assert_eq!(
+            listed[last].1,
+            fly(&experiment, &members[last..]).expect("it goes")[0].last
+        );
+    }
 }
 
 /// By SciPy 1.17: `binomtest(count, of).proportion_ci(method="wilson")`.

@@ -5,6 +5,7 @@
 mod closed_loop;
 
 use ahv_analysis::backstepping::{Backstepping, DESIGN, Design};
+use ahv_analysis::monte_carlo::Control;
 use ahv_analysis::track::{
     ACTUATORS, Controller, Flight, Increments, LinearTracker, LoopState, Manoeuvre, PERIOD,
     Statistics, Trial, silent,
@@ -57,7 +58,9 @@ fn advance<C: Controller>(
 #[test]
 fn without_noise_the_errors_vanish() {
     let trial = calm(NOMINAL);
-    let flights = trial.fly(&trial.backstepping(), || ()).expect("a trim");
+    let flights = trial
+        .fly(&trial.backstepping(), &Control::default())
+        .expect("a trim");
     let [velocity, altitude, gamma] = final_errors(&flights[0]);
     assert_abs_diff_eq!(velocity, 0.0, epsilon = 0.01);
     assert_abs_diff_eq!(altitude, 0.0, epsilon = 0.5);
@@ -66,7 +69,7 @@ fn without_noise_the_errors_vanish() {
     assert!(velocity < 0.5 && altitude < 20.0 && gamma.to_degrees() < 0.1);
     // The regulator has no integral action, and its linearisation is that of the start.
     let flights = trial
-        .fly(&trial.linear().expect("a regulator"), || ())
+        .fly(&trial.linear().expect("a regulator"), &Control::default())
         .expect("a trim");
     let [velocity, altitude, gamma] = final_errors(&flights[0]);
     assert_abs_diff_eq!(velocity, 0.0, epsilon = 1.0);
@@ -82,8 +85,8 @@ fn with_noise_no_flight_leaves_the_validity_box() {
     };
     let linear = trial.linear().expect("a regulator");
     for flights in [
-        trial.fly(&trial.backstepping(), || ()),
-        trial.fly(&linear, || ()),
+        trial.fly(&trial.backstepping(), &Control::default()),
+        trial.fly(&linear, &Control::default()),
     ] {
         let flights = flights.expect("a trim");
         let statistics = Statistics::of(&flights).expect("flights");
@@ -144,7 +147,9 @@ fn coefficients_may_be_wrong() {
         c_l_alpha: 0.9 * NOMINAL.c_l_alpha,
         ..NOMINAL
     });
-    let flights = trial.fly(&trial.backstepping(), || ()).expect("a trim");
+    let flights = trial
+        .fly(&trial.backstepping(), &Control::default())
+        .expect("a trim");
     let [velocity, altitude, _] = final_errors(&flights[0]);
     assert_abs_diff_eq!(velocity, 0.0, epsilon = 0.05);
     assert_abs_diff_eq!(altitude, 0.0, epsilon = 1.0);
@@ -182,7 +187,7 @@ fn a_wrong_sign_of_a_gain_shows() {
         };
         let controller = trial.backstepping();
         assert!(poles(&trial, &controller, 0)[0].re > 0.0, "{what}");
-        let flights = trial.fly(&controller, || ()).expect("a trim");
+        let flights = trial.fly(&controller, &Control::default()).expect("a trim");
         assert!(
             flights[0].departure.is_some() || flights[0].errors[0].max > 20.0,
             "{what}"
@@ -213,18 +218,18 @@ fn threads_do_not_matter() {
             .num_threads(threads)
             .build()
             .expect("a pool");
-        pool.install(|| trial.fly(&controller, || ()).expect("a trim"))
+        pool.install(|| trial.fly(&controller, &Control::default()).expect("a trim"))
     });
     assert_eq!(flights[0], flights[1]);
     // A member is the same in any experiment, and another seed is another noise.
     let one = Trial { runs: 1, ..trial };
     assert_eq!(
-        one.fly(&controller, || ()).expect("a trim")[0],
+        one.fly(&controller, &Control::default()).expect("a trim")[0],
         flights[0][0]
     );
     let other = Trial { seed: 4, ..one };
     assert_ne!(
-        other.fly(&controller, || ()).expect("a trim")[0],
+        other.fly(&controller, &Control::default()).expect("a trim")[0],
         flights[0][0]
     );
 }
@@ -337,7 +342,7 @@ fn the_sampled_regulator_is_as_the_linear_prediction() {
 fn the_lyapunov_function_decays_along_the_manoeuvre() {
     let trial = calm(NOMINAL);
     let controller = Backstepping::new(DESIGN, &NOMINAL);
-    for sample in &trial.fly(&controller, || ()).expect("a trim")[0].samples {
+    for sample in &trial.fly(&controller, &Control::default()).expect("a trim")[0].samples {
         let x = sdcom::State {
             velocity: sample.state.velocity,
             altitude: sample.state.altitude,

@@ -6,6 +6,7 @@ use ahv_core::Vector;
 
 use crate::failure::Failure;
 use crate::names;
+use crate::number::Shown;
 use crate::units::Units;
 
 const RAD_PER_DEG: f64 = PI / 180.0;
@@ -126,6 +127,8 @@ fn parse_value(name: &str, text: &str, unit: &'static str) -> Result<f64, String
 /// A value with its unit for a person to read: angles are in deg.
 pub(crate) fn show(value: f64, unit: &str) -> String {
     match unit {
+        // A unit belongs to a number.
+        _ if !value.is_finite() => number(value),
         "1" => number(value),
         "rad" => format!("{} deg", number(value / RAD_PER_DEG)),
         "rad/s" => format!("{} deg/s", number(value / RAD_PER_DEG)),
@@ -135,8 +138,8 @@ pub(crate) fn show(value: f64, unit: &str) -> String {
 
 /// Six decimals at most; powers of ten where decimals would be unreadable.
 fn number(value: f64) -> String {
-    if value.abs() >= 1e9 {
-        return format!("{value:.6e}");
+    if value.is_nan() || value.abs() >= 1e9 {
+        return format!("{:.6e}", Shown(value));
     }
     let decimals = format!("{value:.6}");
     match decimals.trim_end_matches('0').trim_end_matches('.') {
@@ -156,5 +159,7 @@ mod tests {
         assert_eq!(show(0.5_f64.to_radians(), "rad"), "0.5 deg");
         assert_eq!(show(-0.1_f64.to_radians(), "rad/s"), "-0.1 deg/s");
         assert_eq!(show(-1.25e50, "ft/s"), "-1.250000e50 ft/s");
+        assert_eq!(show(f64::NAN, "1"), "not finite");
+        assert_eq!(show(f64::INFINITY, "rad"), "not finite");
     }
 }

@@ -16,8 +16,10 @@ use crate::assignment::show;
 use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
+use crate::number::{Shown, cell, time};
 use crate::output::{self, Pairs};
 use crate::place::Place;
+use crate::progress::{Progress, Work};
 use crate::simulate::grid::positive;
 use crate::vehicle::{FlightModel, ModelName};
 
@@ -115,6 +117,15 @@ where
         members: arguments.members,
         seed: arguments.seed,
     };
+    let folder = arguments.out.as_deref();
+    if let Some(folder) = folder {
+        output::folder(folder)?;
+    }
+    let progress = Progress::start(Work {
+        command: "covariance",
+        unit: "",
+        total: None,
+    });
     let failed = |error: CovarianceError| match error {
         CovarianceError::Times => Failure::Request(format!("--dt and --t-end: {error}")),
         _ => Failure::Numeric(format!("{}: {error}", M::NAME)),
@@ -128,14 +139,18 @@ where
         vehicle: &vehicle,
         arguments,
     };
-    if let Some(folder) = &arguments.out {
-        outcome.write(folder)?;
-    }
-    if arguments.json {
+    drop(progress);
+    // Whatever fails, the rest is reported; the picture comes last.
+    let written = folder.map_or(Ok(()), |folder| outcome.write(folder));
+    let printed = if arguments.json {
         output::print_json(&outcome.json())
     } else {
         print(&outcome.text())
-    }
+    };
+    let drawn = folder.map_or(Ok(()), |folder| {
+        output::picture(&folder.join("covariance.svg"), figure::draw(&outcome))
+    });
+    written.and(printed).and(drawn)
 }
 
 #[derive(Serialize)]
@@ -190,7 +205,7 @@ impl<M: FlightModel> Outcome<'_, M> {
 
     fn json(&self) -> Json<'_> {
         let time = |(linear, sampled): (&Spreading<M::State>, &Sampled)| JsonTime {
-            time: linear.time,
+            time: time(linear.time),
             members: sampled.members,
             linear_std: named::<M::State, _>(&linear.std()),
             sampled_std: named::<M::State, _>(&sampled.std),
@@ -231,7 +246,7 @@ impl<M: FlightModel> Outcome<'_, M> {
                 let _ = write!(
                     text,
                     "\n  {name:<12} at {:<5} s: {:<16} flown {} [{}, {}]",
-                    linear.time,
+                    Shown(time(linear.time)),
                     shown(std),
                     shown(flown.value),
                     shown(flown.low),
@@ -243,16 +258,13 @@ impl<M: FlightModel> Outcome<'_, M> {
         let _ = write!(
             text,
             "\n{:.1} % of the standard deviations lie in their interval; {lost} flights broke down",
-            100.0 * self.share_inside()
+            Shown(100.0 * self.share_inside())
         );
         text
     }
 
-    /// Writes picture and table.
+    /// Writes the table.
     fn write(&self, folder: &Path) -> Result<(), Failure> {
-        output::folder(folder)?;
-        let svg = figure::draw(self).map_err(|error| Failure::Numeric(error.to_string()))?;
-        output::write(&folder.join("covariance.svg"), svg)?;
         let mut file = CsvFile::create(&folder.join("covariance.csv"))?;
         let units = self.vehicle.units.labels::<M::State>();
         let columns = M::State::NAMES.iter().zip(units).flat_map(|(name, unit)| {
@@ -269,8 +281,8 @@ impl<M: FlightModel> Outcome<'_, M> {
         for (linear, sampled) in self.pairs() {
             let stds = linear.std().into_iter().zip(&sampled.std);
             let stds = stds.flat_map(|(std, flown)| [std, flown.value, flown.low, flown.high]);
-            let first = [linear.time, sampled.members as f64].into_iter();
-            file.row(&first.chain(stds).collect::<Vec<_>>())?;
+            let first = [time(linear.time), sampled.members as f64].into_iter();
+            file.row(&first.chain(stds).map(cell).collect::<Vec<_>>())?;
         }
         file.finish()
     }

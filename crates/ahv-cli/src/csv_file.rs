@@ -25,7 +25,19 @@ impl CsvFile {
         Ok(Self { writer })
     }
 
-    /// Writes a row of texts or numbers; each number reads back as the same bits.
+    /// Writes a row of numbers; each reads back as the same bits, and one that is not finite is an empty cell.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::row`].
+    pub(crate) fn numbers(&mut self, values: &[f64]) -> Result<(), Failure> {
+        let finite = values
+            .iter()
+            .map(|value| value.is_finite().then_some(*value));
+        self.row(&finite.collect::<Vec<_>>())
+    }
+
+    /// Writes a row of texts.
     ///
     /// # Errors
     ///

@@ -16,13 +16,15 @@ use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
 use crate::output;
 use crate::place::Place;
+use crate::progress::{Progress, Work};
+use crate::signals::Stoppable;
 use crate::vehicle::{FlightModel, for_model};
 
-/// Draws parameters within their uncertainty and tells how trim, poles and zeros spread.
+/// Draws parameters within their uncertainty and reports how trim, poles and zeros spread.
 ///
 /// Uncertainties are those of the table, relative to the value. Each member is trimmed inside the bounds of phi and delta_e;
 /// one that does not trim is counted, with the reason. Beside the spread of the members stands that to first order, and
-/// the parameters it comes from.
+/// the parameters it comes from. Ctrl-C or SIGTERM ends the work, and the members drawn so far are reported.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -112,9 +114,26 @@ where
         };
         Failure::Numeric(format!("{}: {why} ({})", M::NAME, vehicle.at(&flight)))
     };
+    let folder = arguments.out.as_deref();
+    if let Some(folder) = folder {
+        output::folder(folder)?;
+    }
     let nominal = Nominal::new::<M>(&vehicle.parameters, flight).map_err(failed)?;
     let slopes = slopes::<M>(&draws, &nominal).map_err(failed)?;
-    let members = disperse::<M>(&draws, &nominal, arguments.members);
+    let progress = Progress::start(Work {
+        command: "disperse",
+        unit: "members",
+        total: Some(arguments.members),
+    });
+    let stoppable = Stoppable::new(progress.control());
+    let members = disperse::<M>(&draws, &nominal, arguments.members, progress.control());
+    drop(stoppable);
+    drop(progress);
+    if members.is_empty() {
+        return Err(Failure::Interrupted(
+            "interrupted before the first member".to_owned(),
+        ));
+    }
     let outcome = Outcome {
         spreads: spreads(&members, nominal.quantities.len()),
         vehicle: &vehicle,
@@ -124,14 +143,23 @@ where
         members,
         slopes,
     };
-    if let Some(folder) = &arguments.out {
-        outcome.write(folder)?;
-    }
-    if arguments.json {
+    // Whatever fails, the rest is reported; pictures come last.
+    let listed = folder.map_or(Ok(()), |folder| outcome.csv(&folder.join("members.csv")));
+    let printed = if arguments.json {
         output::print_json(&outcome.json())
     } else {
         print(&outcome.text())
+    };
+    let drawn = folder.map_or(Ok(()), |folder| outcome.draw(folder));
+    listed.and(printed).and(drawn)?;
+    if outcome.is_complete() {
+        return Ok(());
     }
+    Err(Failure::Interrupted(format!(
+        "interrupted: {} of {} members were drawn, and are reported",
+        outcome.members.len(),
+        arguments.members
+    )))
 }
 
 /// What is drawn, as the arguments have it.
@@ -162,18 +190,21 @@ fn draws<M: FlightModel>(
 }
 
 impl<M: FlightModel> Outcome<'_, M> {
-    /// Writes pictures and table.
-    fn write(&self, folder: &Path) -> Result<(), Failure> {
-        output::folder(folder)?;
-        let pictures = [
-            ("trim.svg", figure::trim(self)),
-            ("roots.svg", figure::roots(self)),
-            ("sensitivities.svg", figure::sensitivities(self)),
-        ];
-        for (name, svg) in pictures {
-            let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
-            output::write(&folder.join(name), svg)?;
-        }
-        self.csv(&folder.join("members.csv"))
+    /// Whether all members were drawn that were asked for.
+    fn is_complete(&self) -> bool {
+        self.members.len() as u64 == self.arguments.members
+    }
+
+    /// Draws the pictures.
+    fn draw(&self, folder: &Path) -> Result<(), Failure> {
+        output::picture(&folder.join("trim.svg"), figure::trim(self))
+            .and(output::picture(
+                &folder.join("roots.svg"),
+                figure::roots(self),
+            ))
+            .and(output::picture(
+                &folder.join("sensitivities.svg"),
+                figure::sensitivities(self),
+            ))
     }
 }

@@ -3,6 +3,8 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use crate::signals;
+
 /// Why a command failed, in words for the person at the terminal.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -10,27 +12,24 @@ pub(crate) enum Failure {
     Request(String),
     /// The computation failed: no trim, a state that is not finite. Exit code 3.
     Numeric(String),
-    /// Ctrl-C ended the work; the part that was done is told. Exit code 130, as of shells.
+    /// A signal ended the work; the part that was done is reported. Exit code 130 for SIGINT, 143 for SIGTERM.
     Interrupted(String),
 }
 
 impl Failure {
-    /// Exit code of work that Ctrl-C ended.
-    pub(crate) const INTERRUPTED: u8 = 130;
-
     /// Says on stderr what went wrong and gives the exit code.
     pub(crate) fn report(&self) -> ExitCode {
         let (message, code) = match self {
             Self::Request(message) => (message, 2),
             Self::Numeric(message) => (message, 3),
-            Self::Interrupted(message) => (message, Self::INTERRUPTED),
+            Self::Interrupted(message) => (message, signals::exit_code()),
         };
         complain(&format!("error: {message}"));
         ExitCode::from(code)
     }
 }
 
-/// Writes a line to stderr. A closed stderr leaves nobody to tell, and is no reason to stop.
+/// Writes a line to stderr. A closed stderr is no reason to stop.
 pub(crate) fn complain(message: &str) {
     let _ = writeln!(io::stderr(), "{message}");
 }

@@ -3,13 +3,10 @@
 mod feedback;
 
 use std::num::NonZeroUsize;
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 use ahv_analysis::disperse::{Distribution, Draws};
 use ahv_analysis::monte_carlo::{
-    Control, Dcom, Experiment, Family, Flown, Mode, MonteCarloError, Scheme, Sdcom,
+    Control, Dcom, Experiment, Family, Flown, LANES, Mode, MonteCarloError, Scheme, Sdcom,
 };
 use ahv_core::{Bounds, Vector};
 use clap::builder::PossibleValuesParser;
@@ -19,15 +16,12 @@ use serde::Serialize;
 use crate::assignment::Assignments;
 use crate::condition::{Condition, Vehicle};
 use crate::failure::Failure;
+use crate::number::{self, Shown};
 use crate::place::Place;
 use crate::progress::Progress;
+use crate::signals::Stoppable;
 use crate::simulate::grid::positive;
 use crate::vehicle::{FlightModel, ModelName};
-
-/// Between two looks at how far the flights are.
-const GLANCE: Duration = Duration::from_millis(5);
-/// Set in the seed of the drawn parameters: they have nothing to do with the noise.
-const DISPERSION_SEED: u64 = 0x5851_F42D_4C95_7F2D;
 
 /// How members fly.
 #[derive(Args)]
@@ -59,11 +53,11 @@ pub(crate) struct Flights {
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
-    /// Threads [default: as many as the machine runs at once]
+    /// Threads, as many as the machine runs at once at most [default: so many]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
 
-    /// Draw the parameters of each member, uniformly within their uncertainty
+    /// Draw the parameters of each member, uniformly within their uncertainty, as `ahv disperse` does with the same seed
     #[arg(long)]
     disperse: bool,
 
@@ -141,7 +135,7 @@ pub(crate) struct Ready<F: Flown, M: Pair<F>> {
     /// Where they start, in words.
     pub(crate) place: String,
     pub(crate) experiment: Experiment<F>,
-    pub(crate) threads: usize,
+    threads: usize,
 }
 
 impl Flights {
@@ -155,9 +149,8 @@ impl Flights {
         let flight = self.place.flight(&vehicle)?;
         let trim = vehicle.trim(&flight)?;
         let experiment = self.experiment(&vehicle, trim.state, trim.input)?;
-        let threads = self
-            .threads
-            .or_else(|| std::thread::available_parallelism().ok());
+        let most = std::thread::available_parallelism().ok();
+        let threads = self.threads.into_iter().chain(most).min();
         Ok(Ready {
             place: vehicle.at(&flight),
             vehicle,
@@ -175,7 +168,8 @@ impl Flights {
         let steps = (self.t_end / self.dt).round();
         if !(1.0..=1e12).contains(&steps) {
             return Err(Failure::Request(format!(
-                "--dt and --t-end: {steps} steps; 1 to 1e12 can be flown"
+                "--dt and --t-end: {} steps; 1 to 1e12 can be flown",
+                Shown(steps)
             )));
         }
         let named = |name: &str| Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);
@@ -206,14 +200,13 @@ impl Flights {
         &self,
         vehicle: &Vehicle<M>,
     ) -> Result<Option<Draws<M::Parameters>>, Failure> {
-        let seed = self.seed ^ DISPERSION_SEED;
         let draws = self.disperse.then(|| {
             Draws::new(
                 vehicle.parameters,
                 vehicle.uncertainty,
                 Distribution::Uniform,
                 Vec::new(),
-                seed,
+                self.seed,
             )
         });
         draws
@@ -236,10 +229,29 @@ pub(crate) struct Settings {
 }
 
 impl<F: Flown, M: Pair<F>> Ready<F, M> {
-    pub(crate) fn settings(&self) -> Settings {
+    /// Threads for so many members that fly at a time.
+    pub(crate) fn threads(&self, members: u64) -> usize {
+        let batches = members.div_ceil(LANES as u64);
+        // Never more than there were.
+        self.threads
+            .min(usize::try_from(batches).unwrap_or(usize::MAX))
+    }
+
+    /// End of the flights, in s.
+    pub(crate) fn duration(&self) -> f64 {
+        self.time(self.experiment.steps())
+    }
+
+    /// Time after so many steps, in s.
+    pub(crate) fn time(&self, steps: u64) -> f64 {
+        number::time(steps as f64 * self.experiment.dt)
+    }
+
+    /// For so many members that fly at a time.
+    pub(crate) fn settings(&self, members: u64) -> Settings {
         let experiment = &self.experiment;
         Settings {
-            threads: self.threads,
+            threads: self.threads(members),
             scheme: experiment.scheme.name(),
             mode: experiment.mode.name(),
             seed: experiment.seed,
@@ -261,41 +273,26 @@ fn deviations<M: FlightModel, V: Vector<f64>>(
     Assignments::parse::<V>(option, texts, vehicle.units)?.apply(&mut deviations, &[]);
     match deviations.find(|deviation| deviation < 0.0) {
         Some((name, value)) => Err(Failure::Request(format!(
-            "{option}: {name} is {value}; a standard deviation is 0 or more"
+            "{option}: {name} is {}; a standard deviation is 0 or more",
+            Shown(value)
         ))),
         None => Ok(deviations),
     }
 }
 
-/// Works while a bar shows how far it is, and Ctrl-C is listened to.
+/// Does work that a signal stops.
 ///
 /// # Errors
 ///
-/// [`Failure::Interrupted`] if Ctrl-C left nothing to tell of, those of the work.
-pub(crate) fn watched<T: Send>(
-    mut progress: Progress,
-    work: impl FnOnce(&Control) -> Result<T, MonteCarloError> + Send,
+/// [`Failure::Interrupted`] if the signal came before there was anything to report, those of the work.
+pub(crate) fn watched<T>(
+    progress: Progress,
+    work: impl FnOnce(&Control) -> Result<T, MonteCarloError>,
 ) -> Result<T, Failure> {
-    let control = Arc::new(Control::default());
-    let heard = Arc::clone(&control);
-    ctrlc::set_handler(move || {
-        // A second time means now.
-        if heard.stop.swap(true, Ordering::Relaxed) {
-            std::process::exit(Failure::INTERRUPTED.into());
-        }
-    })
-    .map_err(|error| Failure::Request(format!("cannot listen to Ctrl-C: {error}")))?;
-    let outcome = std::thread::scope(|scope| {
-        let worker = scope.spawn(|| work(&control));
-        while !worker.is_finished() {
-            std::thread::sleep(GLANCE);
-            progress.tell(control.done.load(Ordering::Relaxed));
-        }
-        worker.join()
-    });
+    let stoppable = Stoppable::new(progress.control());
+    let outcome = work(progress.control());
+    drop(stoppable);
     drop(progress);
-    let outcome =
-        outcome.map_err(|_| Failure::Numeric("a thread of the flights failed".to_owned()))?;
     outcome.map_err(|error| match error {
         MonteCarloError::Stopped => Failure::Interrupted(format!("interrupted: {error}")),
         MonteCarloError::Scheme { .. } | MonteCarloError::ModeOfScheme { .. } => {

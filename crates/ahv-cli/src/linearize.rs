@@ -15,6 +15,7 @@ use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
 use crate::names;
+use crate::number::{Shown, cell};
 use crate::output::{self, Pairs};
 use crate::place::Place;
 use crate::units::Units;
@@ -215,7 +216,7 @@ fn csv<M: FlightModel>(
         .map(state)
         .zip(json.c.iter().zip(&json.d));
     for (label, (by_state, by_input)) in rates.chain(outputs) {
-        let values = by_state.iter().chain(by_input).map(f64::to_string);
+        let values = by_state.iter().chain(by_input).copied().map(cell);
         let row: Vec<String> = std::iter::once(label).chain(values).collect();
         file.row(&row)?;
     }
@@ -259,7 +260,7 @@ fn block(matrix: &DMatrix<f64>, rows: &[&str], columns: &[&str]) -> String {
     let lines = rows.iter().zip(matrix.row_iter()).map(|(name, row)| {
         let values: String = row
             .iter()
-            .map(|value| format!(" {:>11.4e}", value + 0.0))
+            .map(|value| format!(" {:>11.4e}", Shown(value + 0.0)))
             .collect();
         format!("{name:>11}{values}")
     });

@@ -13,6 +13,7 @@ use serde::Serialize;
 use crate::assignment::Assignments;
 use crate::condition::{Condition, Heading, Vehicle};
 use crate::failure::{Failure, print};
+use crate::number::Shown;
 use crate::output::{self, Pairs, describe};
 use crate::place::Place;
 use crate::vehicle::{FlightModel, for_model};
@@ -183,12 +184,12 @@ impl<'a> Gains<'a> {
         for (input, row) in self.inputs.iter().zip(&self.gain) {
             let _ = write!(text, "\n  {input}");
             for (state, gain) in self.states.iter().zip(row) {
-                let _ = write!(text, "\n    {state:<12} {gain:.6e}");
+                let _ = write!(text, "\n    {state:<12} {:.6e}", Shown(*gain));
             }
         }
         text.push_str("\npoles in 1/s:");
         for [real, imaginary] in &self.poles {
-            let _ = write!(text, "\n  {real:.6} {imaginary:+.6}i");
+            let _ = write!(text, "\n  {:.6} {:+.6}i", Shown(*real), Shown(*imaginary));
         }
         text
     }

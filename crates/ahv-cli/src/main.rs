@@ -14,6 +14,7 @@ mod linearize;
 mod lqr;
 mod monte_carlo;
 mod names;
+mod number;
 mod output;
 mod place;
 mod poles;
@@ -21,6 +22,7 @@ mod progress;
 mod rare;
 mod reduce;
 mod reproduce;
+mod signals;
 mod simulate;
 mod table;
 mod track;
@@ -31,6 +33,8 @@ mod vehicle;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use failure::Failure;
 
 /// Flight models of an air-breathing hypersonic vehicle.
 #[derive(Parser)]
@@ -44,6 +48,13 @@ struct Cli {
 enum Command {
     #[cfg(feature = "generate")]
     Generate(generate::Arguments),
+    #[command(flatten)]
+    Model(Box<ModelCommand>),
+}
+
+/// What is done with the generated models.
+#[derive(Subcommand)]
+enum ModelCommand {
     Covariance(covariance::Arguments),
     Disperse(disperse::Arguments),
     Linearize(linearize::Arguments),
@@ -60,24 +71,32 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    match Cli::parse().command {
+        // It handles signals itself.
         #[cfg(feature = "generate")]
-        Command::Generate(arguments) => return generate::run(&arguments),
-        Command::Covariance(arguments) => covariance::run(&arguments),
-        Command::Disperse(arguments) => disperse::run(&arguments),
-        Command::Linearize(arguments) => linearize::run(&arguments),
-        Command::Lqr(arguments) => lqr::run(&arguments),
-        Command::MonteCarlo(arguments) => monte_carlo::run(&arguments),
-        Command::Poles(arguments) => poles::run(&arguments),
-        Command::Rare(arguments) => rare::run(&arguments),
-        Command::Reduce(arguments) => reduce::run(&arguments),
-        Command::Reproduce(arguments) => reproduce::run(&arguments),
-        Command::Simulate(arguments) => simulate::run(&arguments),
-        Command::Track(arguments) => track::run(&arguments),
-        Command::Trim(arguments) => trim::run(&arguments),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Command::Generate(arguments) => generate::run(&arguments),
+        Command::Model(command) => match signals::listen().and_then(|()| command.run()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => failure.report(),
+        },
+    }
+}
+
+impl ModelCommand {
+    fn run(&self) -> Result<(), Failure> {
+        match self {
+            Self::Covariance(arguments) => covariance::run(arguments),
+            Self::Disperse(arguments) => disperse::run(arguments),
+            Self::Linearize(arguments) => linearize::run(arguments),
+            Self::Lqr(arguments) => lqr::run(arguments),
+            Self::MonteCarlo(arguments) => monte_carlo::run(arguments),
+            Self::Poles(arguments) => poles::run(arguments),
+            Self::Rare(arguments) => rare::run(arguments),
+            Self::Reduce(arguments) => reduce::run(arguments),
+            Self::Reproduce(arguments) => reproduce::run(arguments),
+            Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Track(arguments) => track::run(arguments),
+            Self::Trim(arguments) => trim::run(arguments),
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! `ahv montecarlo`: many flights with noise and dispersions.
 
 mod figure;
+mod members;
 mod report;
 mod tables;
 mod trajectories;
@@ -15,16 +16,18 @@ use crate::assignment::Assignments;
 use crate::condition::Vehicle;
 use crate::failure::{Failure, print};
 use crate::flights::{Flights, Pair, Ready, Task, watched, with_model};
+use crate::number::Shown;
 use crate::output;
-use crate::progress::Progress;
+use crate::progress::{Progress, Work};
+use members::MemberList;
 use trajectories::Format;
 
 /// Flies a stochastic model many times and tells how the flights spread.
 ///
 /// Members start at the trim and hold its inputs, or follow a state feedback. They fly eight at a time with the vector
 /// instructions of the machine. The same seed gives the same numbers whatever the threads, and with the mode exact on every
-/// machine. A member whose state is no longer finite is lost: it is counted, and left out of what is told from then on. One
-/// that leaves the validity box is counted and flies on. Ctrl-C ends the work, and what was flown till then is told.
+/// machine. A member whose state is no longer finite is lost: it is counted, and left out of what is reported from then on. One
+/// that leaves the validity box is counted and flies on. Ctrl-C or SIGTERM ends the work, and the members flown so far are reported.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -55,7 +58,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     trajectory_format: Format,
 
-    /// Folder for montecarlo.svg, summary.json, snapshots.csv, histograms.csv, limits.csv and trajectories
+    /// Folder for montecarlo.svg, summary.json, snapshots.csv, histograms.csv, limits.csv, members.csv and trajectories
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
@@ -69,7 +72,7 @@ pub(crate) struct Arguments {
 /// # Errors
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim,
-/// [`Failure::Interrupted`] once the part is told that was flown.
+/// [`Failure::Interrupted`] once the part is reported that was flown.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     with_model(&arguments.flights, arguments)
 }
@@ -89,35 +92,51 @@ impl Task for Arguments {
         experiment
             .watched
             .extend(limits::<M, F>(&self.limit, &ready.vehicle)?);
-        // Before the work: what cannot be written is not told after it.
+        // Before the work: what cannot be written is not found out after it.
         trajectories::check(self)?;
         if let Some(folder) = &self.out {
             output::folder(folder)?;
         }
-        let total = self.members.saturating_mul(ready.experiment.steps());
-        let outcome = watched(Progress::of_member_steps(total), |control| {
-            ready.experiment.run(self.members, ready.threads, control)
+        let folder = self.out.as_deref();
+        let list = folder.map(|folder| MemberList::create(&ready, folder, self.members));
+        let mut list = list.transpose()?;
+        let progress = Progress::start(Work {
+            command: "montecarlo",
+            unit: "member-steps",
+            total: Some(self.members.saturating_mul(ready.experiment.steps())),
+        });
+        let threads = ready.threads(self.members);
+        let outcome = watched(progress, |control| {
+            ready
+                .experiment
+                .run_and_list(self.members, threads, control, |first, seen| {
+                    if let Some(list) = &mut list {
+                        list.add(first, seen);
+                    }
+                })
         })?;
+        let listed = list.map_or(Ok(()), MemberList::finish);
         let told = Told {
             arguments: self,
             ready,
             outcome,
         };
-        if let Some(folder) = &self.out {
-            told.write(folder)?;
-        }
-        if self.json {
-            output::print_json(&told.json())?;
+        // Whatever fails, the rest is reported; pictures come last.
+        let numbers = folder.map_or(Ok(()), |folder| told.write(folder));
+        let printed = if self.json {
+            output::print_json(&told.json())
         } else {
-            print(&told.text())?;
+            print(&told.text())
+        };
+        let drawn = folder.map_or(Ok(()), |folder| told.draw(folder));
+        listed.and(numbers).and(printed).and(drawn)?;
+        if told.is_complete() {
+            return Ok(());
         }
-        if told.outcome.members < told.outcome.asked {
-            return Err(Failure::Interrupted(format!(
-                "interrupted: {} of {} members were flown, and are told",
-                told.outcome.members, told.outcome.asked
-            )));
-        }
-        Ok(())
+        Err(Failure::Interrupted(format!(
+            "interrupted: {} of {} members were flown, and are reported",
+            told.outcome.members, told.outcome.asked
+        )))
     }
 }
 
@@ -164,7 +183,9 @@ fn limits<M: Pair<F>, F: Flown>(
     });
     match bounds.find(|it| it.min >= it.max) {
         Some((name, Bounds { min, max })) => Err(Failure::Request(format!(
-            "--limit: of {name} the lower limit {min} is not below the upper one {max}"
+            "--limit: of {name} the lower limit {} is not below the upper one {}",
+            Shown(min),
+            Shown(max)
         ))),
         None => Ok(Some(bounds)),
     }

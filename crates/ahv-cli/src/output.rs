@@ -1,8 +1,11 @@
 //! What commands leave behind: files that are whole or as they were, and JSON.
 
+use std::collections::BTreeSet;
+use std::fmt::Display;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use ahv_core::{Outside, Vector};
 use serde::ser::SerializeMap;
@@ -10,15 +13,60 @@ use serde::{Serialize, Serializer};
 use tempfile::{Builder, NamedTempFile};
 
 use crate::assignment::show;
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, complain, print};
 use crate::units::Units;
+
+/// Temporary files that are there now.
+static TEMPORARIES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn temporaries() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends the process with this code; other threads may still be writing. No temporary file is left.
+pub(crate) fn exit_without_temporaries(code: u8) -> ! {
+    // Locked until the end, so that no other thread makes a new one.
+    let temporaries = temporaries();
+    for path in temporaries.iter() {
+        // One that is gone need not be removed, and nothing is left to do about one that cannot be.
+        let _ = fs::remove_file(path);
+    }
+    std::process::exit(code.into())
+}
+
+/// A temporary file that is listed for as long as this lives.
+struct Listed(PathBuf);
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        temporaries().remove(&self.0);
+    }
+}
 
 /// A file that takes its place only when complete.
 ///
-/// Bytes go to a temporary file in the same folder; a run that fails or is killed leaves what was there.
+/// Bytes go to a temporary file in the same folder; a run that fails or is ended by a signal leaves what was there.
 pub(crate) struct Output {
     path: PathBuf,
     file: NamedTempFile,
+    // Dropped after the file.
+    _listed: Listed,
+}
+
+fn builder<'a>() -> Builder<'a, 'a> {
+    let mut builder = Builder::new();
+    builder.prefix(".ahv-").suffix(".tmp");
+    builder
+}
+
+/// A new file in `folder` that a signal removes.
+fn temporary(folder: &Path, builder: &Builder<'_, '_>) -> io::Result<(NamedTempFile, Listed)> {
+    // No signal comes between the file and its place in the list.
+    let mut temporaries = temporaries();
+    let file = builder.tempfile_in(folder)?;
+    let path = file.path().to_owned();
+    temporaries.insert(path.clone());
+    Ok((file, Listed(path)))
 }
 
 impl Output {
@@ -47,18 +95,20 @@ impl Output {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
-        let mut builder = Builder::new();
-        builder.prefix(".ahv-").suffix(".tmp");
+        let mut builder = builder();
         if let Some(permissions) = existing
             .map(|m| m.permissions())
             .or_else(default_permissions)
         {
             builder.permissions(permissions);
         }
-        let file = builder
-            .tempfile_in(folder)
-            .map_err(|error| cannot_write(path, &plain(&error)))?;
-        Ok(Self { path: target, file })
+        let (file, listed) =
+            temporary(folder, &builder).map_err(|error| cannot_write(path, &plain(&error)))?;
+        Ok(Self {
+            path: target,
+            file,
+            _listed: listed,
+        })
     }
 
     /// Puts the complete file in its place.
@@ -67,7 +117,7 @@ impl Output {
     ///
     /// [`Failure::Request`] if that fails; what was there stays.
     pub(crate) fn finish(self) -> Result<(), Failure> {
-        let Self { path, file } = self;
+        let Self { path, file, .. } = self;
         file.as_file()
             .sync_all()
             .map_err(|error| cannot_write(&path, &plain(&error)))?;
@@ -105,16 +155,48 @@ pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), Failu
     output.finish()
 }
 
-/// Makes the folder `path`, and those that it lies in, unless it is there.
+/// Makes the folder `path`, and those that it lies in, unless it is there. Called before the work: a file can be made in it.
 ///
 /// # Errors
 ///
-/// [`Failure::Request`] if it cannot be made.
+/// [`Failure::Request`] if it cannot be made, or no file can be made in it.
 pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| {
-        let why = plain(&error);
+        let why = match error.kind() {
+            io::ErrorKind::AlreadyExists => "it exists and is not a folder".to_owned(),
+            _ => plain(&error),
+        };
         Failure::Request(format!("cannot make the folder {}: {why}", path.display()))
-    })
+    })?;
+    match temporary(path, &builder()) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(cannot_write(path, &plain(&error))),
+    }
+}
+
+/// Writes a picture. One that cannot be drawn is a warning that says why: the numbers are not lost with it.
+///
+/// # Errors
+///
+/// [`Failure::Request`] if the file cannot be written.
+pub(crate) fn picture(path: &Path, svg: Result<String, impl Display>) -> Result<(), Failure> {
+    match svg {
+        Ok(svg) => write(path, svg),
+        Err(why) => {
+            // One of an earlier run does not belong to the numbers beside it.
+            let removed = fs::remove_file(path).is_ok();
+            let earlier = if removed {
+                "; the earlier one is removed"
+            } else {
+                ""
+            };
+            complain(&format!(
+                "warning: {} is not drawn: {why}{earlier}",
+                path.display()
+            ));
+            Ok(())
+        }
+    }
 }
 
 /// `value` as JSON text. Numbers that are not finite become `null`.

@@ -16,6 +16,7 @@ use serde::Serialize;
 use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
+use crate::number::{Shown, cell};
 use crate::output;
 use crate::place::Place;
 use crate::vehicle::{FlightModel, for_model};
@@ -105,6 +106,10 @@ struct JsonZero {
 
 fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Result<(), Failure> {
     let flight = arguments.place.flight(vehicle)?;
+    let folder = arguments.out.as_deref();
+    if let Some(folder) = folder {
+        output::folder(folder)?;
+    }
     let trim = vehicle.trim(&flight)?;
     let system = vehicle.linear(&trim, &arguments.inputs, &arguments.outputs)?;
     let failed = |error: PolesError| match error {
@@ -119,17 +124,16 @@ fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Re
         inputs: system.inputs,
         outputs: system.outputs,
     };
-    if let Some(folder) = &arguments.out {
-        let svg = figure::figure(&roots).svg();
-        let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
-        output::folder(folder)?;
-        roots.csv(&folder.join("poles.csv"))?;
-        output::write(&folder.join("poles.svg"), svg)?;
-    }
-    match arguments.json {
+    // Whatever fails, the rest is reported; the picture comes last.
+    let written = folder.map_or(Ok(()), |folder| roots.csv(&folder.join("poles.csv")));
+    let printed = match arguments.json {
         true => output::print_json(&roots.json()),
         false => print(&roots.text()),
-    }
+    };
+    let drawn = folder.map_or(Ok(()), |folder| {
+        output::picture(&folder.join("poles.svg"), figure::figure(&roots).svg())
+    });
+    written.and(printed).and(drawn)
 }
 
 fn pair(root: Complex<f64>) -> [f64; 2] {
@@ -202,16 +206,18 @@ impl<M: FlightModel> Roots<'_, M> {
         let line = |root: Complex<f64>, name: String| {
             let [re, im] = pair(root);
             format!(
-                "  {re:>12.6} {im:>+12.6}i {:>9.4} {:>11.4}  {name}",
-                damping(root),
-                frequency(root)
+                "  {:>12.6} {:>+12.6}i {:>9.4} {:>11.4}  {name}",
+                Shown(re),
+                Shown(im),
+                Shown(damping(root)),
+                Shown(frequency(root))
             )
         };
         let poles = self.poles.iter().map(|pole| {
             let name = name(pole).unwrap_or_default();
             line(
                 pole.value,
-                format!("{name} ({:.0} %)", 100.0 * pole.participation),
+                format!("{name} ({:.0} %)", Shown(100.0 * pole.participation)),
             )
         });
         let zeros = self.zeros.finite.iter().map(|zero| {
@@ -254,7 +260,7 @@ impl<M: FlightModel> Roots<'_, M> {
         for (kind, root, name) in poles.chain(zeros) {
             let numbers = [root.re, root.im, damping(root), frequency(root)];
             let mut row = vec![kind.to_owned()];
-            row.extend(numbers.map(|number| number.to_string()));
+            row.extend(numbers.map(cell));
             row.push(name.unwrap_or_default());
             file.row(&row)?;
         }

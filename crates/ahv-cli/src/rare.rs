@@ -14,8 +14,9 @@ use crate::assignment::{Assignments, show};
 use crate::condition::{Heading, Vehicle};
 use crate::failure::{Failure, print};
 use crate::flights::{Flights, Pair, Ready, Settings, Task, watched, with_model};
+use crate::number::Shown;
 use crate::output;
-use crate::progress::Progress;
+use crate::progress::{Progress, Work};
 use crate::vehicle::FlightModel;
 
 /// Estimates the probability that a state passes a limit before the flight ends, however small it is.
@@ -58,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Task for Arguments {
     fn run<M: Pair<F>, F: Flown>(&self) -> Result<(), Failure> {
         let mut ready: Ready<F, M> = self.flights.ready()?;
-        // Of the validity box nothing is told.
+        // The validity box is not reported.
         ready.experiment.watched.clear();
         let (state, limit) =
             Assignments::one::<F::State<f64>>("--passes", &self.passes, ready.vehicle.units)?;
@@ -69,10 +70,14 @@ impl Task for Arguments {
             levels: None,
             repetitions: self.repetitions,
         };
-        let found = watched(Progress::of_unknown(), |control| {
-            let found = ready
-                .experiment
-                .first_passage(&event, ready.threads, control);
+        let progress = Progress::start(Work {
+            command: "rare",
+            unit: "member-steps",
+            total: None,
+        });
+        let threads = ready.threads(self.effort);
+        let found = watched(progress, |control| {
+            let found = ready.experiment.first_passage(&event, threads, control);
             match found {
                 Err(MonteCarloError::Rare(error)) => Ok(Err(error)),
                 other => other.map(Ok),
@@ -144,11 +149,6 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
         )
     }
 
-    /// End of the flights, in s.
-    fn time(&self) -> f64 {
-        self.ready.experiment.steps() as f64 * self.ready.experiment.dt
-    }
-
     /// Steps of plain sampling to one of splitting, for an interval as wide.
     fn ratio(&self) -> f64 {
         self.estimate.plain_member_steps / self.estimate.member_steps as f64
@@ -161,12 +161,12 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
             state,
             unit,
             limit: self.event.limit,
-            time: self.time(),
+            time: self.ready.duration(),
             estimate: &self.estimate,
             ratio: self.ratio(),
             effort: self.event.effort,
             repetitions: self.event.repetitions,
-            settings: self.ready.settings(),
+            settings: self.ready.settings(self.event.effort),
         }
     }
 
@@ -179,16 +179,22 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
         } = &self.ready;
         let (name, unit) = self.state();
         let Estimate { value, low, high } = self.estimate.probability;
+        let [value, low, high] = [value, low, high].map(Shown);
         let mut text = format!(
             "{}: {place}, {}\n{name} passes {} within {} s with probability {value:.3e} [{low:.3e}, {high:.3e}]\nlevels, and the share that passes each from the one before",
             M::NAME,
             vehicle.described(),
             show(self.event.limit, unit),
-            self.time(),
+            Shown(self.ready.duration()),
         );
         // Writing into a String cannot fail.
         for level in &self.estimate.levels {
-            let _ = write!(text, "\n  {}: {:.3}", show(level.value, unit), level.share);
+            let _ = write!(
+                text,
+                "\n  {}: {:.3}",
+                show(level.value, unit),
+                Shown(level.share)
+            );
         }
         let _ = write!(
             text,
@@ -196,12 +202,12 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
             self.event.repetitions,
             self.event.effort,
             experiment.scheme.name(),
-            experiment.dt,
+            Shown(experiment.dt),
             experiment.mode.name(),
             experiment.seed,
             self.estimate.member_steps as f64,
-            self.estimate.plain_member_steps,
-            self.ratio(),
+            Shown(self.estimate.plain_member_steps),
+            Shown(self.ratio()),
             self.estimate.lost,
         );
         text

@@ -12,9 +12,11 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 
+use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
+use crate::number::{self, Shown};
 use crate::output;
-use crate::progress::Progress;
+use crate::progress::{Progress, Work};
 use crate::simulate::grid::positive;
 
 /// Fewest runs for which the intervals hold.
@@ -109,7 +111,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = arguments.experiment()?;
     let modes = arguments.modes()?;
     let work = experiment.runs * experiment.steps;
-    let mut progress = Progress::new(work * modes.len() as u64);
+    let folder = arguments.out.as_deref();
+    if let Some(folder) = folder {
+        output::folder(folder)?;
+    }
+    let progress = Progress::start(Work {
+        command: "reduce",
+        unit: "steps",
+        total: Some(work * modes.len() as u64),
+    });
     let mut subjects = Vec::new();
     for (index, mode) in (0..).zip(&modes) {
         let problem = |error| Failure::Request(format!("mode {}: {error}", index + 1));
@@ -122,17 +132,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             chi: moments[process_of(method)].clone(),
             runs: experiment.runs,
         });
-        progress.tell(work * (index + 1));
+        progress.reach(work * (index + 1));
     }
     drop(progress);
-    if let Some(folder) = &arguments.out {
-        write_parts(folder, &subjects)?;
-    }
-    if arguments.json {
+    // Whatever fails, the rest is reported; the picture comes last.
+    let written = folder.map_or(Ok(()), |folder| write_table(folder, &subjects));
+    let printed = if arguments.json {
         output::print_json(&Json::new(method, &experiment, &subjects))
     } else {
         print(&text(method, &experiment, &subjects))
-    }
+    };
+    let drawn = folder.map_or(Ok(()), |folder| {
+        output::picture(&folder.join("reduce.svg"), figure::draw(&subjects))
+    });
+    written.and(printed).and(drawn)
 }
 
 impl Arguments {
@@ -315,12 +328,14 @@ fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Str
         let when = mode.max_abs_std_error_time;
         let when = when.map_or_else(
             || "in the long run".to_owned(),
-            |time| format!("at {time:.4} s"),
+            |time| format!("at {:.4} s", Shown(time)),
         );
         let sample = |estimate: &Estimate| {
             format!(
                 "{:.6} [{:.6}, {:.6}]",
-                estimate.value, estimate.low, estimate.high
+                Shown(estimate.value),
+                Shown(estimate.low),
+                Shown(estimate.high)
             )
         };
         // Writing into a String cannot fail.
@@ -331,17 +346,17 @@ fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Str
              std of eta {:.6}, of chi {:.6}; they differ by {:.6} at most, {when}\n  \
              sampled at {} s: eta {}, chi {}\n",
             index + 1,
-            mode.omega,
-            mode.zeta,
-            mode.sigma,
-            mode.decay,
-            mode.intensity,
-            mode.variance_ratio,
-            mode.spectrum_ratio_at_zero,
-            mode.eta_std,
-            mode.chi_std,
-            mode.max_abs_std_error,
-            experiment.steps as f64 * experiment.dt,
+            Shown(mode.omega),
+            Shown(mode.zeta),
+            Shown(mode.sigma),
+            Shown(mode.decay),
+            Shown(mode.intensity),
+            Shown(mode.variance_ratio),
+            Shown(mode.spectrum_ratio_at_zero),
+            Shown(mode.eta_std),
+            Shown(mode.chi_std),
+            Shown(mode.max_abs_std_error),
+            Shown(experiment.steps as f64 * experiment.dt),
             sample(&mode.monte_carlo.eta_std),
             sample(&mode.monte_carlo.chi_std),
         );
@@ -354,15 +369,24 @@ fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Str
     text
 }
 
-/// Writes picture and table.
-fn write_parts(folder: &Path, subjects: &[Subject]) -> Result<(), Failure> {
-    output::folder(folder)?;
-    let svg = figure::draw(subjects);
-    let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
-    output::write(&folder.join("reduce.svg"), svg)?;
-    let mut table = String::from(
-        "mode,time [s],eta_std,chi_std,eta_std_sampled,eta_std_low,eta_std_high,chi_std_sampled,chi_std_low,chi_std_high\n",
-    );
+/// Columns of the table.
+const COLUMNS: [&str; 10] = [
+    "mode",
+    "time [s]",
+    "eta_std",
+    "chi_std",
+    "eta_std_sampled",
+    "eta_std_low",
+    "eta_std_high",
+    "chi_std_sampled",
+    "chi_std_low",
+    "chi_std_high",
+];
+
+/// Writes the table.
+fn write_table(folder: &Path, subjects: &[Subject]) -> Result<(), Failure> {
+    let mut file = CsvFile::create(&folder.join("reduce.csv"))?;
+    file.row(&COLUMNS)?;
     for (index, subject) in subjects.iter().enumerate() {
         let samples = subject
             .sampled(&subject.eta)
@@ -374,18 +398,21 @@ fn write_parts(folder: &Path, subjects: &[Subject]) -> Result<(), Failure> {
                 subject.reduced.chi_variance_at(time),
             ];
             let [eta_std, chi_std] = exact.map(f64::sqrt);
-            let _ = writeln!(
-                table,
-                "{},{time},{eta_std},{chi_std},{},{},{},{},{},{}",
-                index + 1,
+            let numbers = [
+                number::time(time),
+                eta_std,
+                chi_std,
                 eta.value,
                 eta.low,
                 eta.high,
                 chi.value,
                 chi.low,
-                chi.high
-            );
+                chi.high,
+            ];
+            let mode = [(index + 1).to_string()].into_iter();
+            let cells = mode.chain(numbers.map(number::cell));
+            file.row(&cells.collect::<Vec<_>>())?;
         }
     }
-    output::write(&folder.join("reduce.csv"), table)
+    file.finish()
 }

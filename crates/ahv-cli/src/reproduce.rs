@@ -13,10 +13,10 @@ use ahv_plot::PlotError;
 use clap::Args;
 use serde::Serialize;
 
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, complain, print};
 use crate::output;
-use crate::progress::Progress;
-use page::{Page, Section};
+use crate::progress::{Progress, Work};
+use page::Page;
 
 /// The page.
 const PAGE: &str = "index.html";
@@ -64,8 +64,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         seed: arguments.seed,
         ..Size::PAPER
     };
-    let mut progress = Progress::new(size.work());
-    let random = ahv_analysis::reproduce::random(&size, |done| progress.tell(done))
+    let progress = Progress::start(Work {
+        command: "reproduce",
+        unit: "steps",
+        total: Some(size.work()),
+    });
+    let random = ahv_analysis::reproduce::random(&size, |done| progress.reach(done))
         .map_err(|error| Failure::Numeric(error.to_string()))?;
     drop(progress);
     let vehicles = vehicle::vehicles();
@@ -109,18 +113,14 @@ fn page(random: &Random, vehicles: &[vehicle::Vehicle]) -> Result<Page, Failure>
 fn write(arguments: &Arguments, page: &Page, numbers: &Numbers<'_>) -> Result<(), Failure> {
     let html = page.html()?;
     let place = |file: &str| arguments.out.join(file);
-    for Section {
-        tables, pictures, ..
-    } in &page.sections
-    {
-        for table in tables {
-            output::write(&place(table.file), table.csv()?)?;
-        }
-        for picture in pictures {
-            output::write(&place(picture.file), &picture.svg)?;
-        }
+    // Numbers first, pictures and the page that holds them last.
+    for table in page.sections.iter().flat_map(|section| &section.tables) {
+        output::write(&place(table.file), table.csv()?)?;
     }
     output::write(&place(NUMBERS), output::json(numbers)?)?;
+    for picture in page.sections.iter().flat_map(|section| &section.pictures) {
+        output::write(&place(picture.file), &picture.svg)?;
+    }
     output::write(&place(PAGE), html)?;
     let list = |title: &str, items: &[String]| {
         let items: Vec<String> = items.iter().map(|item| format!("  {item}\n")).collect();
@@ -134,9 +134,20 @@ fn write(arguments: &Arguments, page: &Page, numbers: &Numbers<'_>) -> Result<()
     ))
 }
 
-/// A picture that is drawn, or a failure that names it.
+/// A picture for the page. One that cannot be drawn is a warning, and a text that says why stands in its place.
 fn drawn(file: &str, svg: Result<String, PlotError>) -> Result<String, Failure> {
-    svg.map_err(|error| Failure::Numeric(format!("cannot draw {file}: {error}")))
+    Ok(svg.unwrap_or_else(|why| {
+        complain(&format!("warning: {file} is not drawn: {why}"));
+        let why = why.to_string();
+        let why = why
+            .replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('>', "&gt;");
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"800\" height=\"40\">\
+             <text x=\"8\" y=\"26\">not drawn: {why}</text></svg>"
+        )
+    }))
 }
 
 #[cfg(test)]

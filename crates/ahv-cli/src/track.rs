@@ -5,21 +5,21 @@ mod tables;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
+use ahv_analysis::monte_carlo::Control;
 use ahv_analysis::track::{Controller, Flight, PERIOD, Statistics, TrackError, Trial};
 use ahv_models::dcom;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use crate::failure::{Failure, print};
+use crate::number::Shown;
 use crate::output;
-use crate::progress::Progress;
+use crate::progress::{Progress, Work};
+use crate::signals::Stoppable;
 
 /// Most flights.
 const MOST_RUNS: u64 = 100_000;
-/// Steps of the progress bar that a flight counts for.
-const STEPS_PER_FLIGHT: u64 = 9000;
 
 /// Flies a manoeuvre in closed loop, DCOM as the truth with its noise.
 ///
@@ -75,71 +75,97 @@ struct Outcome {
 ///
 /// [`Failure::Request`] for files that cannot be written, [`Failure::Numeric`] if there is no trim or no controller.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    // Before the work: what cannot be written is not found out after it.
+    output::folder(&arguments.out)?;
     let trial = Trial::standard(dcom::NOMINAL, arguments.runs, arguments.seed);
     let chosen = |choice| arguments.controller == Choice::Both || arguments.controller == choice;
     let controllers = [Choice::Backstepping, Choice::Lqr]
         .into_iter()
         .filter(|&choice| chosen(choice));
-    let flights = arguments.runs * controllers.clone().count() as u64;
-    let progress = Mutex::new((Progress::new(flights * STEPS_PER_FLIGHT), 0));
-    let flown = || {
-        if let Ok(mut held) = progress.lock() {
-            held.1 += STEPS_PER_FLIGHT;
-            let done = held.1;
-            held.0.tell(done);
-        }
-    };
+    let asked = arguments.runs * controllers.clone().count() as u64;
+    let progress = Progress::start(Work {
+        command: "track",
+        unit: "flights",
+        total: Some(asked),
+    });
+    let control = progress.control();
+    let stoppable = Stoppable::new(control);
     let mut outcomes = Vec::new();
     for choice in controllers {
-        outcomes.push(match choice {
-            Choice::Lqr => fly(&trial, "lqr", &trial.linear().map_err(numeric)?, flown)?,
-            _ => fly(&trial, "backstepping", &trial.backstepping(), flown)?,
-        });
+        let outcome = match choice {
+            Choice::Lqr => fly(&trial, "lqr", &trial.linear().map_err(numeric)?, control)?,
+            _ => fly(&trial, "backstepping", &trial.backstepping(), control)?,
+        };
+        outcomes.extend(outcome);
     }
+    drop(stoppable);
     drop(progress);
-    write_parts(&arguments.out, &outcomes)?;
-    if arguments.json {
-        output::print_json(&Json::new(&trial, &outcomes))
-    } else {
-        print(&text(&trial, &outcomes, &arguments.out))
+    let flown: usize = outcomes.iter().map(|outcome| outcome.flights.len()).sum();
+    let complete = flown as u64 == asked;
+    if flown == 0 {
+        return Err(Failure::Interrupted(
+            "interrupted before the first flight ended".to_owned(),
+        ));
     }
+    // Whatever fails, the rest is reported; the picture comes last.
+    let written = write_tables(&arguments.out, &outcomes);
+    let printed = if arguments.json {
+        output::print_json(&Json::new(&trial, &outcomes, complete))
+    } else {
+        let heading = if complete {
+            ""
+        } else {
+            "interrupted: a part of the "
+        };
+        print(&format!(
+            "{heading}{}",
+            text(&trial, &outcomes, &arguments.out)
+        ))
+    };
+    let drawn = output::picture(&arguments.out.join("tracking.svg"), figure::draw(&outcomes));
+    written.and(printed).and(drawn)?;
+    if complete {
+        return Ok(());
+    }
+    Err(Failure::Interrupted(format!(
+        "interrupted: {flown} of {asked} flights were flown, and are reported"
+    )))
 }
 
+/// The flights of a controller; `None` if a signal came before the first of them.
 fn fly<C: Controller>(
     trial: &Trial,
     name: &'static str,
     controller: &C,
-    flown: impl Fn() + Sync,
-) -> Result<Outcome, Failure> {
-    let flights = trial.fly(controller, flown).map_err(numeric)?;
-    let statistics = Statistics::of(&flights);
+    control: &Control,
+) -> Result<Option<Outcome>, Failure> {
+    let flights = trial.fly(controller, control).map_err(numeric)?;
+    let Some(statistics) = Statistics::of(&flights) else {
+        return Ok(None);
+    };
     let model = dcom::Model::new(&trial.truth);
     let (closed, rest) = trial.closed(&model, controller).map_err(numeric)?;
     let poles = closed
         .poles(&rest)
         .map_err(|error| Failure::Numeric(error.to_string()))?;
-    Ok(Outcome {
+    Ok(Some(Outcome {
         controller: name,
-        statistics: statistics.ok_or_else(|| Failure::Numeric("no flights".to_owned()))?,
+        statistics,
         flights,
         poles: poles.iter().map(|pole| [pole.re, pole.im]).collect(),
-    })
+    }))
 }
 
 fn numeric(error: TrackError) -> Failure {
     Failure::Numeric(error.to_string())
 }
 
-/// Writes picture and tables.
-fn write_parts(folder: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
-    output::folder(folder)?;
-    let svg = figure::draw(outcomes).map_err(|error| Failure::Numeric(error.to_string()))?;
-    output::write(&folder.join("tracking.svg"), svg)?;
-    output::write(&folder.join("statistics.csv"), tables::statistics(outcomes))?;
+fn write_tables(folder: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
+    tables::statistics(&folder.join("statistics.csv"), outcomes)?;
     for outcome in outcomes {
         if let Some(flight) = outcome.flights.first() {
             let path = folder.join(format!("{}.csv", outcome.controller));
-            output::write(&path, tables::flight(flight))?;
+            tables::flight(&path, flight)?;
         }
     }
     Ok(())
@@ -149,6 +175,7 @@ fn write_parts(folder: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
 #[derive(Serialize)]
 struct Json<'a> {
     runs: u64,
+    complete: bool,
     seed: u64,
     duration: f64,
     sampling_period: f64,
@@ -163,7 +190,7 @@ struct JsonOutcome<'a> {
 }
 
 impl<'a> Json<'a> {
-    fn new(trial: &Trial, outcomes: &'a [Outcome]) -> Self {
+    fn new(trial: &Trial, outcomes: &'a [Outcome], complete: bool) -> Self {
         let controllers = outcomes.iter().map(|outcome| JsonOutcome {
             controller: outcome.controller,
             poles: &outcome.poles,
@@ -171,6 +198,7 @@ impl<'a> Json<'a> {
         });
         Self {
             runs: trial.runs,
+            complete,
             seed: trial.seed,
             duration: trial.duration,
             sampling_period: PERIOD,
@@ -191,11 +219,14 @@ fn text(trial: &Trial, outcomes: &[Outcome], folder: &Path) -> String {
     // Writing into a String cannot fail.
     for outcome in outcomes {
         let statistics = &outcome.statistics;
-        let rightmost = outcome.poles.first().map_or(f64::NAN, |pole| pole[0]);
+        let rightmost = Shown(outcome.poles.first().map_or(f64::NAN, |pole| pole[0]));
         let _ = write!(
             text,
-            "\n\n{}: {} lost, {} left the validity box; rightmost pole at the trim {rightmost:.3}/s",
-            outcome.controller, statistics.lost.flights, statistics.left_validity_box.flights
+            "\n\n{}: {} flights, {} lost, {} left the validity box; rightmost pole at the trim {rightmost:.3}/s",
+            outcome.controller,
+            statistics.runs,
+            statistics.lost.flights,
+            statistics.left_validity_box.flights
         );
         for figure in &statistics.figures {
             let (mean, spread) = (&figure.mean, &figure.spread);
@@ -204,13 +235,13 @@ fn text(trial: &Trial, outcomes: &[Outcome], folder: &Path) -> String {
                 text,
                 "\n  {:<26}{:>9.4} [{:.4}, {:.4}]  {:.4} {:.4}  {:.4} {:.4} {unit}",
                 figure.name,
-                mean.value,
-                mean.low,
-                mean.high,
-                spread.low,
-                spread.high,
-                figure.least,
-                figure.largest
+                Shown(mean.value),
+                Shown(mean.low),
+                Shown(mean.high),
+                Shown(spread.low),
+                Shown(spread.high),
+                Shown(figure.least),
+                Shown(figure.largest)
             );
         }
     }

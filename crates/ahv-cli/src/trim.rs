@@ -52,9 +52,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let vehicle: Vehicle<Model> = arguments.condition.vehicle()?;
         match (arguments.map, &arguments.out) {
             (Some(size), Some(folder)) => {
-                let map = Map::new(&vehicle, &arguments.place.flight(&vehicle)?, size);
-                map.write(folder)?;
-                if arguments.json { output::print_json(&map.json()) } else { print(&map.text(folder)) }
+                let flight = arguments.place.flight(&vehicle)?;
+                output::folder(folder)?;
+                let map = Map::new(&vehicle, &flight, size);
+                // Whatever fails, the rest is reported; the picture comes last.
+                let written = map.write(folder);
+                let printed =
+                    if arguments.json { output::print_json(&map.json()) } else { print(&map.text(folder)) };
+                written.and(printed).and(map.draw(folder))
             }
             _ => at_a_point(arguments, &vehicle),
         }

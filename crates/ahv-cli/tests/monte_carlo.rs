@@ -39,7 +39,15 @@ fn the_same_seed_gives_the_same_numbers_on_any_threads() {
         assert_eq!(one[key], two[key], "{key}");
     }
     assert_eq!(one["members"], 100);
-    assert_eq!((&one["threads"], &two["threads"]), (&1.into(), &2.into()));
+    assert_eq!(one["threads"], 1);
+    // No more than the machine runs at once, nor than there are batches of eight.
+    let many = json(&[&FEW[..], &["--threads", "100000"]].concat());
+    assert_eq!(many["digest"], one["digest"]);
+    assert!(
+        many["threads"]
+            .as_u64()
+            .is_some_and(|threads| (1..=13).contains(&threads))
+    );
     assert!(
         one["member_steps_per_second"]
             .as_f64()

@@ -55,7 +55,12 @@ pub(crate) fn figure(figure: &Figure) -> Result<String, PlotError> {
         for layer in &panel.layers {
             layer.check(panel)?;
         }
-        extents.push((Extent::x(panel)?, Extent::y(panel)?));
+        extents.push(extent(panel)?);
+    }
+    let empty = extents.iter().all(Option::is_none);
+    if let Some(first) = figure.panels.first().filter(|_| empty) {
+        let (panel, axis) = (first.title.clone(), first.x.label.clone());
+        return Err(PlotError::NoRange { panel, axis });
     }
     let width = figure.panel_size.0 * columns as u32;
     let legend = Legend::new(figure, width);
@@ -75,9 +80,17 @@ pub(crate) fn figure(figure: &Figure) -> Result<String, PlotError> {
     Ok(svg.replacen(&size(SUBPIXELS), &size(1), 1))
 }
 
+/// What the axes of a panel show; `None` without data.
+fn extent(panel: &Panel) -> Result<Option<(Extent, Extent)>, PlotError> {
+    match (Extent::x(panel), Extent::y(panel)) {
+        (Err(PlotError::NoRange { .. }), _) | (_, Err(PlotError::NoRange { .. })) => Ok(None),
+        (x, y) => Ok(Some((x?, y?))),
+    }
+}
+
 fn draw(
     figure: &Figure,
-    extents: &[(Extent, Extent)],
+    extents: &[Option<(Extent, Extent)>],
     legend: &Legend<'_>,
     (width, height): (u32, u32),
     grid: (usize, usize),
@@ -100,15 +113,33 @@ fn draw(
     }
     let (head, panels) = below.split_vertically(px(legend.height));
     legend.draw(&head)?;
-    for ((panel, (x, y)), panel_area) in figure
+    for ((panel, extent), panel_area) in figure
         .panels
         .iter()
         .zip(extents)
         .zip(panels.split_evenly(grid))
     {
-        draw_panel(panel, (*x, *y), &panel_area, &area)?;
+        match extent {
+            Some(extent) => draw_panel(panel, *extent, &panel_area, &area)?,
+            None => draw_without_data(panel, &panel_area)?,
+        }
     }
     area.present()?;
+    Ok(())
+}
+
+/// Says in the place of a panel that it has no data.
+fn draw_without_data(panel: &Panel, area: &Area<'_>) -> Result<(), Failed> {
+    let (width, height) = area.dim_in_pixel();
+    let font = ("sans-serif", FONT * SUBPIXELS).into_font();
+    let style = TextStyle::from(font).pos(Pos::new(HPos::Center, VPos::Center));
+    let name = if panel.title.is_empty() {
+        &panel.y.label
+    } else {
+        &panel.title
+    };
+    let place = (width.cast_signed() / 2, height.cast_signed() / 2);
+    area.draw(&Text::new(format!("{name}: no data"), place, style))?;
     Ok(())
 }
 
@@ -278,29 +309,13 @@ pub(crate) fn draw_marker(
     Ok(())
 }
 
-/// Least and greatest value of the cells; a little apart if they are equal.
-fn shading(cells: &Cells) -> (f64, f64) {
-    let values = cells.values.iter().flatten().copied();
-    let min = values.clone().fold(f64::INFINITY, f64::min);
-    let max = values.fold(f64::NEG_INFINITY, f64::max);
-    if min > max {
-        return (0.0, 1.0);
-    }
-    let room = (1e-6 * min.abs()).max(1e-9);
-    if max - min < room {
-        (min - room, max + room)
-    } else {
-        (min, max)
-    }
-}
-
 fn draw_cells(
     cells: &Cells,
     x: Extent,
     y: Extent,
     chart: &mut Chart<'_, '_>,
 ) -> Result<(), Failed> {
-    let (min, max) = shading(cells);
+    let (min, max) = cells.shading();
     let columns = cells
         .x
         .windows(2)
@@ -324,7 +339,7 @@ fn draw_cells(
 }
 
 fn draw_colour_bar(cells: &Cells, area: &Area<'_>) -> Result<(), Failed> {
-    let (min, max) = shading(cells);
+    let (min, max) = cells.shading();
     let values = Extent {
         scale: Scale::Linear,
         min,

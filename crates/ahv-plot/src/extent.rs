@@ -10,6 +10,8 @@ use crate::{Axis, Layer, Mark, Panel, PlotError, Scale};
 const ROOM: f64 = 0.04;
 /// Ticks of a linear axis, at most.
 const MOST_TICKS: f64 = 7.0;
+/// Length of the shortest axis.
+const SHORTEST: f64 = 1e3 * f64::MIN_POSITIVE;
 /// Decades that a logarithmic axis must span to have ticks at decades only.
 const FEW_DECADES: f64 = 2.5;
 
@@ -44,24 +46,10 @@ impl Extent {
     ) -> Result<Self, PlotError> {
         let scale = axis.scale;
         if let Some((min, max)) = axis.range {
-            let positive = scale == Scale::Linear || min > 0.0;
-            if !(positive && min < max && (max - min).is_finite()) {
-                let (panel, axis) = (panel.title.clone(), axis.label.clone());
-                return Err(PlotError::BadRange {
-                    panel,
-                    axis,
-                    min,
-                    max,
-                });
+            if scale == Scale::Log && min <= 0.0 {
+                return Err(bad_range(panel, &axis.label, (min, max)));
             }
-            let (min, max) = (scale.of(min), scale.of(max));
-            let named = !axis.names.is_empty();
-            return Ok(Self {
-                scale,
-                min,
-                max,
-                named,
-            });
+            return Self::between(panel, axis, (scale.of(min), scale.of(max)));
         }
         let mut data: Vec<f64> = panel.layers.iter().flat_map(values).collect();
         data.retain(|&value| scale == Scale::Linear || value > 0.0);
@@ -84,10 +72,19 @@ impl Extent {
             let flush = (from_zero && end == 0.0) || panel.layers.iter().any(cells);
             if flush { 0.0 } else { room }
         };
+        Self::between(panel, axis, (min - room_at(min), max + room_at(max)))
+    }
+
+    /// From one end to the other, scaled.
+    fn between(panel: &Panel, axis: &Axis, (min, max): (f64, f64)) -> Result<Self, PlotError> {
+        // Ticks of a shorter one would be too small for numbers.
+        if !(max - min >= SHORTEST && (max - min).is_finite()) {
+            return Err(bad_range(panel, &axis.label, (min, max)));
+        }
         Ok(Self {
-            scale,
-            min: min - room_at(min),
-            max: max + room_at(max),
+            scale: axis.scale,
+            min,
+            max,
             named: !axis.names.is_empty(),
         })
     }
@@ -119,6 +116,16 @@ impl Extent {
             }
             Scale::Log => format!("10{}", superscript(scaled.round())),
         }
+    }
+}
+
+/// An axis that cannot be drawn.
+pub(crate) fn bad_range(panel: &Panel, axis: &str, (min, max): (f64, f64)) -> PlotError {
+    PlotError::BadRange {
+        panel: panel.title.clone(),
+        axis: axis.to_owned(),
+        min,
+        max,
     }
 }
 

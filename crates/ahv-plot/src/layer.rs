@@ -2,6 +2,7 @@
 
 use plotters::style::RGBColor;
 
+use crate::extent::bad_range;
 use crate::{Panel, PlotError, Scale};
 
 /// A series of data and how it looks.
@@ -52,6 +53,24 @@ pub struct Cells {
     pub values: Vec<Option<f64>>,
     /// Quantity and unit at the colour bar.
     pub label: String,
+}
+
+impl Cells {
+    /// Least and greatest value; a little apart if they are equal.
+    pub(crate) fn shading(&self) -> (f64, f64) {
+        let values = self.values.iter().flatten().copied();
+        let min = values.clone().fold(f64::INFINITY, f64::min);
+        let max = values.fold(f64::NEG_INFINITY, f64::max);
+        if min > max {
+            return (0.0, 1.0);
+        }
+        let room = (1e-6 * min.abs()).max(1e-9);
+        if max - min < room {
+            (min - room, max + room)
+        } else {
+            (min, max)
+        }
+    }
 }
 
 /// A marker.
@@ -195,6 +214,12 @@ impl Layer {
                     layer,
                     value,
                 });
+            }
+        }
+        if let Mark::Cells(cells) = &self.mark {
+            let (min, max) = cells.shading();
+            if !(max - min).is_finite() {
+                return Err(bad_range(panel, &cells.label, (min, max)));
             }
         }
         let (expected, found) = match &self.mark {

@@ -2,7 +2,7 @@
 //!
 //! A [`Figure`] is a grid of [`Panel`]s, a panel has two [`Axis`] and [`Layer`]s that are drawn one over the other.
 //! Colours are Okabe and Ito's; dashes and shapes tell layers apart in a printout in grey. Text stays text. What is not
-//! finite is refused, and never drawn.
+//! finite is refused, and never drawn. A panel without data says so beside others that have some.
 #![forbid(unsafe_code)]
 
 mod clip;
@@ -107,8 +107,8 @@ pub enum PlotError {
         /// Title of the figure.
         figure: String,
     },
-    /// A panel has neither data nor a range to show.
-    #[error("panel \"{panel}\": nothing tells what the axis \"{axis}\" should show")]
+    /// No panel has data or a range to show; this is the first.
+    #[error("panel \"{panel}\": the axis \"{axis}\" has neither data nor a range")]
     NoRange {
         /// Title of the panel.
         panel: String,
@@ -116,7 +116,7 @@ pub enum PlotError {
         axis: String,
     },
     /// A range whose ends are not finite or not in order.
-    #[error("panel \"{panel}\": the axis \"{axis}\" cannot run from {min} to {max}")]
+    #[error("panel \"{panel}\": the axis \"{axis}\" cannot run from {min:?} to {max:?}")]
     BadRange {
         /// Title of the panel.
         panel: String,
@@ -128,7 +128,7 @@ pub enum PlotError {
         max: f64,
     },
     /// A value is infinite or NaN.
-    #[error("panel \"{panel}\": layer \"{layer}\" holds {value}, which cannot be drawn")]
+    #[error("panel \"{panel}\": layer \"{layer}\" holds {value:?}, which cannot be drawn")]
     NonFinite {
         /// Title of the panel.
         panel: String,
@@ -138,7 +138,7 @@ pub enum PlotError {
         value: f64,
     },
     /// A value that a logarithmic axis cannot show.
-    #[error("panel \"{panel}\": layer \"{layer}\" holds {value} on a logarithmic axis")]
+    #[error("panel \"{panel}\": layer \"{layer}\" holds {value:?} on a logarithmic axis")]
     NotPositive {
         /// Title of the panel.
         panel: String,

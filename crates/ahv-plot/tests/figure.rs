@@ -155,6 +155,59 @@ fn what_cannot_be_drawn_is_refused() {
 }
 
 #[test]
+fn a_panel_without_data_does_not_hide_the_others() {
+    let empty = Panel {
+        title: "distribution".to_owned(),
+        ..panel(vec![curve(vec![])])
+    };
+    let full = panel(vec![curve(vec![(0.0, 1.0), (1.0, 2.0)])]);
+    let svg = Figure::new("", 2, vec![full, empty.clone()])
+        .svg()
+        .expect("drawn");
+    assert!(svg.contains("distribution: no data") && svg.contains("decay"));
+    let alone = Figure::new("", 2, vec![empty]).svg();
+    assert!(matches!(alone, Err(PlotError::NoRange { .. })));
+}
+
+/// Neither an error nor a number that is none, whatever finite numbers there are.
+#[test]
+fn extreme_numbers_are_drawn_or_refused() {
+    for size in [
+        f64::MIN_POSITIVE,
+        5e-324,
+        1e-308,
+        1e-9,
+        1e9,
+        1e300,
+        f64::MAX,
+    ] {
+        for points in [
+            vec![(0.0, size), (1.0, size)],
+            vec![(0.0, 0.0), (size, size)],
+            vec![(0.0, -size), (1.0, size)],
+        ] {
+            let cells = Cells {
+                x: vec![0.0, 1.0, 2.0],
+                y: vec![0.0, 1.0],
+                values: points.iter().map(|point| Some(point.1)).collect(),
+                label: "cells".to_owned(),
+            };
+            let log = Panel {
+                y: Axis::log("y"),
+                ..panel(vec![curve(vec![(0.0, 1.0), (1.0, size)])])
+            };
+            let cells = panel(vec![Layer::new("", Colour::Black, Mark::Cells(cells))]);
+            for panel in [panel(vec![curve(points)]), cells, log] {
+                match Figure::new("", 1, vec![panel]).svg() {
+                    Ok(svg) => assert!(!svg.contains("NaN") && !svg.contains("inf"), "{size:?}"),
+                    Err(error) => assert!(matches!(error, PlotError::BadRange { .. }), "{error}"),
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn rows_have_names_from_the_top() {
     let bar = |row: f64, length| vec![(0.0, row - 0.3, row + 0.3), (length, row - 0.3, row + 0.3)];
     let bars = [bar(0.0, 3.0), bar(-1.0, 2.0)];

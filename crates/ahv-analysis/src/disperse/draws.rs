@@ -5,6 +5,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use ahv_core::Vector;
 use ahv_integrate::NormalStream;
 
+/// Set in the seed, so that parameters have nothing to do with the noise of flights of the same seed.
+const PARAMETER_SEED: u64 = 0x5851_F42D_4C95_7F2D;
 /// Standard deviations that the uncertainty of a normal parameter stands for.
 const SIGMAS: f64 = 3.0;
 
@@ -60,7 +62,7 @@ pub struct Group {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DrawError {
     /// An uncertainty that is negative or not finite.
-    #[error("the uncertainty of {name} is {value}; it must be finite and not negative")]
+    #[error("the uncertainty of {name} is {value:?}; it must be finite and not negative")]
     Uncertainty {
         /// The parameter.
         name: &'static str,
@@ -68,7 +70,7 @@ pub enum DrawError {
         value: f64,
     },
     /// A correlation outside 0 to 1.
-    #[error("the correlation of group {group} is {value}; it must lie between 0 and 1")]
+    #[error("the correlation of group {group} is {value:?}; it must lie between 0 and 1")]
     Correlation {
         /// The group.
         group: String,
@@ -202,8 +204,8 @@ impl<P: Vector<f64>> Draws<P> {
 
     /// The parameters of member number `member`.
     pub fn member(&self, member: u64) -> P {
-        let normal =
-            |channel: usize| NormalStream::new(self.seed, member, channel as u64).normal(0);
+        let seed = self.seed ^ PARAMETER_SEED;
+        let normal = |channel: usize| NormalStream::new(seed, member, channel as u64).normal(0);
         let common: Vec<f64> = (0..self.groups.len())
             .map(|group| normal(P::LEN + group))
             .collect();

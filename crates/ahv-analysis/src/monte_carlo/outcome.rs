@@ -1,5 +1,6 @@
 //! What many members show together.
 
+use std::ops::Range;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -12,12 +13,15 @@ use super::family::{Family, LANES};
 use super::propagator::{Flown, Propagator};
 use super::spread::{Bin, QUANTILES, Spread};
 use super::{Loss, MonteCarloError};
+use crate::ordered::in_order;
 use crate::statistics::Estimate;
 
-/// Members whose flights one task flies.
-const CHUNK: u64 = 8 * LANES as u64;
-/// Tasks whose members are in memory at a time.
-const GROUP: u64 = 32;
+/// Members whose flights are in memory at a time.
+const GROUP: u64 = 2048;
+/// Steps of a member that are worth a task of their own.
+const TASK_STEPS: u64 = 1000;
+/// Most batches of [`LANES`] members that one task flies.
+const MOST_BATCHES: u64 = 8;
 /// Losses that are told one by one.
 const TOLD: usize = 20;
 
@@ -91,7 +95,8 @@ const TOLD_BINS: usize = 60;
 impl<F: Flown> Experiment<F> {
     /// Flies members 0 to `members` − 1 on `threads` threads.
     ///
-    /// The same numbers whatever the threads. Stopped by `control`, it tells of the members that were flown till then.
+    /// The same numbers whatever the threads. Stopped by `control`, it reports the members that were flown so far, 0 to some
+    /// number, with the bits of a run of so many.
     ///
     /// # Errors
     ///
@@ -102,6 +107,22 @@ impl<F: Flown> Experiment<F> {
         threads: usize,
         control: &Control,
     ) -> Result<Outcome, MonteCarloError> {
+        self.run_and_list(members, threads, control, |_, _| ())
+    }
+
+    /// As [`Self::run`]; `list` is given what was seen of the members, in their order and many at a time, after the number of
+    /// the first.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError`].
+    pub fn run_and_list(
+        &self,
+        members: u64,
+        threads: usize,
+        control: &Control,
+        mut list: impl FnMut(u64, &[Seen<F>]),
+    ) -> Result<Outcome, MonteCarloError> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
@@ -111,18 +132,18 @@ impl<F: Flown> Experiment<F> {
         let mut collector = Collector::<F>::new(self);
         let mut next = 0;
         while next < members {
-            let end = members.min(next + GROUP * CHUNK);
-            let chunks: Vec<u64> = (next..end).step_by(CHUNK as usize).collect();
-            let fly = |&first: &u64| chunk(&*propagator, first..end.min(first + CHUNK), control);
-            let flown: Vec<Option<Vec<Seen<F>>>> =
-                pool.install(|| chunks.par_iter().map(fly).collect::<Result<_, _>>())?;
-            // All or none: what is told is always of members 0 to some number.
-            let Some(flown) = flown.into_iter().collect::<Option<Vec<_>>>() else {
+            let end = members.min(next + GROUP);
+            let fly = || group(&*propagator, next..end, self.steps(), control);
+            let seen = pool.install(fly)?;
+            let flown = next + seen.len() as u64;
+            if flown > next {
+                list(next, &seen);
+                pool.install(|| collector.add(next, seen));
+                next = flown;
+            }
+            if flown < end {
                 break;
-            };
-            let seen = flown.into_iter().flatten().collect();
-            pool.install(|| collector.add(next, seen));
-            next = end;
+            }
         }
         if next == 0 {
             return Err(MonteCarloError::Stopped);
@@ -155,21 +176,25 @@ impl<F: Flown> Experiment<F> {
     }
 }
 
-/// Flies members one batch after the other.
-fn chunk<F: Family>(
+/// Flies members; stopped, it returns those before the first that was not flown.
+fn group<F: Family>(
     propagator: &dyn Propagator<F>,
-    members: std::ops::Range<u64>,
+    members: Range<u64>,
+    steps: u64,
     control: &Control,
-) -> Result<Option<Vec<Seen<F>>>, MonteCarloError> {
-    let members: Vec<u64> = members.collect();
-    let mut seen = Vec::with_capacity(members.len());
-    for batch in members.chunks(LANES) {
-        match propagator.fly(batch, control)? {
-            Some(flown) => seen.extend(flown),
-            None => return Ok(None),
-        }
-    }
-    Ok(Some(seen))
+) -> Result<Vec<Seen<F>>, MonteCarloError> {
+    let batches = (TASK_STEPS / steps.max(1)).clamp(1, MOST_BATCHES);
+    let task = batches * LANES as u64;
+    let end = members.end;
+    let parts = in_order(members.step_by(task as usize), |first| {
+        let members: Vec<u64> = (first..end.min(first + task)).collect();
+        let batches = members.chunks(LANES);
+        let flown = batches.map(|batch| propagator.fly(batch, control));
+        // Of a task all members or none.
+        let flown: Option<Vec<_>> = flown.collect::<Result<_, MonteCarloError>>()?;
+        Ok::<_, MonteCarloError>(flown.map(|seen| seen.into_iter().flatten().collect::<Vec<_>>()))
+    })?;
+    Ok(parts.into_iter().flatten().collect())
 }
 
 /// Sums over members, in their order.

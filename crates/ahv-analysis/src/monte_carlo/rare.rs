@@ -57,7 +57,7 @@ pub enum RareError {
     },
     /// A limit that is met at the start, or no number.
     #[error(
-        "the limit {limit} of {state} must be a number other than {start}, where the flight starts"
+        "the limit {limit:?} of {state} must be a number other than {start:?}, where the flight starts"
     )]
     Limit {
         /// The state.
@@ -68,7 +68,7 @@ pub enum RareError {
         start: f64,
     },
     /// Levels that do not lie between the start and the limit, in order.
-    #[error("the level {level} does not lie between {after} and the limit {limit}")]
+    #[error("the level {level:?} does not lie between {after:?} and the limit {limit:?}")]
     Level {
         /// The level.
         level: f64,
@@ -89,7 +89,7 @@ pub enum RareError {
         repetitions: u64,
     },
     /// A flight that does not go anywhere.
-    #[error("a flight of {steps} steps of {dt} s is none")]
+    #[error("a flight of {steps} steps of {dt:?} s is none")]
     Flight {
         /// Steps.
         steps: u64,
@@ -98,7 +98,7 @@ pub enum RareError {
     },
     /// Members that do not come nearer to the limit.
     #[error(
-        "the members come no nearer to the limit than {level}; more members from each level may"
+        "the members come no nearer to the limit than {level:?}; more members from each level may"
     )]
     OutOfReach {
         /// The level that was not passed, or beyond which none could be set.
@@ -106,7 +106,7 @@ pub enum RareError {
     },
     /// Repetitions that say nothing of their error.
     #[error(
-        "every repetition gave {value}; more members from each level, or more repetitions, tell them apart"
+        "every repetition gave {value:?}; more members from each level, or more repetitions, tell them apart"
     )]
     NoSpread {
         /// What they gave.

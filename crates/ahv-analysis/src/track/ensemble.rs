@@ -1,10 +1,11 @@
 //! Many flights of one closed loop.
 
+use std::sync::atomic::Ordering;
+
 use ahv_core::{Bounds, Outside, first_outside};
 use ahv_integrate::WienerSource;
 use ahv_models::dcom::{self, INPUT_BOUNDS, Parameters, STATE_BOUNDS};
 use ahv_models::sdcom;
-use rayon::prelude::*;
 
 use super::flight::{Increments, SUBSTEPS};
 use super::{
@@ -12,6 +13,8 @@ use super::{
     PERIOD, Reference,
 };
 use crate::backstepping::{Backstepping, DESIGN};
+use crate::monte_carlo::Control;
+use crate::ordered::in_order;
 use crate::trim::{SteadyFlight, Trim, TrimError, trim};
 
 /// Channels of noise of the truth.
@@ -179,7 +182,7 @@ impl Trial {
         Ok((closed, rest))
     }
 
-    /// The flights of `controller`, member by member; `flown` hears of each flight that is done.
+    /// The flights of `controller`, member by member; fewer if `control` stops the work. It counts flights.
     ///
     /// Noise is a function of seed, member, channel and step: neither threads nor the controller change it.
     ///
@@ -189,16 +192,18 @@ impl Trial {
     pub fn fly<C: Controller>(
         &self,
         controller: &C,
-        flown: impl Fn() + Sync,
+        control: &Control,
     ) -> Result<Vec<Flight>, TrackError> {
         let model = dcom::Model::new(&self.truth);
         let (closed, rest) = self.closed(&model, controller)?;
-        let fly = |member| {
+        in_order(0..self.runs, |member| {
+            if control.stop.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
             let flight = self.member(&closed, rest, member);
-            flown();
-            flight
-        };
-        Ok((0..self.runs).into_par_iter().map(fly).collect())
+            control.done.fetch_add(1, Ordering::Relaxed);
+            Ok(Some(flight))
+        })
     }
 
     fn level<U, B>(&self, bounds: &B) -> SteadyFlight<U>

@@ -178,7 +178,7 @@ fn bins(sample: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
 }
 
 /// The parameters that matter most to each of the headline quantities, as bars.
-pub(super) fn sensitivities<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
+pub(super) fn sensitivities<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, String> {
     let panels = outcome.headline().into_iter().filter_map(|index| {
         let quantity = outcome.nominal.quantities.get(index)?;
         let mut ranked = outcome.ranked(index);
@@ -186,7 +186,13 @@ pub(super) fn sensitivities<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<
         ranked.truncate(outcome.arguments.top);
         (!ranked.is_empty()).then(|| tornado(outcome, quantity, &ranked))
     });
-    Figure::new("", 3, panels.collect()).svg()
+    let panels: Vec<Panel> = panels.collect();
+    if panels.is_empty() {
+        return Err("no parameter that varies has an effect on these quantities".to_owned());
+    }
+    Figure::new("", 3, panels)
+        .svg()
+        .map_err(|error| error.to_string())
 }
 
 fn tornado<M: FlightModel>(

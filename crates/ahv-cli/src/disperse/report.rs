@@ -7,6 +7,7 @@ use std::path::Path;
 use ahv_analysis::disperse::{
     Contribution, Distribution, Kind, Part, Quantity, SolutionError, Spread,
 };
+use ahv_analysis::linearize::LinearizeError;
 use ahv_analysis::statistics::Estimate;
 use ahv_analysis::trim::TrimError;
 use ahv_core::{Vector, first_outside};
@@ -16,6 +17,7 @@ use super::Outcome;
 use crate::condition::Heading;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::number::{Shown, cell};
 use crate::output::Pairs;
 use crate::vehicle::FlightModel;
 
@@ -26,6 +28,8 @@ pub(super) struct Json<'a> {
     distribution: Distribution,
     seed: u64,
     members: usize,
+    asked: u64,
+    complete: bool,
     varied: usize,
     trimmed: usize,
     /// Members that did not trim, by reason.
@@ -69,6 +73,12 @@ fn reason(error: &SolutionError) -> String {
         SolutionError::Trim(TrimError::NoConvergence { .. }) => {
             "no trim: no convergence".to_owned()
         }
+        SolutionError::Trim(TrimError::NonFinite { name, .. }) => {
+            format!("no trim: the derivative of {name} is not finite")
+        }
+        SolutionError::Linearize(LinearizeError::NonFinite { row, column, .. }) => {
+            format!("no roots: the derivative of {row} by {column} is not finite")
+        }
         other => other.to_string(),
     }
 }
@@ -101,6 +111,8 @@ impl<M: FlightModel> Outcome<'_, M> {
             distribution: self.draws.distribution(),
             seed: self.arguments.seed,
             members: self.members.len(),
+            asked: self.arguments.members,
+            complete: self.is_complete(),
             varied: self.slopes.parameters.len(),
             trimmed: self.trimmed(),
             failed: self.failed(),
@@ -174,12 +186,21 @@ impl<M: FlightModel> Outcome<'_, M> {
     }
 
     pub(super) fn text(&self) -> String {
+        let members = if self.is_complete() {
+            self.members.len().to_string()
+        } else {
+            format!(
+                "interrupted: {} of {}",
+                self.members.len(),
+                self.arguments.members
+            )
+        };
         let mut text = format!(
             "{}: {}, {}\n{} members, {} parameters {}, seed {}\n",
             M::NAME,
             self.vehicle.at(&self.nominal.flight),
             self.vehicle.described(),
-            self.members.len(),
+            members,
             self.slopes.parameters.len(),
             match self.draws.distribution() {
                 Distribution::Uniform => "uniform within their uncertainty",
@@ -189,7 +210,7 @@ impl<M: FlightModel> Outcome<'_, M> {
         );
         // Writing into a String cannot fail.
         for (name, Estimate { value, low, high }) in self.shares() {
-            let [value, low, high] = [value, low, high].map(|share| 100.0 * share);
+            let [value, low, high] = [value, low, high].map(|share| Shown(100.0 * share));
             let of = if name == "trims" { "members" } else { "trims" };
             let name = name.replace('_', " ");
             let _ = writeln!(
@@ -241,7 +262,7 @@ impl<M: FlightModel> Outcome<'_, M> {
                     text,
                     "\n    {:<20} {:+.5}",
                     parameter::<M>(it),
-                    factor * it.effect
+                    Shown(factor * it.effect)
                 );
             }
         }
@@ -335,7 +356,7 @@ impl<M: FlightModel> Outcome<'_, M> {
             let drawn = self.draws.member(member.number);
             let parameters = varied().map(|&index| drawn.get(index));
             let numbers = parameters.chain(member.values.iter().copied());
-            let cells = numbers.map(|it| it.map_or_else(String::new, |it| it.to_string()));
+            let cells = numbers.map(|it| it.map_or_else(String::new, cell));
             let first = [member.number.to_string(), outcome].into_iter();
             file.row(&first.chain(cells).collect::<Vec<_>>())?;
         }
@@ -345,10 +366,10 @@ impl<M: FlightModel> Outcome<'_, M> {
 
 /// A number of four decimals, or of three digits where these would not show it.
 fn number(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-3 {
-        format!("{value:.2e}")
+    if value != 0.0 && (value.abs() < 1e-3 || value.abs() >= 1e9) {
+        format!("{:.2e}", Shown(value))
     } else {
-        format!("{value:.4}")
+        format!("{:.4}", Shown(value))
     }
 }
 

@@ -28,8 +28,7 @@ pub(super) fn draw<F: Flown, M: Pair<F>>(told: &Told<'_, F, M>) -> Result<String
             distribution(told, index, name, &unit, factor),
         ]
     });
-    let complete = told.outcome.members == told.outcome.asked;
-    let title = if complete {
+    let title = if told.is_complete() {
         String::new()
     } else {
         format!(

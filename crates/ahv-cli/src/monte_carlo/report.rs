@@ -11,6 +11,7 @@ use super::Told;
 use crate::assignment::show;
 use crate::condition::Heading;
 use crate::flights::{Pair, Settings};
+use crate::number::{self, Shown};
 use crate::output::Pairs;
 
 /// The outcome as JSON. Means, standard deviations and quantiles are of the members that fly at the end.
@@ -86,21 +87,21 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             units: Pairs::units::<M::State>(self.ready.vehicle.units),
             members: outcome.members,
             asked: outcome.asked,
-            complete: outcome.members == outcome.asked,
+            complete: self.is_complete(),
             lost: outcome.lost,
             losses: outcome
                 .losses
                 .iter()
                 .map(|(member, loss)| JsonLoss {
                     member: *member,
-                    time: loss.step as f64 * self.ready.experiment.dt,
+                    time: self.ready.time(loss.step),
                     state: loss.state,
                 })
                 .collect(),
             member_steps: outcome.member_steps,
             member_steps_per_second: self.rate(),
             seconds: outcome.elapsed.as_secs_f64(),
-            settings: self.ready.settings(),
+            settings: self.ready.settings(outcome.asked),
             mean: by_state::<M::State, _>(last().map(|it| value(&it.mean))),
             std: by_state::<M::State, _>(last().map(|it| value(&it.std))),
             digest: &outcome.digest,
@@ -123,7 +124,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             shares.map(quantile).collect()
         });
         JsonSnapshot {
-            time: snapshot.time,
+            time: number::time(snapshot.time),
             members: snapshot.members,
             mean: by_state::<M::State, _>(states().map(|it| it.mean)),
             std: by_state::<M::State, _>(states().map(|it| it.std)),
@@ -163,16 +164,24 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
 
     pub(super) fn text(&self) -> String {
         let (outcome, experiment) = (&self.outcome, &self.ready.experiment);
+        let flights = if self.is_complete() {
+            format!("{} flights", outcome.members)
+        } else {
+            format!(
+                "interrupted: {} of {} flights",
+                outcome.members, outcome.asked
+            )
+        };
         let mut text = format!(
-            "{}: {}, {}\n{} flights of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second on {} threads\n\
+            "{}: {}, {}\n{} of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second, threads {}\n\
              at the end, mean and standard deviation with intervals of 95 %, 0.5 % and 99.5 % points",
             M::NAME,
             self.ready.place,
             self.ready.vehicle.described(),
-            outcome.members,
-            experiment.steps() as f64 * experiment.dt,
+            flights,
+            Shown(self.ready.duration()),
             experiment.scheme.name(),
-            experiment.dt,
+            Shown(experiment.dt),
             experiment.mode.name(),
             experiment.seed,
             if experiment.dispersion.is_some() {
@@ -186,7 +195,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                 ""
             },
             self.rate(),
-            self.ready.threads,
+            self.ready.threads(outcome.asked),
         );
         let units = self.ready.vehicle.units.labels::<M::State>();
         let last = outcome.snapshots.last();
@@ -201,7 +210,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                     shown(it.low),
                     shown(it.high)
                 ),
-                None => "beyond numbers".to_owned(),
+                None => "none".to_owned(),
             };
             let point = |estimate: Option<&Option<Estimate>>| match estimate.copied().flatten() {
                 Some(it) => shown(it.value),

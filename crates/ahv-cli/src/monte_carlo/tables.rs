@@ -10,33 +10,46 @@ use super::{Told, figure, trajectories};
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::flights::Pair;
+use crate::number::{cell, time};
 use crate::output;
+
+/// Heading of the column that is the same in all rows: whether all members were flown.
+const COMPLETE: &str = "complete";
 
 /// Cells of an estimate; empty where there is none.
 fn cells(estimate: &Option<Estimate>) -> [String; 3] {
     match estimate {
-        Some(it) => [it.value, it.low, it.high].map(|value| value.to_string()),
+        Some(it) => [it.value, it.low, it.high].map(cell),
         None => [const { String::new() }; 3],
     }
 }
 
 impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
-    /// Writes all files.
+    /// Writes all files of numbers.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
-        let svg = figure::draw(self).map_err(|error| Failure::Numeric(error.to_string()))?;
-        output::write(&folder.join("montecarlo.svg"), svg)?;
-        output::write(
-            &folder.join("summary.json"),
-            output::json(&self.json())? + "\n",
-        )?;
-        self.snapshots(&folder.join("snapshots.csv"))?;
-        self.histograms(&folder.join("histograms.csv"))?;
-        self.limits(&folder.join("limits.csv"))?;
-        trajectories::write(self, folder)
+        let json = output::json(&self.json())?;
+        let summary = output::write(&folder.join("summary.json"), json + "\n");
+        // One that cannot be written is no reason not to write the others.
+        summary
+            .and(self.snapshots(&folder.join("snapshots.csv")))
+            .and(self.limits(&folder.join("limits.csv")))
+            .and(self.histograms(&folder.join("histograms.csv")))
+            .and(trajectories::write(self, folder))
+    }
+
+    /// Draws the picture.
+    pub(super) fn draw(&self, folder: &Path) -> Result<(), Failure> {
+        output::picture(&folder.join("montecarlo.svg"), figure::draw(self))
+    }
+
+    /// Whether all members were flown that were asked for: the last column of the tables.
+    pub(super) fn is_complete(&self) -> bool {
+        self.outcome.members == self.outcome.asked
     }
 
     /// A row a snapshot and state.
     fn snapshots(&self, path: &Path) -> Result<(), Failure> {
+        let complete = self.is_complete().to_string();
         let mut file = CsvFile::create(path)?;
         let mut heading: Vec<String> = ["time [s]", "members", "state", "unit"]
             .map(str::to_owned)
@@ -45,12 +58,13 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
         for name in ["mean", "std"].map(str::to_owned).iter().chain(&shares) {
             heading.extend([name.clone(), format!("{name}_low"), format!("{name}_high")]);
         }
+        heading.push(COMPLETE.to_owned());
         file.row(&heading)?;
         let units = self.ready.vehicle.units.labels::<M::State>();
         for snapshot in &self.outcome.snapshots {
             for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(&snapshot.states) {
                 let mut row = vec![
-                    snapshot.time.to_string(),
+                    cell(time(snapshot.time)),
                     snapshot.members.to_string(),
                     (*name).to_owned(),
                     (*unit).to_owned(),
@@ -59,6 +73,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                     .into_iter()
                     .chain(&state.quantiles);
                 row.extend(estimates.flat_map(cells));
+                row.push(complete.clone());
                 file.row(&row)?;
             }
         }
@@ -67,15 +82,17 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
 
     /// A row a bin of a state at the end.
     fn histograms(&self, path: &Path) -> Result<(), Failure> {
+        let complete = self.is_complete().to_string();
         let mut file = CsvFile::create(path)?;
-        file.row(&["state", "unit", "low", "high", "members"])?;
+        file.row(&["state", "unit", "low", "high", "members", COMPLETE])?;
         let units = self.ready.vehicle.units.labels::<M::State>();
         let last = self.outcome.snapshots.last();
         let states = last.into_iter().flat_map(|it| &it.states);
         for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(states) {
             for bin in &state.histogram {
-                let [low, high] = [bin.low, bin.high].map(|edge| edge.to_string());
-                file.row(&[*name, *unit, &low, &high, &bin.count.to_string()])?;
+                let [low, high] = [bin.low, bin.high].map(cell);
+                let count = bin.count.to_string();
+                file.row(&[*name, *unit, &low, &high, &count, &complete])?;
             }
         }
         file.finish()
@@ -83,6 +100,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
 
     /// A row a snapshot and state: shares of members that have left by then.
     fn limits(&self, path: &Path) -> Result<(), Failure> {
+        let complete = self.is_complete().to_string();
         let mut file = CsvFile::create(path)?;
         file.row(&[
             "time [s]",
@@ -91,18 +109,20 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             "left",
             "left_low",
             "left_high",
+            COMPLETE,
         ])?;
         for snapshot in &self.outcome.snapshots {
             for (set, intervals) in ["validity box", "limits"].into_iter().enumerate() {
                 for (name, share) in self.left(snapshot, set).0 {
                     let [value, low, high] = cells(&Some(share));
                     file.row(&[
-                        &snapshot.time.to_string(),
+                        &cell(time(snapshot.time)),
                         intervals,
                         name,
                         &value,
                         &low,
                         &high,
+                        &complete,
                     ])?;
                 }
             }

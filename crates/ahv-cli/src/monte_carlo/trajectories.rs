@@ -16,6 +16,7 @@ use super::Told;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::flights::Pair;
+use crate::number::{cell, time};
 use crate::output::Output;
 
 /// A file format.
@@ -83,7 +84,11 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
         columns: Vec::new(),
     };
     table.columns = vec![Vec::new(); table.names.len()];
-    for &member in chosen {
+    // Of a part of the members, those that were flown.
+    for &member in chosen
+        .iter()
+        .filter(|member| **member < told.outcome.members)
+    {
         let flight = told.ready.experiment.trajectory(member, 1);
         let flight = flight.map_err(|error| Failure::Numeric(error.to_string()))?;
         for point in flight {
@@ -91,7 +96,9 @@ pub(super) fn write<F: Flown, M: Pair<F>>(
             table.members.push(member as i64);
             let states = (0..M::State::LEN).filter_map(|index| point.state.get(index));
             let inputs = (0..M::Input::LEN).filter_map(|index| point.input.get(index));
-            let values = std::iter::once(point.time).chain(states).chain(inputs);
+            let values = std::iter::once(time(point.time))
+                .chain(states)
+                .chain(inputs);
             table
                 .columns
                 .iter_mut()
@@ -114,7 +121,7 @@ impl Table {
         for (row, member) in self.members.iter().enumerate() {
             let values = self.columns.iter().filter_map(|column| column.get(row));
             let cells = std::iter::once(member.to_string());
-            let cells: Vec<String> = cells.chain(values.map(f64::to_string)).collect();
+            let cells: Vec<String> = cells.chain(values.map(|&value| cell(value))).collect();
             file.row(&cells)?;
         }
         file.finish()

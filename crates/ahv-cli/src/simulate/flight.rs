@@ -11,7 +11,7 @@ use crate::condition::Vehicle;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::output::describe;
-use crate::progress::Progress;
+use crate::progress::{Progress, Work};
 use crate::units::Units;
 use crate::vehicle::FlightModel;
 
@@ -39,7 +39,11 @@ impl<M: FlightModel> Flight<'_, M> {
         let mut run = integrate::Progress::new(0.0, start);
         let mut table = CsvFile::create(&arguments.out)?;
         table.row(&columns::<M::State>(vehicle.units))?;
-        let mut progress = Progress::new(grid.steps().into());
+        let progress = Progress::start(Work {
+            command: "simulate",
+            unit: "steps",
+            total: Some(grid.steps().into()),
+        });
         let mut departure = None;
         let mut row = Vec::with_capacity(M::State::LEN + 1);
         loop {
@@ -47,12 +51,12 @@ impl<M: FlightModel> Flight<'_, M> {
             row.clear();
             row.push(time);
             row.extend((0..M::State::LEN).filter_map(|index| x.get(index)));
-            table.row(&row)?;
+            table.numbers(&row)?;
             if departure.is_none() {
                 departure = first_outside(&x, &vehicle.state_bounds)
                     .map(|outside| Departure { time, outside });
             }
-            progress.tell(run.accepted.into());
+            progress.reach(run.accepted.into());
             let stepped = grid.step(&mut run, |x, step, dt| advance(x, &u, step, dt));
             if !stepped.map_err(|failure| self.broken(&failure, &run, &arguments.out))? {
                 break;

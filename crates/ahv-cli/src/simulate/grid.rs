@@ -3,6 +3,7 @@
 use ahv_integrate::TimeGrid;
 
 use crate::failure::Failure;
+use crate::number::Shown;
 
 /// Reads a positive, finite number.
 ///
@@ -26,7 +27,10 @@ pub(super) fn grid(t_end: f64, dt: f64) -> Result<TimeGrid, Failure> {
     TimeGrid::new(0.0, t_end, dt).map_err(|_| {
         let steps = t_end / dt;
         Failure::Request(format!(
-            "--t-end {t_end} with --dt {dt} makes {steps:.3e} steps; at most 1e8 are allowed, so take a larger --dt"
+            "--t-end {} with --dt {} makes {:.3e} steps; at most 1e8 are allowed, so take a larger --dt",
+            Shown(t_end),
+            Shown(dt),
+            Shown(steps)
         ))
     })
 }

@@ -7,6 +7,7 @@ use ahv_integrate::TimeGrid;
 use serde::Serialize;
 
 use crate::failure::{Failure, complain, print};
+use crate::number::Shown;
 use crate::output::{self, Pairs, describe, describe_outside};
 use crate::units::Units;
 
@@ -119,7 +120,8 @@ impl<X: Vector<f64>, U: Vector<f64>> Report<'_, X, U> {
     }
 
     fn text(&self) -> String {
-        let (steps, t_end, dt) = (self.grid.steps(), self.grid.end(), self.grid.dt());
+        let steps = self.grid.steps();
+        let [t_end, dt] = [self.grid.end(), self.grid.dt()].map(Shown);
         let seed = self
             .seed
             .map_or_else(String::new, |seed| format!(", seed {seed}"));

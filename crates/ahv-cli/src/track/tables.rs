@@ -1,34 +1,52 @@
 //! Statistics and flights as CSV.
 
-use std::fmt::Write;
+use std::path::Path;
 
 use ahv_analysis::track::Flight;
 use ahv_models::dcom::{Input, State};
 
 use super::Outcome;
+use crate::csv_file::CsvFile;
+use crate::failure::Failure;
+use crate::number::{cell, time};
+
+/// Headings of the statistics.
+const STATISTICS: [&str; 11] = [
+    "controller",
+    "figure",
+    "unit",
+    "mean",
+    "mean_low",
+    "mean_high",
+    "median",
+    "p05",
+    "p95",
+    "least",
+    "largest",
+];
 
 /// A row for each figure of each controller; of shares of flights only value and interval.
-pub(super) fn statistics(outcomes: &[Outcome]) -> String {
-    let mut table = String::from(
-        "controller,figure,unit,mean,mean_low,mean_high,median,p05,p95,least,largest\n",
-    );
-    // Writing into a String cannot fail.
+pub(super) fn statistics(path: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
+    let mut file = CsvFile::create(path)?;
+    file.row(&STATISTICS)?;
     for Outcome {
         controller,
         statistics,
         ..
     } in outcomes
     {
+        let mut row = |name: &str, unit: &str, numbers: &[Option<f64>]| {
+            let texts = [*controller, name, unit].map(str::to_owned).into_iter();
+            let cells = numbers.iter().map(|it| it.map_or_else(String::new, cell));
+            file.row(&texts.chain(cells).collect::<Vec<_>>())
+        };
         for (name, count) in [
             ("lost", &statistics.lost),
             ("left_validity_box", &statistics.left_validity_box),
         ] {
             let share = &count.share;
-            let _ = writeln!(
-                table,
-                "{controller},{name},1,{},{},{},,,,,",
-                share.value, share.low, share.high
-            );
+            let interval = [share.value, share.low, share.high].map(Some);
+            row(name, "1", &[&interval[..], &[None; 5]].concat())?;
         }
         for figure in &statistics.figures {
             let (mean, spread) = (&figure.mean, &figure.spread);
@@ -42,44 +60,37 @@ pub(super) fn statistics(outcomes: &[Outcome]) -> String {
                 figure.least,
                 figure.largest,
             ];
-            let numbers = numbers.map(|number| number.to_string()).join(",");
-            let _ = writeln!(
-                table,
-                "{controller},{},{},{numbers}",
-                figure.name, figure.unit
-            );
+            row(figure.name, figure.unit, &numbers.map(Some))?;
         }
     }
-    table
+    file.finish()
 }
 
 /// State, input and commands of a flight over time.
-pub(super) fn flight(flight: &Flight) -> String {
+pub(super) fn flight(path: &Path, flight: &Flight) -> Result<(), Failure> {
+    let mut file = CsvFile::create(path)?;
     let units = State::<f64>::UNITS.into_iter().chain(Input::<f64>::UNITS);
     let names = State::<f64>::NAMES.into_iter().chain(Input::<f64>::NAMES);
-    let mut table = String::from("time [s]");
-    for (name, unit) in names.zip(units) {
-        let _ = write!(table, ",{name} [{unit}]");
-    }
-    table.push_str(",velocity_command [ft/s],altitude_command [ft],gamma_command [rad]\n");
+    let columns = names
+        .zip(units)
+        .map(|(name, unit)| format!("{name} [{unit}]"));
+    let commands = [
+        "velocity_command [ft/s]",
+        "altitude_command [ft]",
+        "gamma_command [rad]",
+    ];
+    let first = ["time [s]".to_owned()].into_iter();
+    let heading = first.chain(columns).chain(commands.map(str::to_owned));
+    file.row(&heading.collect::<Vec<_>>())?;
     for sample in &flight.samples {
-        let _ = write!(table, "{}", sample.time);
-        for value in sample
-            .state
-            .to_array()
-            .into_iter()
-            .chain(sample.input.to_array())
-        {
-            let _ = write!(table, ",{value}");
-        }
         let command = &sample.reference;
-        let _ = writeln!(
-            table,
-            ",{},{},{}",
-            command.velocity,
-            command.altitude,
-            command.gamma()
-        );
+        let commands = [command.velocity, command.altitude, command.gamma()];
+        let numbers = [time(sample.time)]
+            .into_iter()
+            .chain(sample.state.to_array())
+            .chain(sample.input.to_array())
+            .chain(commands);
+        file.row(&numbers.map(cell).collect::<Vec<_>>())?;
     }
-    table
+    file.finish()
 }

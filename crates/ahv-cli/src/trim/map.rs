@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::condition::Vehicle;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::number;
 use crate::output;
 use crate::vehicle::FlightModel;
 
@@ -147,22 +148,27 @@ impl<'a, M: FlightModel> Map<'a, M> {
         )
     }
 
-    /// Writes the points as CSV and the picture.
+    /// Writes the points as CSV.
     ///
     /// # Errors
     ///
     /// [`Failure`] if a file cannot be written.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
-        let svg = self.figure().svg();
-        let svg = svg.map_err(|error| Failure::Numeric(error.to_string()))?;
-        output::folder(folder)?;
         let mut csv = CsvFile::create(&folder.join("trim_map.csv"))?;
         csv.row(&self.header())?;
         for cell in &self.cells {
             csv.row(&self.record(cell))?;
         }
-        csv.finish()?;
-        output::write(&folder.join("trim_map.svg"), svg)
+        csv.finish()
+    }
+
+    /// Draws the picture.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure`] if the file cannot be written.
+    pub(super) fn draw(&self, folder: &Path) -> Result<(), Failure> {
+        output::picture(&folder.join("trim_map.svg"), self.figure().svg())
     }
 
     fn header(&self) -> Vec<String> {
@@ -179,11 +185,11 @@ impl<'a, M: FlightModel> Map<'a, M> {
     }
 
     fn record(&self, cell: &Cell<M>) -> Vec<String> {
-        let mut record = vec![cell.velocity.to_string(), cell.altitude.to_string()];
+        let mut record = vec![number::cell(cell.velocity), number::cell(cell.altitude)];
         match &cell.result {
             Ok(trim) => {
                 record.push("true".to_owned());
-                record.extend(QUANTITIES.map(|it| it.of::<M>(trim).to_string()));
+                record.extend(QUANTITIES.map(|it| number::cell(it.of::<M>(trim))));
                 record.push(String::new());
             }
             Err(error) => {

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::assignment::show;
 use crate::condition::{Heading, Vehicle};
+use crate::number::Shown;
 use crate::output::{Pairs, describe, describe_outside};
 use crate::vehicle::FlightModel;
 
@@ -175,7 +176,7 @@ impl<'a, M: FlightModel> Report<'a, M> {
             describe(&found.state, units),
             describe(&found.input, units),
             residuals(&found.residuals, units.labels::<M::State>()),
-            found.residual_max,
+            Shown(found.residual_max),
             found.iterations,
         )
     }
@@ -185,8 +186,8 @@ impl<'a, M: FlightModel> Report<'a, M> {
 fn residuals<X: Vector<f64>>(residuals: &X, units: &[&str]) -> String {
     let rows = Pairs::of(residuals).0.into_iter().zip(units);
     let rows = rows.map(|((name, value), unit)| match *unit {
-        "1" => format!("  {name:<12} {:.3e}", value + 0.0),
-        unit => format!("  {name:<12} {:.3e} {unit}", value + 0.0),
+        "1" => format!("  {name:<12} {:.3e}", Shown(value + 0.0)),
+        unit => format!("  {name:<12} {:.3e} {unit}", Shown(value + 0.0)),
     });
     rows.collect::<Vec<_>>().join("\n")
 }

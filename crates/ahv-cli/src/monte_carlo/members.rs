@@ -1,0 +1,140 @@
+//! `members.csv`: what was drawn for each member, and what became of it.
+
+use std::path::Path;
+
+use ahv_analysis::monte_carlo::{Flown, Seen};
+use ahv_core::Vector;
+
+use crate::csv_file::CsvFile;
+use crate::failure::{Failure, complain};
+use crate::flights::{Pair, Ready};
+use crate::number::cell;
+
+/// Members that are listed at most: the file grows with them, and nothing else does.
+const MOST_LISTED: u64 = 1_000_000;
+
+/// Intervals that may be left, in the order in which they are watched.
+const INTERVALS: [&str; 2] = ["validity_box", "limits"];
+
+/// The list of the members, which is written while they fly.
+pub(super) struct MemberList<'r, F: Flown, M: Pair<F>> {
+    ready: &'r Ready<F, M>,
+    /// Indices of the parameters that are drawn.
+    drawn: Vec<usize>,
+    /// The file, or why it cannot be written.
+    file: Result<CsvFile, Failure>,
+}
+
+impl<'r, F: Flown, M: Pair<F>> MemberList<'r, F, M> {
+    /// Starts the list of `asked` members.
+    pub(super) fn create(
+        ready: &'r Ready<F, M>,
+        folder: &Path,
+        asked: u64,
+    ) -> Result<Self, Failure> {
+        if asked > MOST_LISTED {
+            complain(&format!(
+                "note: members.csv lists members 0 to {}",
+                MOST_LISTED - 1
+            ));
+        }
+        let mut list = Self {
+            drawn: ready
+                .experiment
+                .dispersion
+                .iter()
+                .flat_map(|it| it.varied())
+                .collect(),
+            file: CsvFile::create(&folder.join("members.csv")),
+            ready,
+        };
+        let heading = list.heading();
+        list.row(&heading);
+        match list.file {
+            Ok(_) => Ok(list),
+            Err(failure) => Err(failure),
+        }
+    }
+
+    fn heading(&self) -> Vec<String> {
+        let units = self.ready.vehicle.units;
+        let intervals = INTERVALS.iter().take(self.ready.experiment.watched.len());
+        let left = intervals.flat_map(|it| [format!("left_{it} [s]"), format!("left_{it}_state")]);
+        let states = M::State::NAMES.iter().zip(units.labels::<M::State>());
+        let states = states.map(|(name, unit)| format!("last_{name} [{unit}]"));
+        let parameters = self.drawn.iter().filter_map(|&index| {
+            let name = M::Parameters::NAMES.get(index)?;
+            Some(format!("{name} [{}]", units.label::<M::Parameters>(name)))
+        });
+        let first = ["member", "outcome", "lost [s]", "lost_state"].map(str::to_owned);
+        first
+            .into_iter()
+            .chain(left)
+            .chain(states)
+            .chain(parameters)
+            .collect()
+    }
+
+    /// Lists members from number `first` on.
+    pub(super) fn add(&mut self, first: u64, seen: &[Seen<F>]) {
+        for (member, seen) in (first..MOST_LISTED).zip(seen) {
+            if self.file.is_err() {
+                return;
+            }
+            let row = self.member(member, seen);
+            self.row(&row);
+        }
+    }
+
+    fn member(&self, member: u64, seen: &Seen<F>) -> Vec<String> {
+        let time = |steps: u64| cell(self.ready.time(steps));
+        let (outcome, lost, lost_state) = match &seen.lost {
+            Some(loss) => ("lost", time(loss.step), loss.state),
+            None => ("flown", String::new(), ""),
+        };
+        let mut row = vec![
+            member.to_string(),
+            outcome.to_owned(),
+            lost,
+            lost_state.to_owned(),
+        ];
+        for left in &seen.left {
+            let states = (0..M::State::LEN).filter_map(|state| {
+                let steps = left.get(state).flatten()?;
+                Some((steps, *M::State::NAMES.get(state)?))
+            });
+            row.extend(match states.min_by_key(|(steps, _)| *steps) {
+                Some((steps, state)) => [time(steps), state.to_owned()],
+                None => [const { String::new() }; 2],
+            });
+        }
+        row.extend((0..M::State::LEN).filter_map(|state| seen.last.get(state).map(cell)));
+        if let Some(draws) = &self.ready.experiment.dispersion {
+            let parameters = draws.member(member);
+            row.extend(
+                self.drawn
+                    .iter()
+                    .filter_map(|&index| parameters.get(index).map(cell)),
+            );
+        }
+        row
+    }
+
+    fn row(&mut self, cells: &[String]) {
+        if let Ok(file) = &mut self.file
+            && let Err(failure) = file.row(cells)
+        {
+            // The flights go on without the list. What it holds so far is no use, and takes up room.
+            self.file = Err(failure);
+        }
+    }
+
+    /// Puts the list in its place.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] if it could not be written.
+    pub(super) fn finish(self) -> Result<(), Failure> {
+        self.file?.finish()
+    }
+}
