@@ -171,7 +171,7 @@ fn exact_errors(mode: &Mode, experiment: &Experiment) -> Result<[Vec<f64>; 3], R
                 let times = experiment.times().into_iter();
                 times.map(|time| reduced.std_error_at(time)).collect()
             }
-            Reading::Held => reduced.std_errors_held(experiment.dt, experiment.steps)?,
+            Reading::Held => reduced.std_errors_held(experiment.dt, experiment.steps, 1)?,
         };
     }
     Ok(errors)

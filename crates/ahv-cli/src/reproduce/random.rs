@@ -413,7 +413,7 @@ pub(super) fn reductions(random: &Random, findings: &mut Findings) -> Result<Sec
                 Cell::number(reduced.decay()),
                 Cell::number(reduced.variance_ratio()),
                 Cell::number(reduced.spectrum_ratio()),
-                Cell::number(reduced.largest_std_error().value),
+                Cell::number(reduced.largest_std_errors().greatest.value),
                 Cell::Number(interval(&held.mean[place])),
                 Cell::Number(interval(&held.std[place])),
                 Cell::Number(interval(&white.std[place])),
