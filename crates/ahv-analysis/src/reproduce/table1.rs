@@ -12,7 +12,7 @@ use crate::ensemble::{Drive, Experiment, Moments, PROCESSES, Reading};
 use crate::reduce::{Mode, ReduceError, ReducedMode, section_5_1};
 use crate::statistics::Estimate;
 
-/// Periods of held noise of which Fig. 2 shows what lies between the samples, and the parts of each.
+/// Periods of held noise (the page names their number) of which Fig. 2 shows what lies between the samples, and the parts of each.
 const FINE: (u64, u32) = (40, 16);
 /// Samples between two points of Fig. 2 after them.
 const COARSE: usize = 10;

@@ -161,7 +161,7 @@ pub(super) fn table1(random: &Random, findings: &mut Findings) -> Result<Section
         (
             "fig2_held.svg",
             format!(
-                "Fig. 2 with a number of N(0, {0}²) held for each step.",
+                "Fig. 2 with a number of N(0, {0}²) held for each step; exact curves show what lies between the samples in the first 40 steps.",
                 sigma()
             ),
         ),

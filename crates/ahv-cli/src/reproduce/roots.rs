@@ -345,13 +345,7 @@ fn map(vehicles: &[Vehicle]) -> Result<String, PlotError> {
             y: Axis::linear("imaginary part [rad/s]"),
             layers,
         };
-        let near = NEAR.map(|(reach, words)| {
-            let mut near = all.clone();
-            near.title = format!("{}, {words}", near.title);
-            near.x = near.x.within(-reach, reach);
-            near.y = near.y.within(-reach, reach);
-            near
-        });
+        let near = NEAR.map(|(reach, words)| about_the_origin(&all, reach, words));
         panels.push(all);
         panels.extend(near);
     }
@@ -360,4 +354,21 @@ fn map(vehicles: &[Vehicle]) -> Result<String, PlotError> {
         ..Figure::new("", 1 + NEAR.len(), panels)
     }
     .svg()
+}
+
+/// The panel within `reach` rad/s of the origin, in mrad/s.
+fn about_the_origin(all: &Panel, reach: f64, words: &str) -> Panel {
+    const MILLI: f64 = 1e3;
+    let mut panel = all.clone();
+    panel.title = format!("{}, {words}", panel.title);
+    panel.x = Axis::linear("real part [mrad/s]").within(-MILLI * reach, MILLI * reach);
+    panel.y = Axis::linear("imaginary part [mrad/s]").within(-MILLI * reach, MILLI * reach);
+    for layer in &mut panel.layers {
+        if let Mark::Markers(_, points) = &mut layer.mark {
+            for (re, im) in points {
+                (*re, *im) = (MILLI * *re, MILLI * *im);
+            }
+        }
+    }
+    panel
 }

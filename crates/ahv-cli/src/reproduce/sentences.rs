@@ -240,13 +240,14 @@ pub(super) fn normality(kurtosis: &[f64], runs: u64, time: f64) -> Finding {
     finding(
         normal,
         format!(
-            "Figs. 3 and 4: the excess kurtosis of η at {} s is {}; {} of normal numbers lie within ±{} (95 % for three modes).",
+            "Figs. 3 and 4: the excess kurtosis of η at {} s is {}, {} ±{}, where 95 % of normal samples as large lie in all \
+             three modes.",
             number(time),
             list(&values),
             if normal {
-                "samples as large"
+                "all within"
             } else {
-                "but samples as large"
+                "not all within"
             },
             number(bound)
         ),

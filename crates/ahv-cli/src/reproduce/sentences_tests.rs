@@ -114,8 +114,8 @@ fn figures_3_to_5() {
             normality(&[0.01, 0.3], 10_000, 10.0),
         ],
         [
-            "0.01000 and -0.03000; samples as large",
-            "0.01000 and 0.3000; but samples as large",
+            "0.01000 and -0.03000, all within",
+            "0.01000 and 0.3000, not all within",
         ],
     );
     let [alike, apart] = <[Finding; 2]>::try_from(distributions(&[(false, 0.98), (true, 0.5)], 10))
