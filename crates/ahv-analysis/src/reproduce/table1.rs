@@ -12,8 +12,10 @@ use crate::ensemble::{Drive, Experiment, Moments, PROCESSES, Reading};
 use crate::reduce::{Mode, ReduceError, ReducedMode, section_5_1};
 use crate::statistics::Estimate;
 
-/// Periods of held noise (the page names their number) of which Fig. 2 shows what lies between the samples, and the parts of each.
-const FINE: (u64, u32) = (40, 16);
+/// Periods of held noise of which Fig. 2 shows what lies between the samples.
+pub const FINE_PERIODS: u64 = 40;
+/// Parts of such a period.
+const FINE_PARTS: u32 = 16;
 /// Samples between two points of Fig. 2 after them.
 const COARSE: usize = 10;
 /// Points of Fig. 2 over time for white noise, and the first, in s.
@@ -266,7 +268,7 @@ fn fine_errors(
         });
         return Ok((times, errors));
     }
-    let (periods, parts) = (FINE.0.min(experiment.steps), FINE.1);
+    let (periods, parts) = (FINE_PERIODS.min(experiment.steps), FINE_PARTS);
     let late = || (periods as usize + 1..=experiment.steps as usize).step_by(COARSE);
     let part = experiment.dt / f64::from(parts);
     let mut times: Vec<f64> = (1..=periods * u64::from(parts))

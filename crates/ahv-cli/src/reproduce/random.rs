@@ -8,7 +8,7 @@ use ahv_analysis::reproduce::forced::Forced;
 use ahv_analysis::reproduce::p_value::{PValue, Verdict};
 use ahv_analysis::reproduce::printed::TABLE_1;
 use ahv_analysis::reproduce::snapshot::Snapshot;
-use ahv_analysis::reproduce::table1::{Case, CaseResult, ModeResult, Table1};
+use ahv_analysis::reproduce::table1::{Case, CaseResult, FINE_PERIODS, ModeResult, Table1};
 use ahv_analysis::reproduce::{METHODS, Random};
 use ahv_analysis::statistics::Estimate;
 
@@ -161,7 +161,7 @@ pub(super) fn table1(random: &Random, findings: &mut Findings) -> Result<Section
         (
             "fig2_held.svg",
             format!(
-                "Fig. 2 with a number of N(0, {0}²) held for each step; exact curves show what lies between the samples in the first 40 steps.",
+                "Fig. 2 with a number of N(0, {0}²) held for each step; exact curves show what lies between the samples in the first {FINE_PERIODS} steps.",
                 sigma()
             ),
         ),
