@@ -4,7 +4,7 @@
 //! ones; [`slopes`] tells the same spread to first order, and which parameters it comes from.
 
 mod draws;
-mod matching;
+pub(crate) mod matching;
 mod quantity;
 mod slopes;
 mod solution;

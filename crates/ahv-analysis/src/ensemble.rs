@@ -157,7 +157,7 @@ impl Experiment {
 
 impl Experiment {
     /// The transition of η, η̇ and χ over a step; held noise is a force, and none of the transition's.
-    fn transition(
+    pub(crate) fn transition(
         &self,
         reduced: &ReducedMode,
     ) -> Result<LinearTransition<f64, STATES>, ReduceError> {

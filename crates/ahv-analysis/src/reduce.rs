@@ -22,6 +22,10 @@ const LONG: f64 = 40.0;
 const SECTIONS: usize = 60;
 /// Parts of a sampling period that are looked at between samples.
 const BETWEEN: u32 = 16;
+/// Share of the stationary variance of η below which the closed form cancels and the transition takes its place.
+const CANCELS: f64 = 1e-3;
+/// Relative difference from the mode's value below which a reduction keeps it.
+const KEPT: f64 = 1e-9;
 /// Samples after which held noise is no longer followed.
 const MOST_SAMPLES: f64 = 1e5;
 
@@ -72,13 +76,54 @@ pub enum Damping {
     Overdamped,
 }
 
-/// The greatest distance between the standard deviations of η and χ.
+/// What a reduction may keep of its mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Property {
+    /// The slowest decay rate of the mode: ζω, or ω(ζ − √(ζ² − 1)) for ζ > 1.
+    DecayRate,
+    /// The stationary variance.
+    Variance,
+    /// The spectrum at zero frequency, which is what slow states feel.
+    SpectrumAtZero,
+}
+
+/// A property of χ beside that of η.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Comparison {
+    /// The property.
+    pub property: Property,
+    /// Its value for χ as a share of that for η.
+    pub ratio: f64,
+    /// Whether the two agree within 1e-9.
+    pub kept: bool,
+}
+
+/// A greatest distance between the standard deviations of η and χ.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Peak {
-    /// max |D_η(t) − D_χ(t)|, in the unit of η.
+    /// |D_η(t) − D_χ(t)|, in the unit of η.
     pub value: f64,
     /// When, in s; `None` if it is approached as time goes on.
     pub time: Option<f64>,
+    /// Whether χ has the larger deviation there.
+    pub chi_leads: bool,
+}
+
+/// Where the standard deviations of η and χ, from rest, differ most.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct StdErrors {
+    /// Over all times.
+    pub greatest: Peak,
+    /// In the rise from rest: until D_η first reaches D_χ. χ starts with √t, η with t^³⁄², so that χ leads there.
+    pub rise: Peak,
+}
+
+impl StdErrors {
+    /// Whether the greatest distance is that of the rise.
+    pub fn greatest_in_rise(&self) -> bool {
+        self.greatest == self.rise
+    }
 }
 
 /// The same where white noise is sampled and held, as computers often have it.
@@ -174,7 +219,19 @@ impl ReducedMode {
             ("variance of the coloured noise", reduced.chi_variance()),
             ("decay rate", reduced.decay()),
             ("spectrum at zero frequency", reduced.eta_spectrum(0.0)),
+            (
+                "spectrum of the coloured noise at zero frequency",
+                reduced.chi_spectrum(0.0),
+            ),
             ("slowest decay rate", reduced.rates().0),
+            (
+                "variance ratio of coloured noise and mode",
+                reduced.variance_ratio(),
+            ),
+            (
+                "spectrum ratio of coloured noise and mode",
+                reduced.spectrum_ratio(),
+            ),
         ] {
             if !(value.is_normal() && value > 0.0) {
                 return Err(ReduceError::OutOfRange { name, value });
@@ -205,14 +262,21 @@ impl ReducedMode {
 
     /// Variance of η at `time`, in s, from rest: σ² ∫ h(s)² ds.
     pub fn eta_variance_at(&self, time: f64) -> f64 {
-        // Rounding may leave less than nothing soon after the start.
-        by_damping!(self, time: eta_variance_at_underdamped, eta_variance_at_critical, eta_variance_at_overdamped)
-            .max(0.0)
+        let closed = by_damping!(self, time: eta_variance_at_underdamped, eta_variance_at_critical, eta_variance_at_overdamped);
+        if closed >= CANCELS * self.eta_variance() {
+            return closed;
+        }
+        // The closed form is a small difference of large numbers there; the transition is a sum.
+        let Mode { omega, zeta, sigma } = self.mode;
+        LinearTransition::mode(omega, zeta, sigma, time).map_or(0.0, |step| {
+            let [[variance, _], _] = *step.covariance();
+            variance
+        })
     }
 
-    /// Variance of χ at `time`, in s, from rest.
+    /// Variance of χ at `time`, in s, from rest: b²(1 − e^{−2at})/(2a), without the difference.
     pub fn chi_variance_at(&self, time: f64) -> f64 {
-        closed_form!(self, chi_variance_at, time)
+        -self.chi_variance() * (-2.0 * self.decay() * time).exp_m1()
     }
 
     /// D_η(t) − D_χ(t), standard deviations from rest, at `time`, in s.
@@ -250,14 +314,35 @@ impl ReducedMode {
         self.chi_spectrum(0.0) / self.eta_spectrum(0.0)
     }
 
+    /// Slowest decay rate of the mode, in 1/s: ζω for ζ ≤ 1, ω(ζ − √(ζ² − 1)) beyond.
+    pub fn mode_decay(&self) -> f64 {
+        match self.damping {
+            Damping::Overdamped => self.prepared.slow_pole,
+            _ => self.mode.zeta * self.mode.omega,
+        }
+    }
+
+    /// Decay rate, variance and spectrum at zero frequency of χ beside those of η.
+    pub fn comparisons(&self) -> [Comparison; 3] {
+        [
+            (Property::DecayRate, self.decay() / self.mode_decay()),
+            (Property::Variance, self.variance_ratio()),
+            (Property::SpectrumAtZero, self.spectrum_ratio()),
+        ]
+        .map(|(property, ratio)| Comparison {
+            property,
+            ratio,
+            kept: (ratio - 1.0).abs() <= KEPT,
+        })
+    }
+
     /// Slowest and fastest rate of mode and coloured noise, in 1/s.
     fn rates(&self) -> (f64, f64) {
-        let Mode { omega, zeta, .. } = self.mode;
-        let (slow, fast) = match self.damping {
-            Damping::Overdamped => (self.prepared.slow_pole, self.prepared.fast_pole),
-            _ => (zeta * omega, omega),
+        let fast = match self.damping {
+            Damping::Overdamped => self.prepared.fast_pole,
+            _ => self.mode.omega,
         };
-        (slow.min(self.decay()), fast.max(self.decay()))
+        (self.mode_decay().min(self.decay()), fast.max(self.decay()))
     }
 
     /// Time after which both processes are stationary to double precision, in s.
@@ -265,35 +350,58 @@ impl ReducedMode {
         LONG / self.rates().0
     }
 
-    /// max |D_η(t) − D_χ(t)| over all times, for white noise.
-    pub fn largest_std_error(&self) -> Peak {
+    /// Where D_η(t) and D_χ(t) differ most, for white noise: over all times, and in the rise from rest.
+    pub fn largest_std_errors(&self) -> StdErrors {
         let (slow, fast) = self.rates();
         let (end, step) = (LONG / slow, SHORT / fast);
-        let error = |time: f64| self.std_error_at(time).abs();
         let short = f64::from(SAMPLES) * step;
         let ratio = (end / short).max(1.0).powf(1.0 / f64::from(SAMPLES));
         let late = (1..=SAMPLES).map(|index| short * ratio.powf(f64::from(index)));
         let early = (0..=SAMPLES).map(|index| step * f64::from(index));
-        let times: Vec<f64> = early.chain(late).collect();
-        let best = (0..times.len())
-            .max_by(|&a, &b| error(times[a]).total_cmp(&error(times[b])))
-            .unwrap_or(0);
-        let around = |index: usize| times.get(index).copied().unwrap_or(times[best]);
-        let time = summit(error, around(best.saturating_sub(1)), around(best + 1));
-        let (value, limit) = (
-            error(time),
-            (self.eta_variance().sqrt() - self.chi_variance().sqrt()).abs(),
-        );
-        if value > limit * (1.0 + 1e-9) {
-            Peak {
-                value,
-                time: Some(time),
-            }
+        let samples = early.chain(late);
+        let samples: Vec<(f64, f64)> = samples
+            .map(|time| (time, self.std_error_at(time)))
+            .collect();
+        // Nothing moves at 0 s.
+        let caught_up = samples.iter().skip(1).position(|&(_, error)| error >= 0.0);
+        let rise = caught_up.map_or(samples.len(), |place| place + 1);
+        let whole = self.peak(&samples, samples.len());
+        let limit = self.eta_variance().sqrt() - self.chi_variance().sqrt();
+        let greatest = if whole.value > limit.abs() * (1.0 + 1e-9) {
+            whole
         } else {
             Peak {
-                value: limit,
+                value: limit.abs(),
                 time: None,
+                chi_leads: limit < 0.0,
             }
+        };
+        let rise = match caught_up {
+            // η never catches up: all is rise.
+            None => greatest,
+            Some(_) => self.peak(&samples, rise),
+        };
+        StdErrors { greatest, rise }
+    }
+
+    /// The greatest distance about the first `count` of `samples`, times with errors.
+    fn peak(&self, samples: &[(f64, f64)], count: usize) -> Peak {
+        let size = |index: usize| samples.get(index).map_or(0.0, |(_, error)| error.abs());
+        let best = (0..count)
+            .max_by(|&a, &b| size(a).total_cmp(&size(b)))
+            .unwrap_or(0);
+        let at = |index: usize| {
+            samples
+                .get(index.min(samples.len() - 1))
+                .map_or(0.0, |it| it.0)
+        };
+        let error = |time: f64| self.std_error_at(time).abs();
+        let time = summit(error, at(best.saturating_sub(1)), at(best + 1));
+        let error = self.std_error_at(time);
+        Peak {
+            value: error.abs(),
+            time: Some(time),
+            chi_leads: error < 0.0,
         }
     }
 
@@ -319,24 +427,29 @@ impl ReducedMode {
         Ok(peak)
     }
 
-    /// D_η − D_χ at the samples of such noise: at 0 and after each of `samples` periods.
+    /// D_η − D_χ under such noise: at 0 and after each of `parts` parts of each of `samples` periods.
     ///
     /// # Errors
     ///
     /// As [`Self::largest_std_error_held`].
-    pub fn std_errors_held(&self, period: f64, samples: u64) -> Result<Vec<f64>, ReduceError> {
+    pub fn std_errors_held(
+        &self,
+        period: f64,
+        samples: u64,
+        parts: u32,
+    ) -> Result<Vec<f64>, ReduceError> {
         let mut errors = vec![0.0];
-        self.held(period, samples, 1, |_, error| errors.push(error))?;
+        self.held(period, samples, parts, |_, error| errors.push(error))?;
         Ok(errors)
     }
 
-    /// Tells the error at each of `parts` parts of each period, counted from 1.
+    /// Reports the error at each of `parts` parts of each period, counted from 1.
     fn held(
         &self,
         period: f64,
         samples: u64,
         parts: u32,
-        mut tell: impl FnMut(u32, f64),
+        mut report: impl FnMut(u32, f64),
     ) -> Result<(), ReduceError> {
         let Mode { omega, zeta, sigma } = self.mode;
         let steps = (1..=parts).map(|part| {
@@ -354,7 +467,7 @@ impl ReducedMode {
                     carried(mode, &eta, &[0.0, sigma]),
                     carried(noise, &chi, &[self.intensity()]),
                 );
-                tell(part, next.0[0][0].sqrt() - next.1[0][0].sqrt());
+                report(part, next.0[0][0].sqrt() - next.1[0][0].sqrt());
             }
             (eta, chi) = next;
         }

@@ -9,6 +9,7 @@ use approx::assert_relative_eq;
 
 const SMALL: Size = Size {
     repeats: 20,
+    most_repeats: 40,
     runs: 40,
     snapshot_runs: 400,
     forced_runs: 20,
@@ -108,6 +109,7 @@ fn snapshots_and_forced_modes_agree_with_closed_forms() {
 fn results_depend_on_the_seed_and_not_on_the_threads() {
     let tiny = Size {
         repeats: 2,
+        most_repeats: 4,
         runs: 30,
         snapshot_runs: 40,
         forced_runs: 4,
@@ -120,10 +122,10 @@ fn results_depend_on_the_seed_and_not_on_the_threads() {
             .build()
             .expect("threads");
         pool.install(|| {
-            let mut told = 0;
+            let mut reported = 0;
             let size = Size { seed, ..tiny };
-            let random = random(&size, |done| told = done).expect("computed");
-            assert_eq!(told, size.work());
+            let random = random(&size, |done| reported = done).expect("computed");
+            assert_eq!(reported, size.work());
             random
         })
     };

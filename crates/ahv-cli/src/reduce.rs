@@ -6,7 +6,9 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use ahv_analysis::ensemble::{Drive, Experiment, Moments, Reading, process_of};
-use ahv_analysis::reduce::{Damping, Mode, Peak, ReducedMode, Reduction, section_5_1};
+use ahv_analysis::reduce::{
+    Comparison, Damping, Mode, Peak, Property, ReducedMode, Reduction, StdErrors, section_5_1,
+};
 use ahv_analysis::statistics::Estimate;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -58,8 +60,8 @@ pub(crate) struct Arguments {
     )]
     sigma: Option<Vec<f64>>,
 
-    /// Choice of a and b: printed keeps decay rate and gain at zero frequency (23), variance decay rate and variance,
-    /// moment variance and gain
+    /// Choice of a and b: printed (23) is zeta omega, zeta sigma/omega; variance is zeta omega, sigma/(sqrt(2) omega); moment
+    /// is omega/(2 zeta), sigma/(2 zeta omega). The outcome states what each keeps of the mode
     #[arg(long, default_value = Reduction::Printed.name(), value_parser = methods())]
     method: String,
 
@@ -229,6 +231,8 @@ struct JsonMode {
     zeta: f64,
     sigma: f64,
     damping: Damping,
+    /// Slowest decay rate of the mode, in 1/s.
+    mode_decay: f64,
     decay: f64,
     intensity: f64,
     eta_std: f64,
@@ -236,8 +240,17 @@ struct JsonMode {
     max_abs_std_error: f64,
     /// `null` where the greatest error is that of the stationary processes.
     max_abs_std_error_time: Option<f64>,
+    /// Whether chi has the larger deviation there.
+    max_abs_std_error_chi_leads: bool,
+    max_abs_std_error_in_rise: bool,
+    /// The greatest error in the rise from rest, and when.
+    rise_abs_std_error: f64,
+    rise_abs_std_error_time: Option<f64>,
+    decay_ratio: f64,
     variance_ratio: f64,
     spectrum_ratio_at_zero: f64,
+    keeps: Vec<Property>,
+    gives_up: Vec<Property>,
     monte_carlo: JsonSamples,
 }
 
@@ -272,7 +285,18 @@ impl JsonMode {
             reduced, eta, chi, ..
         } = subject;
         let Mode { omega, zeta, sigma } = reduced.mode;
-        let Peak { value, time } = reduced.largest_std_error();
+        let errors = reduced.largest_std_errors();
+        let Peak {
+            value,
+            time,
+            chi_leads,
+        } = errors.greatest;
+        let comparisons = reduced.comparisons();
+        let [Comparison { ratio, .. }, ..] = comparisons;
+        let properties = |kept| {
+            let chosen = comparisons.iter().filter(|it| it.kept == kept);
+            chosen.map(|it| it.property).collect()
+        };
         let largest = |a: &[f64], b: &[f64]| {
             let errors = a.iter().zip(b).map(|(a, b)| (a - b).abs());
             errors.fold(0.0, f64::max)
@@ -286,14 +310,22 @@ impl JsonMode {
             zeta,
             sigma,
             damping: reduced.damping,
+            mode_decay: reduced.mode_decay(),
             decay: reduced.decay(),
             intensity: reduced.intensity(),
             eta_std: reduced.eta_variance().sqrt(),
             chi_std: reduced.chi_variance().sqrt(),
             max_abs_std_error: value,
             max_abs_std_error_time: time,
+            max_abs_std_error_chi_leads: chi_leads,
+            max_abs_std_error_in_rise: errors.greatest_in_rise(),
+            rise_abs_std_error: errors.rise.value,
+            rise_abs_std_error_time: errors.rise.time,
+            decay_ratio: ratio,
             variance_ratio: reduced.variance_ratio(),
             spectrum_ratio_at_zero: reduced.spectrum_ratio(),
+            keeps: properties(true),
+            gives_up: properties(false),
             monte_carlo: JsonSamples {
                 eta_std: last(eta),
                 chi_std: last(chi),
@@ -306,30 +338,69 @@ impl JsonMode {
     }
 }
 
-/// What a method keeps, and what it gives up.
-fn bargain(method: Reduction) -> &'static str {
+/// How a method chooses a and b.
+fn choice(method: Reduction) -> &'static str {
     match method {
-        Reduction::Printed => {
-            "keeps decay rate and gain at zero frequency; gives up the variance: 2 zeta^2 of the mode's"
-        }
-        Reduction::Variance => {
-            "keeps decay rate and variance; gives up the spectrum at zero frequency: 1/(2 zeta^2) of the mode's"
-        }
-        Reduction::Moment => {
-            "keeps variance and spectrum at zero frequency; gives up the decay rate: omega/(2 zeta)"
-        }
+        Reduction::Printed => "a = zeta omega, b = zeta sigma/omega (23)",
+        Reduction::Variance => "a = zeta omega, b = sigma/(sqrt(2) omega)",
+        Reduction::Moment => "a = omega/(2 zeta), b = sigma/(2 zeta omega)",
+    }
+}
+
+/// What a reduction keeps of its mode, and what it gives up.
+pub(crate) fn bargain(comparisons: &[Comparison]) -> String {
+    let name = |property| match property {
+        Property::DecayRate => "decay rate",
+        Property::Variance => "variance",
+        Property::SpectrumAtZero => "spectrum at zero frequency",
+    };
+    let list = |parts: Vec<String>| match parts.as_slice() {
+        [] => "none of the three".to_owned(),
+        [parts @ .., last] if !parts.is_empty() => format!("{} and {last}", parts.join(", ")),
+        parts => parts.concat(),
+    };
+    let kept = comparisons.iter().filter(|it| it.kept);
+    let lost = comparisons.iter().filter(|it| !it.kept);
+    let lost = lost.map(|it| format!("{} ({:.4} of the mode's)", name(it.property), it.ratio));
+    format!(
+        "keeps {}; gives up {}",
+        list(kept.map(|it| name(it.property).to_owned()).collect()),
+        list(lost.collect())
+    )
+}
+
+/// Where the standard deviations differ most.
+pub(crate) fn greatest(errors: &StdErrors) -> String {
+    let peak = |peak: &Peak| {
+        let when = peak.time.map_or_else(
+            || "in the long run".to_owned(),
+            |time| format!("at {time:.4} s"),
+        );
+        let leader = if peak.chi_leads { "chi" } else { "eta" };
+        format!(
+            "by {:.6} at most, {when}, where {leader} has the larger",
+            peak.value
+        )
+    };
+    let StdErrors {
+        greatest: whole,
+        rise,
+    } = errors;
+    if errors.greatest_in_rise() {
+        format!("they differ {}, in the rise from rest", peak(whole))
+    } else {
+        format!(
+            "they differ {}; in the rise from rest {}",
+            peak(whole),
+            peak(rise)
+        )
     }
 }
 
 fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> String {
-    let mut text = format!("{}: {}\n", method.name(), bargain(method));
+    let mut text = format!("{}: {}\n", method.name(), choice(method));
     for (index, subject) in subjects.iter().enumerate() {
         let mode = JsonMode::new(subject);
-        let when = mode.max_abs_std_error_time;
-        let when = when.map_or_else(
-            || "in the long run".to_owned(),
-            |time| format!("at {:.4} s", Shown(time)),
-        );
         let sample = |estimate: &Estimate| {
             format!(
                 "{:.6} [{:.6}, {:.6}]",
@@ -341,21 +412,21 @@ fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Str
         // Writing into a String cannot fail.
         let _ = write!(
             text,
-            "mode {}: omega {} rad/s, zeta {}, sigma {}\n  \
-             decay {:.6} 1/s, intensity {:.6}; variance {:.4} and spectrum at zero frequency {:.4} of the mode's\n  \
-             std of eta {:.6}, of chi {:.6}; they differ by {:.6} at most, {when}\n  \
+            "mode {}: omega {} rad/s, zeta {}, sigma {}, slowest decay rate {:.6} 1/s\n  \
+             decay {:.6} 1/s, intensity {:.6}; {}\n  \
+             std of eta {:.6}, of chi {:.6}; {}\n  \
              sampled at {} s: eta {}, chi {}\n",
             index + 1,
             Shown(mode.omega),
             Shown(mode.zeta),
             Shown(mode.sigma),
+            Shown(mode.mode_decay),
             Shown(mode.decay),
             Shown(mode.intensity),
-            Shown(mode.variance_ratio),
-            Shown(mode.spectrum_ratio_at_zero),
+            bargain(&subject.reduced.comparisons()),
             Shown(mode.eta_std),
             Shown(mode.chi_std),
-            Shown(mode.max_abs_std_error),
+            greatest(&subject.reduced.largest_std_errors()),
             Shown(experiment.steps as f64 * experiment.dt),
             sample(&mode.monte_carlo.eta_std),
             sample(&mode.monte_carlo.chi_std),

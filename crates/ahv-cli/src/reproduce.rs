@@ -4,6 +4,7 @@ mod figures;
 mod page;
 mod random;
 mod roots;
+mod sentences;
 mod trims;
 
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ use crate::failure::{Failure, complain, print};
 use crate::output;
 use crate::progress::{Progress, Work};
 use page::Page;
+use sentences::{Finding, Sentence};
 
 /// The page.
 const PAGE: &str = "index.html";
@@ -41,8 +43,20 @@ pub(crate) struct Arguments {
 /// What agrees with the paper, and what does not.
 #[derive(Default)]
 struct Findings {
-    agrees: Vec<String>,
-    cannot: Vec<String>,
+    agrees: Vec<Sentence>,
+    cannot: Vec<Sentence>,
+}
+
+impl Findings {
+    /// Adds a finding to the list it belongs to.
+    fn push(&mut self, finding: Finding) {
+        let list = if finding.agrees {
+            &mut self.agrees
+        } else {
+            &mut self.cannot
+        };
+        list.push(finding.sentence);
+    }
 }
 
 /// All numbers behind the page.
@@ -94,16 +108,8 @@ fn page(random: &Random, vehicles: &[vehicle::Vehicle]) -> Result<Page, Failure>
         trims::section(vehicles, &mut findings),
         roots::section(vehicles, &mut findings)?,
     ];
-    let size = &random.size;
     Ok(Page {
-        subject: format!(
-            "Tables 1 to 3 and figures 2 to 6 of \"Stochastic Control-Oriented Modeling of Flexible Air-Breathing Hypersonic \
-             Vehicle\", each beside what this project computes. Steps of {} s over {} s, seed {}. Units are foot, slug, second; \
-             η is in (ft·slug)^½. The pictures of the paper are not compared, only the numbers that it prints.",
-            size.dt,
-            size.steps as f64 * size.dt,
-            size.seed
-        ),
+        subject: sentences::subject(&random.size),
         agrees: findings.agrees,
         cannot: findings.cannot,
         sections,
@@ -122,7 +128,7 @@ fn write(arguments: &Arguments, page: &Page, numbers: &Numbers<'_>) -> Result<()
         output::write(&place(picture.file), &picture.svg)?;
     }
     output::write(&place(PAGE), html)?;
-    let list = |title: &str, items: &[String]| {
+    let list = |title: &str, items: &[Sentence]| {
         let items: Vec<String> = items.iter().map(|item| format!("  {item}\n")).collect();
         format!("{title}:\n{}", items.concat())
     };
@@ -162,6 +168,7 @@ mod tests {
     fn the_page_needs_nothing_else() {
         let size = Size {
             repeats: 3,
+            most_repeats: 6,
             runs: 30,
             snapshot_runs: 60,
             forced_runs: 3,

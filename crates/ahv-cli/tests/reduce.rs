@@ -97,6 +97,88 @@ fn a_method_gives_up_what_it_says() {
     assert!(printed["max_abs_std_error_time"].is_null());
 }
 
+/// A mode of 20 rad/s and damping ratio 2 decays with 20 (2 - sqrt 3) = 5.359 1/s; a = zeta omega = 40 is not that rate.
+#[test]
+fn what_a_method_keeps_is_computed_for_the_mode() {
+    let of = |zeta: &str, method| {
+        let mode = [
+            "--omega", "20", "--zeta", zeta, "--runs", "30", "--method", method,
+        ];
+        json(&mode)["modes"][0].clone()
+    };
+    let overdamped = of("2", "printed");
+    close(
+        &[
+            overdamped["mode_decay"].as_f64().expect("a number"),
+            overdamped["decay_ratio"].as_f64().expect("a number"),
+        ],
+        &[5.358_983_848_622_456, 7.464_101_615_137_754],
+        1e-9,
+    );
+    for (zeta, method, keeps) in [
+        ("2", "printed", &["spectrum_at_zero"][..]),
+        ("2", "variance", &["variance"]),
+        ("2", "moment", &["variance", "spectrum_at_zero"]),
+        ("0.5", "printed", &["decay_rate", "spectrum_at_zero"]),
+        ("0.5", "variance", &["decay_rate", "variance"]),
+        (
+            "0.7071067811865476",
+            "printed",
+            &["decay_rate", "variance", "spectrum_at_zero"],
+        ),
+    ] {
+        let mode = of(zeta, method);
+        assert_eq!(mode["keeps"], serde_json::json!(keeps), "{zeta} {method}");
+        assert_eq!(
+            mode["gives_up"].as_array().map(Vec::len),
+            Some(3 - keeps.len())
+        );
+    }
+}
+
+/// Mode 3: eta overtakes chi and leads by more than chi did in the rise.
+#[test]
+fn the_place_of_the_greatest_error_is_reported() {
+    let outcome = json(&["--runs", "30"]);
+    let facts = |index: usize| {
+        let mode = &outcome["modes"][index];
+        (
+            mode["max_abs_std_error_in_rise"] == true,
+            mode["max_abs_std_error_chi_leads"] == true,
+        )
+    };
+    assert_eq!(
+        [0, 1, 2].map(facts),
+        [(true, true), (true, true), (false, false)]
+    );
+    let third = &outcome["modes"][2];
+    let number = |key: &str| third[key].as_f64().expect("a number");
+    close(
+        &[number("max_abs_std_error"), number("rise_abs_std_error")],
+        &[0.02251, 0.01846],
+        5e-6,
+    );
+    close(&[number("max_abs_std_error_time")], &[0.0316], 5e-5);
+    let text = String::from_utf8(run(&["--runs", "30"]).stdout).expect("text");
+    assert!(
+        text.contains("by 0.022513 at most, at 0.0316 s, where eta has the larger; in the rise from rest by 0.018462 at most, at 0.0030 s, where chi has the larger"),
+        "{text}"
+    );
+}
+
+/// A mode of which the coloured noise is far faster than the step: 10/sqrt(4 3e-8 30^3) = 175.682.
+#[test]
+fn the_ensemble_has_the_law_of_a_very_fast_coloured_noise() {
+    let outcome = json(&[
+        "--omega", "30", "--zeta", "3e-8", "--sigma", "10", "--method", "moment",
+    ]);
+    close(&list(&outcome["chi_std"]), &[175.682], 1e-3);
+    let sampled = &outcome["modes"][0]["monte_carlo"]["chi_std"];
+    let sampled = sampled["value"].as_f64().expect("a number");
+    // A thousand runs: 2.2 % standard error.
+    assert!((sampled / 175.682 - 1.0).abs() < 0.09, "{sampled}");
+}
+
 #[test]
 fn bad_lists_are_explained() {
     for (arguments, words) in [
@@ -139,7 +221,8 @@ fn picture_and_table_are_written() {
     );
     let text = String::from_utf8(output.stdout).expect("text");
     assert!(
-        text.contains("gives up the variance") && text.contains("mode 3: omega 94.8203 rad/s"),
+        text.contains("keeps decay rate and spectrum at zero frequency; gives up variance (0.1800")
+            && text.contains("mode 3: omega 94.8203 rad/s"),
         "{text}"
     );
     let svg = std::fs::read_to_string(out.join("reduce.svg")).expect("a picture");

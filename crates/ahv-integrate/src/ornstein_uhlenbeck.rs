@@ -9,8 +9,12 @@ use crate::error::step_size;
 
 type Matrix<R, const N: usize> = [[R; N]; N];
 
-/// The transition is found for dt/2²⁰ by series and doubled this often.
+/// The transition is found for dt/2²⁰ by series and doubled this often, or more often where A is larger.
 const DOUBLINGS: usize = 20;
+/// Most doublings: after as many, no step is left of any dt.
+const MOST_DOUBLINGS: usize = 2200;
+/// Sum of |A| times the small step, at most: the series then has no error but that of rounding.
+const SMALL: f64 = 1.0 / 32.0;
 /// Terms of those series.
 const TERMS: usize = 8;
 
@@ -19,9 +23,8 @@ const TERMS: usize = 8;
 /// x(t + dt) = Φ x(t) + Ψ c + L z with Φ = exp(A dt), Ψ = ∫ exp(A s) ds, z standard normal, and L Lᵀ the exact covariance
 /// ∫ exp(A s) BBᵀ exp(Aᵀ s) ds. The law has no error at any dt but that of rounding. The noise is additive: Itô and Stratonovich agree.
 ///
-/// Found by series for a small part of the step, and doubling; no case of damping is special. Tested up to ‖A‖ dt =
-/// 25 000, where the variance of one process is exact to 10⁻¹³. With a scalar of several lanes a direction that has no
-/// variance in one lane is left out of L in all.
+/// Computed by a series for a small part of the step and by doubling, as often as ‖A‖ dt asks for; no case of damping is
+/// special. With a scalar of several lanes a direction that has no variance in one lane is left out of L in all.
 ///
 /// What shares its noise with other states goes into one transition: with A = [0, 0; 0, −a] and
 /// BBᵀ = [1, b; b, b²] it is the joint law of the Wiener increment, from 0, and of the coloured noise that it drives.
@@ -91,10 +94,20 @@ impl<R: Real, const N: usize> LinearTransition<R, N> {
     ///
     /// [`StepError::StepSize`] unless `dt` is positive and finite.
     pub fn new(a: [[R; N]; N], intensity: [[R; N]; N], dt: f64) -> Result<Self, StepError<R>> {
-        let small = step_size::<R>(dt)? * R::from_f64(1.0 / (1_u64 << DOUBLINGS) as f64);
+        let mut small = step_size::<R>(dt)? * R::from_f64(1.0 / (1_u64 << DOUBLINGS) as f64);
+        let norm = a
+            .iter()
+            .flatten()
+            .fold(R::ZERO, |sum, &entry| sum + entry.abs());
+        // In every lane: a root is finite from 0 on.
+        let is_small = |small: R| (R::from_f64(SMALL) - norm * small).sqrt().is_finite();
+        let mut doublings = DOUBLINGS;
+        while !is_small(small) && doublings < MOST_DOUBLINGS {
+            (small, doublings) = (small * R::HALF, doublings + 1);
+        }
         // What Φ has over 1 is kept: the 1 would hide it.
         let (mut excess, mut forced, mut covariance) = series(&a, &intensity, small);
-        for _ in 0..DOUBLINGS {
+        for _ in 0..doublings {
             covariance = sum(&covariance, &carried(&excess, &covariance));
             forced = sum(&sum(&forced, &forced), &product(&excess, &forced));
             excess = sum(&sum(&excess, &excess), &product(&excess, &excess));

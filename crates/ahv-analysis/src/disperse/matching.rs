@@ -1,17 +1,22 @@
-//! Zeros of two systems, paired.
+//! The assignment problem, and roots of two systems paired by it.
 
 use nalgebra::Complex;
 
-/// For each root of `nominal` the place of its partner in `roots`, such that the sum of the distances is least (the
-/// assignment problem, by the method of Kuhn and Munkres with potentials). `None` where the numbers of roots differ, or one
-/// is not finite.
+/// For each root of `nominal` the place of its partner in `roots`, such that the sum of the distances is least. `None` where
+/// the numbers of roots differ, or one is not finite.
 pub(super) fn partners(nominal: &[Complex<f64>], roots: &[Complex<f64>]) -> Option<Vec<usize>> {
-    let n = nominal.len();
     let finite = |root: &Complex<f64>| root.re.is_finite() && root.im.is_finite();
-    if roots.len() != n || !nominal.iter().chain(roots).all(finite) {
+    if roots.len() != nominal.len() || !nominal.iter().chain(roots).all(finite) {
         return None;
     }
-    let cost = |row: usize, column: usize| distance(nominal[row], roots[column]);
+    Some(assignment(nominal.len(), |row, column| {
+        distance(nominal[row], roots[column])
+    }))
+}
+
+/// For each of `n` rows its column, such that the sum of `cost` is least (the assignment problem, by the method of Kuhn and
+/// Munkres with potentials).
+pub(crate) fn assignment(n: usize, cost: impl Fn(usize, usize) -> f64) -> Vec<usize> {
     // Rows and columns count from 1; column 0 stands for "none yet".
     let (mut row_price, mut column_price) = (vec![0.0; n + 1], vec![0.0; n + 1]);
     let mut row_of = vec![0; n + 1];
@@ -53,7 +58,7 @@ pub(super) fn partners(nominal: &[Complex<f64>], roots: &[Complex<f64>]) -> Opti
     for (column, &row) in row_of.iter().enumerate().skip(1) {
         partners[row - 1] = column - 1;
     }
-    Some(partners)
+    partners
 }
 
 fn distance(a: Complex<f64>, b: Complex<f64>) -> f64 {

@@ -4,11 +4,15 @@ use ahv_core::Vector;
 use ahv_models::dcom::{Canard, Earth};
 use ahv_models::{com, com_rigid, dcom, sdcom};
 
+use super::pairing::{Kind, NOTHING, SLOW, relative_distance, size};
 use super::printed::{Root, TABLE_2};
 use crate::linearize::{PATH_INPUTS, PATH_OUTPUTS, linearize};
 use crate::parametric::Parametric;
-use crate::poles::{poles, zeros};
+use crate::poles::{Mode, Pole, poles, zeros};
 use crate::trim::{SteadyFlight, Trim, trim};
+
+/// Relative distance below which a zero lies on a pole.
+const CANCELLED: f64 = 1e-5;
 
 /// A model in its condition.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -41,8 +45,13 @@ pub struct Vehicle {
 pub struct Roots {
     /// Poles by rising frequency, in rad/s.
     pub poles: Vec<Root>,
+    /// What each pole belongs to, by the participation of the states.
+    pub pole_kinds: Vec<Kind>,
     /// Finite zeros by rising frequency, in rad/s.
     pub zeros: Vec<Root>,
+    /// What each zero belongs to: one that decouples and lies on a pole of noise is that of the noise; pairs above 0.1 rad/s of
+    /// a model with flexible states are flexible.
+    pub zero_kinds: Vec<Kind>,
 }
 
 /// A trim in the units of Table 2.
@@ -121,17 +130,46 @@ fn roots_at<M: Parametric>(model: &M, trim: &Trim<M::State, M::Input>) -> Result
     let system = system.map_err(|error| error.to_string())?;
     let poles = poles(&system).map_err(|error| error.to_string())?;
     let zeros = zeros(&system).map_err(|error| error.to_string())?;
+    let pole_kinds: Vec<Kind> = poles.iter().map(kind_of_pole).collect();
+    let poles: Vec<Root> = poles
+        .iter()
+        .map(|pole| [pole.value.re, pole.value.im])
+        .collect();
+    let flexible = pole_kinds.contains(&Kind::Flexible);
+    let zero_kinds = zeros.finite.iter().map(|zero| {
+        let root = [zero.value.re, zero.value.im];
+        let mut noise = poles.iter().zip(&pole_kinds);
+        let cancels = |(&pole, &kind): (&Root, &Kind)| {
+            kind == Kind::Noise && relative_distance(pole, root) < CANCELLED
+        };
+        if zero.decoupling.is_some() && noise.any(cancels) {
+            Kind::Noise
+        } else if flexible && root[1].abs() > NOTHING && size(root) > SLOW {
+            Kind::Flexible
+        } else {
+            Kind::Rigid
+        }
+    });
+    let zero_kinds = zero_kinds.collect();
     Ok(Roots {
-        poles: poles
-            .iter()
-            .map(|pole| [pole.value.re, pole.value.im])
-            .collect(),
+        poles,
+        pole_kinds,
         zeros: zeros
             .finite
             .iter()
             .map(|zero| [zero.value.re, zero.value.im])
             .collect(),
+        zero_kinds,
     })
+}
+
+fn kind_of_pole(pole: &Pole) -> Kind {
+    match pole.mode {
+        Some(Mode::Flexible(_)) => Kind::Flexible,
+        Some(Mode::ColouredNoise(_) | Mode::Gust) => Kind::Noise,
+        Some(Mode::ShortPeriod | Mode::Phugoid | Mode::Height) => Kind::Rigid,
+        None => Kind::of_place([pole.value.re, pole.value.im]),
+    }
 }
 
 /// A component that every vehicle has.

@@ -18,7 +18,8 @@ fn points(x: &[f64], y: &[f64]) -> Mark {
     Mark::Line(x.iter().copied().zip(y.iter().copied()).collect())
 }
 
-/// Fig. 2: errors over time by mode, with the printed maxima as rules.
+/// Fig. 2: errors over time by mode, with the printed maxima as rules. Time is logarithmic, for the maxima arise in the first
+/// hundredths of a second.
 pub(super) fn errors(curves: &[ErrorCurves; 3]) -> Result<String, PlotError> {
     let panels = (1..)
         .zip(curves)
@@ -33,24 +34,26 @@ pub(super) fn errors(curves: &[ErrorCurves; 3]) -> Result<String, PlotError> {
                 }
                 Panel {
                     title,
-                    x: Axis::linear("time [s]"),
+                    x: Axis::log("time [s]"),
                     y: Axis::linear(format!("{label} {UNIT}")),
                     layers,
                 }
             };
+            // Nothing moves at 0 s, which a logarithmic axis cannot show.
             let sampled = |errors: &[Vec<f64>; 3]| {
+                let points = curves.time.iter().copied().zip(errors[0].iter().copied());
                 Layer::new(
                     "printed, sampled",
                     Colour::Orange,
-                    points(&curves.time, &errors[0]),
+                    Mark::Line(points.skip(1).collect()),
                 )
             };
-            let exact = METHODS.iter().zip(&curves.exact_std).zip(COLOURS).map(
+            let exact = METHODS.iter().zip(&curves.fine_exact_std).zip(COLOURS).map(
                 |((method, errors), colour)| {
                     Layer::new(
                         format!("{}, exact", method.name()),
                         colour,
-                        points(&curves.time, errors),
+                        points(&curves.fine_time, errors),
                     )
                 },
             );

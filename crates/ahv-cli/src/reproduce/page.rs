@@ -1,7 +1,9 @@
 //! The page: sections of words, tables and pictures.
 
+use ahv_analysis::reproduce::p_value::Verdict;
 use askama::Template;
 
+use super::sentences::{self, Sentence};
 use crate::failure::Failure;
 
 /// The whole page.
@@ -9,11 +11,11 @@ use crate::failure::Failure;
 #[template(path = "reproduce.html")]
 pub(super) struct Page {
     /// What it is about, and how it was made.
-    pub(super) subject: String,
+    pub(super) subject: Sentence,
     /// What agrees with the paper.
-    pub(super) agrees: Vec<String>,
+    pub(super) agrees: Vec<Sentence>,
     /// What does not, or cannot.
-    pub(super) cannot: Vec<String>,
+    pub(super) cannot: Vec<Sentence>,
     /// The rest.
     pub(super) sections: Vec<Section>,
 }
@@ -23,7 +25,7 @@ pub(super) struct Page {
 pub(super) struct Section {
     pub(super) id: &'static str,
     pub(super) title: &'static str,
-    pub(super) paragraphs: Vec<String>,
+    pub(super) paragraphs: Vec<Sentence>,
     pub(super) tables: Vec<Table>,
     pub(super) pictures: Vec<Picture>,
 }
@@ -34,7 +36,20 @@ pub(super) struct Table {
     pub(super) file: &'static str,
     pub(super) caption: String,
     pub(super) head: Vec<&'static str>,
-    pub(super) rows: Vec<Vec<Cell>>,
+    pub(super) rows: Vec<Row>,
+}
+
+/// A row of a table.
+pub(super) struct Row {
+    pub(super) cells: Vec<Cell>,
+    /// An explanation, in a row of its own on the page and in a last column of the CSV file.
+    pub(super) why: Option<Sentence>,
+}
+
+impl From<Vec<Cell>> for Row {
+    fn from(cells: Vec<Cell>) -> Self {
+        Self { cells, why: None }
+    }
 }
 
 /// An entry of a table.
@@ -45,6 +60,8 @@ pub(super) enum Cell {
     Number(String),
     /// Whether something holds.
     Verdict(bool),
+    /// Whether a number belongs to a distribution.
+    Inside(Verdict),
 }
 
 /// A picture, on the page and as an SVG file.
@@ -72,6 +89,7 @@ impl Cell {
             Self::Words(text) | Self::Number(text) => text,
             Self::Verdict(true) => "yes",
             Self::Verdict(false) => "no",
+            Self::Inside(verdict) => sentences::verdict(*verdict),
         }
     }
 
@@ -80,8 +98,9 @@ impl Cell {
         match self {
             Self::Words(_) => "words",
             Self::Number(_) => "number",
-            Self::Verdict(true) => "yes",
-            Self::Verdict(false) => "no",
+            Self::Verdict(true) | Self::Inside(Verdict::Inside) => "yes",
+            Self::Verdict(false) | Self::Inside(Verdict::Outside) => "no",
+            Self::Inside(Verdict::Undecided) => "undecided",
         }
     }
 }
@@ -113,9 +132,14 @@ impl Table {
                 .write_record(row)
                 .map_err(|error| problem(error.to_string()))
         };
-        write(self.head.clone())?;
-        for row in &self.rows {
-            write(row.iter().map(Cell::text).collect())?;
+        let explained = self.rows.iter().any(|row| row.why.is_some());
+        let mut head = self.head.clone();
+        head.extend(explained.then_some("why"));
+        write(head)?;
+        for Row { cells, why } in &self.rows {
+            let mut row: Vec<&str> = cells.iter().map(Cell::text).collect();
+            row.extend(explained.then(|| why.as_ref().map_or("", Sentence::text)));
+            write(row)?;
         }
         writer
             .into_inner()

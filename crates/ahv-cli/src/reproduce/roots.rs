@@ -1,17 +1,18 @@
 //! The section on Table 3 and Fig. 6.
 
+use ahv_analysis::reproduce::pairing::{Kind, NOTHING, Pair, SLOW, pairs, size};
 use ahv_analysis::reproduce::printed::{self, Root, TABLE_3};
 use ahv_analysis::reproduce::vehicle::{Roots, Vehicle};
+use ahv_core::Provenance;
+use ahv_models::{com, dcom};
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError, Shape};
 
-use super::page::{Cell, Picture, Section, Table, number};
-use super::{Findings, drawn};
+use super::page::{Cell, Picture, Row, Section, Table, number};
+use super::{Findings, drawn, sentences, trims};
 use crate::failure::Failure;
 
-/// Roots below this frequency, in rad/s, are those of the slow modes.
-const SLOW: f64 = 0.1;
-/// Two roots may correspond if they are not farther apart than this share of the larger.
-const NEAR: f64 = 0.6;
+/// What Fig. 6 shows about the origin, in rad/s: the slow modes, and the slowest roots.
+const NEAR: [(f64, &str); 2] = [(SLOW, "slow modes"), (0.0015, "next to the origin")];
 /// Files of the comparisons with Table 3.
 const FILES: [(&str, &str); 3] = [
     ("com", "table3_com.csv"),
@@ -21,124 +22,99 @@ const FILES: [(&str, &str); 3] = [
 /// Sets of parameters that are set beside Table 3.
 const SETS: [&str; 2] = ["section5.1", "section5.3"];
 
-fn size([re, im]: Root) -> f64 {
-    re.hypot(im)
-}
-
-/// What QR and QZ leave of a part that is 0.
-fn nothing(root: Root) -> f64 {
-    1e-7 * (1.0 + size(root))
-}
-
 /// A root as text; of a pair both.
-fn text(root: Root) -> String {
-    let [re, im] = root;
-    let re = if re.abs() < nothing(root) { 0.0 } else { re };
-    if im.abs() < nothing(root) {
+fn text([re, im]: Root) -> String {
+    let nothing = NOTHING * (1.0 + re.hypot(im));
+    let re = if re.abs() < nothing { 0.0 } else { re };
+    if im.abs() < nothing {
         number(re)
     } else {
         format!("{} ± {}i", number(re), number(im))
     }
 }
 
-/// Roots of which one in a pair is left out.
-fn upper(roots: &[Root]) -> Vec<Root> {
-    roots
-        .iter()
-        .copied()
-        .filter(|root| root[1] >= 0.0)
-        .collect()
-}
-
-/// Each printed root with the one of ours that corresponds, and those of ours that are left; nearest first.
-fn matched(printed: &[Root], ours: &[Root]) -> (Vec<Option<Root>>, Vec<Root>) {
-    let mut partners = vec![None; printed.len()];
-    let mut left = upper(ours);
-    loop {
-        let distance = |a: Root, b: Root| size([a[0] - b[0], a[1] - b[1]]);
-        let pairs = printed
-            .iter()
-            .enumerate()
-            .filter(|&(index, _)| partners[index].is_none());
-        let pairs = pairs.flat_map(|(index, &root)| {
-            left.iter()
-                .enumerate()
-                .map(move |(other, &ours)| (index, root, other, ours))
-        });
-        let nearest = pairs
-            .map(|(index, root, other, ours)| {
-                (
-                    distance(root, ours),
-                    size(root).max(size(ours)),
-                    index,
-                    other,
-                )
-            })
-            .filter(|&(distance, size, ..)| distance <= NEAR * size || size < SLOW)
-            .min_by(|a, b| (a.0 / a.1.max(SLOW)).total_cmp(&(b.0 / b.1.max(SLOW))));
-        let Some((_, _, index, other)) = nearest else {
-            return (partners, left);
-        };
-        partners[index] = Some(left.remove(other));
-    }
-}
-
 /// The vehicle of Table 3 by model and set: flat Earth, no canard.
-fn find<'a>(vehicles: &'a [Vehicle], model: &str, set: &str) -> Option<&'a Roots> {
-    let mut found = vehicles.iter().filter(|vehicle| {
+fn find<'a>(vehicles: &'a [Vehicle], model: &str, set: &str) -> Option<&'a Vehicle> {
+    vehicles.iter().find(|vehicle| {
         let condition = &vehicle.condition;
         condition.model == model
             && condition.set == set
             && condition.earth == "flat"
             && condition.canard != Some("slaved")
-    });
-    found.next()?.roots.as_ref()
+    })
 }
 
-/// Rows of one kind of roots, poles or zeros, of all sets beside the printed ones.
-fn rows(kind: &str, printed: &[Root], ours: &[Vec<Root>]) -> Vec<Vec<Cell>> {
-    let matches: Vec<_> = ours.iter().map(|ours| matched(printed, ours)).collect();
-    let pair = |root: Option<Root>, printed: Option<Root>| match (root, printed) {
-        (Some(root), Some(printed)) => {
-            let difference = [root[0] - printed[0], root[1] - printed[1]];
-            let sign = if difference[1] < 0.0 { "" } else { "+" };
-            let both = format!("{}{sign}{}i", number(difference[0]), number(difference[1]));
-            let real = root[1].abs() < nothing(root) && printed[1] == 0.0;
-            [
-                Cell::Number(text(root)),
-                Cell::Number(if real { number(difference[0]) } else { both }),
-            ]
-        }
-        (Some(root), None) => [Cell::Number(text(root)), Cell::words("")],
-        _ => [Cell::words("none"), Cell::words("")],
+fn roots<'a>(vehicles: &'a [Vehicle], model: &str, set: &str) -> Option<&'a Roots> {
+    find(vehicles, model, set)?.roots.as_ref()
+}
+
+fn column(model: &str) -> Option<&'static printed::Roots> {
+    TABLE_3.iter().find(|roots| roots.model == model)
+}
+
+/// Poles and zeros of Table 3 beside ours.
+fn paired(printed: &printed::Roots, ours: &Roots) -> [(&'static str, Vec<Pair>); 2] {
+    let of_place = |roots: &[Root]| -> Vec<(Root, Kind)> {
+        let roots = roots.iter();
+        roots.map(|&root| (root, Kind::of_place(root))).collect()
     };
-    let mut rows = Vec::new();
-    for (index, &root) in printed.iter().enumerate() {
-        let mut row = vec![Cell::words(kind), Cell::Number(text(root))];
-        row.extend(
-            matches
-                .iter()
-                .flat_map(|(partners, _)| pair(partners[index], Some(root))),
-        );
-        rows.push(row);
+    let known = |roots: &[Root], kinds: &[Kind]| -> Vec<(Root, Kind)> {
+        roots.iter().copied().zip(kinds.iter().copied()).collect()
+    };
+    [
+        (
+            "pole",
+            pairs(
+                &of_place(printed.poles),
+                &known(&ours.poles, &ours.pole_kinds),
+            ),
+        ),
+        (
+            "zero",
+            pairs(
+                &of_place(printed.zeros),
+                &known(&ours.zeros, &ours.zero_kinds),
+            ),
+        ),
+    ]
+}
+
+/// A row: the two roots, the parts of their difference, its size, and that over the printed root.
+fn row(set: &str, root: &str, pair: &Pair) -> Row {
+    let one = |root: Option<Root>| {
+        root.map_or_else(
+            || Cell::words("no counterpart"),
+            |root| Cell::Number(text(root)),
+        )
+    };
+    let mut cells = vec![
+        Cell::words(set),
+        Cell::words(root),
+        Cell::words(pair.kind.name()),
+        one(pair.printed),
+        one(pair.ours),
+    ];
+    if let (Some(printed), Some(ours)) = (pair.printed, pair.ours) {
+        let nothing = NOTHING * (1.0 + size(ours));
+        let part = |place: usize| {
+            let difference = ours[place] - printed[place];
+            if difference.abs() < nothing {
+                0.0
+            } else {
+                difference
+            }
+        };
+        let difference = [part(0), part(1)];
+        cells.extend([difference[0], difference[1], size(difference)].map(Cell::number));
+        cells.push(if size(printed) > 0.0 {
+            Cell::Number(format!("{:.1} %", 100.0 * size(difference) / size(printed)))
+        } else {
+            Cell::words("")
+        });
+    } else {
+        cells.extend([(); 4].map(|()| Cell::words("")));
     }
-    let longest = matches
-        .iter()
-        .map(|(_, left)| left.len())
-        .max()
-        .unwrap_or(0);
-    for index in 0..longest {
-        let mut row = vec![Cell::words(kind), Cell::words("none")];
-        for (_, left) in &matches {
-            let blank = || [Cell::words(""), Cell::words("")];
-            row.extend(
-                left.get(index)
-                    .map_or_else(blank, |&root| pair(Some(root), None)),
-            );
-        }
-        rows.push(row);
-    }
-    rows
+    Row::from(cells)
 }
 
 /// Table 3 and Fig. 6.
@@ -149,32 +125,29 @@ fn rows(kind: &str, printed: &[Root], ours: &[Vec<Root>]) -> Vec<Vec<Cell>> {
 pub(super) fn section(vehicles: &[Vehicle], findings: &mut Findings) -> Result<Section, Failure> {
     let mut tables = Vec::new();
     for (model, file) in FILES {
-        let Some(printed) = TABLE_3.iter().find(|roots| roots.model == model) else {
+        let Some(printed) = column(model) else {
             continue;
         };
-        let ours = SETS
-            .iter()
-            .filter_map(|&set| Some((set, find(vehicles, model, set)?)));
-        let ours: Vec<(&'static str, &Roots)> = ours.collect();
-        let list = |of: fn(&Roots) -> &Vec<Root>| {
-            ours.iter()
-                .map(|(_, ours)| of(ours).clone())
-                .collect::<Vec<_>>()
-        };
-        let mut rows_of = rows("pole", printed.poles, &list(|roots| &roots.poles));
-        rows_of.extend(rows("zero", printed.zeros, &list(|roots| &roots.zeros)));
-        let counts: Vec<String> = ours
-            .iter()
-            .map(|(set, of)| {
-                format!(
-                    "{set}: {} poles and {} finite zeros",
-                    of.poles.len(),
-                    of.zeros.len()
-                )
-            })
-            .collect();
-        let mut head = vec!["root", "printed"];
-        head.extend(ours.iter().flat_map(|(set, _)| [*set, "difference"]));
+        let mut rows = Vec::new();
+        let mut counts = Vec::new();
+        for set in SETS {
+            let Some(ours) = roots(vehicles, model, set) else {
+                continue;
+            };
+            let (mut found, mut of) = (0, 0);
+            for (root, pairs) in paired(printed, ours) {
+                of += pairs.iter().filter(|it| it.printed.is_some()).count();
+                let both = |it: &&Pair| it.printed.is_some() && it.ours.is_some();
+                found += pairs.iter().filter(both).count();
+                rows.extend(pairs.iter().map(|pair| row(set, root, pair)));
+            }
+            findings.push(sentences::counterparts(model, set, found, of));
+            counts.push(format!(
+                "{set}: {} poles and {} finite zeros",
+                ours.poles.len(),
+                ours.zeros.len()
+            ));
+        }
         tables.push(Table {
             file,
             caption: format!(
@@ -182,91 +155,149 @@ pub(super) fn section(vehicles: &[Vehicle], findings: &mut Findings) -> Result<S
                 model.to_uppercase(),
                 counts.join("; ")
             ),
-            head,
-            rows: rows_of,
+            head: vec![
+                "set",
+                "root",
+                "kind",
+                "printed",
+                "ours",
+                "difference, real",
+                "imaginary",
+                "size",
+                "of the printed",
+            ],
+            rows,
         });
     }
-    let paragraphs = tell(vehicles, findings);
+    facts(vehicles, findings);
     Ok(Section {
         id: "table3",
         title: "Table 3 and Fig. 6",
-        paragraphs,
+        paragraphs: vec![sentences::pairing()],
         tables,
         pictures: vec![Picture {
             file: "fig6.svg",
-            caption: "Fig. 6: poles and zeros of y = [V, γ], u = [δe, φ]; flat Earth, no canard. Right: near the origin.".to_owned(),
+            caption: format!(
+                "Fig. 6: poles and zeros of y = [V, γ], u = [δe, φ]; flat Earth, no canard. Left: all. Middle: within {} rad/s of the \
+                 origin. Right: within {} rad/s.",
+                NEAR[0].0, NEAR[1].0
+            ),
             svg: drawn("fig6.svg", map(vehicles))?,
         }],
     })
 }
 
-/// Why roots differ, computed from them.
-fn tell(vehicles: &[Vehicle], findings: &mut Findings) -> Vec<String> {
-    let mut paragraphs = vec![
-        "Poles and zeros of y = [V, γ], u = [δe, φ] at the trims above, on the flat Earth without canard. A printed root stands \
-         beside the nearest of ours, if there is one nearer than 0.6 of its size. The FPM's column is not compared."
-            .to_owned(),
-    ];
-    let column = |model: &str| TABLE_3.iter().find(|roots| roots.model == model);
-    let flexible = |roots: &printed::Roots| -> Vec<f64> {
-        let pairs = roots.poles.iter().filter(|root| root[1] > SLOW);
-        pairs.map(|&root| -root[0] / size(root)).collect()
+/// What explains the differences.
+fn facts(vehicles: &[Vehicle], findings: &mut Findings) {
+    let count = |roots: &[Root]| -> usize {
+        let sizes = roots.iter().map(|root| if root[1] > 0.0 { 2 } else { 1 });
+        sizes.sum()
     };
-    if let Some(dcom) = column("dcom") {
-        let damping = flexible(dcom);
-        let (low, high) = damping
-            .iter()
-            .fold((f64::INFINITY, 0.0_f64), |(low, high), &d| {
-                (low.min(d), high.max(d))
-            });
-        findings.cannot.push(format!(
-            "Table 3: its flexible poles have damping ratios of {low:.3} to {high:.3}, section 5.1 those of (36), 0.5 to 0.7: no \
-             one set of modal data fits both."
-        ));
-        paragraphs.push(format!(
-            "The flexible poles printed for the DCOM have damping ratios of {low:.3} to {high:.3}; (36) has 0.7, 0.6, 0.5. Section \
-             5.3 rests on other modal data than section 5.1, which is why there are two sets of parameters here."
-        ));
-    }
-    let real = |model: &str, set: &str| -> Option<(f64, f64)> {
-        let roots = find(vehicles, model, set)?;
-        let fast = roots
-            .poles
-            .iter()
-            .filter(|root| root[1].abs() < 1e-7 && root[0].abs() > SLOW);
-        let short = fast.map(|root| root[0]).filter(|re| re.abs() < 10.0);
-        Some((short.clone().fold(0.0, f64::min), short.fold(0.0, f64::max)))
+    let flexible = |roots: &[Root]| -> Vec<Root> {
+        let roots = roots.iter().copied();
+        roots
+            .filter(|&root| Kind::of_place(root) == Kind::Flexible)
+            .collect()
     };
-    if let Some((stable, unstable)) = real("dcom", "section5.3") {
-        findings.agrees.push(format!(
-            "Table 3, DCOM: the short period of set section5.3 is {} and {}, printed -3.97 and 3.86; but that set trims far from \
-             Table 2.",
-            number(stable),
-            number(unstable)
+    if let Some(printed) = column("dcom") {
+        let dampings = flexible(printed.poles);
+        let dampings = dampings.iter().map(|&root| -root[0] / size(root));
+        let p = &dcom::NOMINAL;
+        findings.push(sentences::dampings(
+            range(dampings),
+            range([p.zeta_1, p.zeta_2, p.zeta_3].into_iter()),
+        ));
+        for set in SETS {
+            let (Some(vehicle), Some(ours)) =
+                (find(vehicles, "dcom", set), roots(vehicles, "dcom", set))
+            else {
+                continue;
+            };
+            let ours = ours.poles.iter().zip(&ours.pole_kinds);
+            let ours = ours.filter(|&(_, &kind)| kind == Kind::Rigid);
+            let [ours, printed] = [
+                short_period(ours.map(|(&root, _)| root)),
+                short_period(printed.poles.iter().copied()),
+            ];
+            if let Some(trim) = &vehicle.trim {
+                let distance = trims::distance(trim);
+                findings.push(sentences::short_period(set, ours, printed, distance));
+            }
+        }
+        if let Some(off) = roots(vehicles, "dcom", SETS[1]).map(|ours| real_parts(printed, ours)) {
+            let of = &dcom::SECTION5_3_PROVENANCE;
+            findings.push(sentences::modal_data(
+                SETS[1],
+                doubtful(&[
+                    of.omega_1, of.omega_2, of.omega_3, of.zeta_1, of.zeta_2, of.zeta_3,
+                ]),
+                off,
+            ));
+            findings.push(sentences::mass(SETS[1], of.m, of.i_yy));
+        }
+    }
+    if let Some(printed) = column("com") {
+        let p = &com::NOMINAL;
+        let omegas = [p.omega_1, p.omega_2];
+        let coupled = flexible(printed.poles);
+        let coupled = omegas
+            .iter()
+            .all(|omega| coupled.iter().any(|root| root[1] == *omega));
+        let of = &com::PROVENANCE;
+        let origin = doubtful(&[of.omega_1, of.omega_2]);
+        findings.push(sentences::clamped(origin, &omegas, coupled));
+    }
+    if let (Some(ours), Some(printed)) = (roots(vehicles, "sdcom", SETS[0]), column("sdcom")) {
+        let noise = ours.pole_kinds.iter().filter(|&&kind| kind == Kind::Noise);
+        findings.push(sentences::sdcom(
+            ours.poles.len(),
+            noise.count(),
+            count(printed.poles),
+            flexible(printed.poles).len(),
         ));
     }
-    if let (Some(ours), Some(printed)) = (find(vehicles, "sdcom", "section5.1"), column("sdcom")) {
-        let count = |roots: &[Root]| {
-            roots
-                .iter()
-                .map(|root| if root[1] > 0.0 { 2 } else { 1 })
-                .sum::<usize>()
-        };
-        let sentence = format!(
-            "SDCOM of (27) has {} states and so {} poles, of which three are the real -ζω of the coloured noises. Table 3 prints {} \
-             with three complex pairs, which cannot come from (27).",
-            ours.poles.len(),
-            ours.poles.len(),
-            count(printed.poles)
-        );
-        findings.cannot.push(sentence.clone());
-        paragraphs.push(format!(
-            "{sentence} It has {} finite zeros, printed are {}.",
-            ours.zeros.len(),
-            count(printed.zeros)
-        ));
-    }
-    paragraphs
+}
+
+/// Least and greatest of numbers.
+fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], it| {
+        [low.min(it), high.max(it)]
+    })
+}
+
+/// The leftmost and the rightmost real root.
+fn short_period(roots: impl Iterator<Item = Root>) -> [f64; 2] {
+    let real = roots.filter(|&[re, im]| im.abs() < NOTHING * (1.0 + re.abs()));
+    range(real.map(|[re, _]| re))
+}
+
+/// Greatest relative difference of the real parts of the flexible poles, by rising frequency.
+fn real_parts(printed: &printed::Roots, ours: &Roots) -> f64 {
+    let sorted = |mut roots: Vec<Root>| {
+        roots.sort_by(|a, b| a[1].total_cmp(&b[1]));
+        roots
+    };
+    let printed = printed.poles.iter().copied();
+    let printed = sorted(
+        printed
+            .filter(|&root| Kind::of_place(root) == Kind::Flexible)
+            .collect(),
+    );
+    let ours = ours.poles.iter().copied().zip(&ours.pole_kinds);
+    let ours = ours.filter(|&(root, &kind)| kind == Kind::Flexible && root[1] > 0.0);
+    let ours = sorted(ours.map(|(root, _)| root).collect());
+    let off = printed
+        .iter()
+        .zip(&ours)
+        .map(|(printed, ours)| (ours[0] / printed[0] - 1.0).abs());
+    off.fold(0.0, f64::max)
+}
+
+/// The first of these that comes from Table 3, else the first.
+fn doubtful(origins: &[Provenance]) -> Provenance {
+    let circular = origins.iter().find(|it| it.source == "table-3");
+    let assumed = Provenance::new("none", ahv_core::Status::Assumed, 0.0);
+    circular.or(origins.first()).copied().unwrap_or(assumed)
 }
 
 /// Fig. 6: each model and set, beside the printed roots.
@@ -279,10 +310,7 @@ fn map(vehicles: &[Vehicle]) -> Result<String, PlotError> {
         ("sdcom", SETS[0]),
         ("sdcom", SETS[1]),
     ] {
-        let (Some(ours), Some(printed)) = (
-            find(vehicles, model, set),
-            TABLE_3.iter().find(|roots| roots.model == model),
-        ) else {
+        let (Some(ours), Some(printed)) = (roots(vehicles, model, set), column(model)) else {
             continue;
         };
         let both = |roots: &[Root]| -> Vec<(f64, f64)> {
@@ -317,11 +345,30 @@ fn map(vehicles: &[Vehicle]) -> Result<String, PlotError> {
             y: Axis::linear("imaginary part [rad/s]"),
             layers,
         };
-        let mut near = all.clone();
-        near.title.push_str(", near the origin");
-        near.x = near.x.within(-SLOW, SLOW);
-        near.y = near.y.within(-SLOW, SLOW);
-        panels.extend([all, near]);
+        let near = NEAR.map(|(reach, words)| about_the_origin(&all, reach, words));
+        panels.push(all);
+        panels.extend(near);
     }
-    Figure::new("", 2, panels).svg()
+    Figure {
+        panel_size: (360, 300),
+        ..Figure::new("", 1 + NEAR.len(), panels)
+    }
+    .svg()
+}
+
+/// The panel within `reach` rad/s of the origin, in mrad/s.
+fn about_the_origin(all: &Panel, reach: f64, words: &str) -> Panel {
+    const MILLI: f64 = 1e3;
+    let mut panel = all.clone();
+    panel.title = format!("{}, {words}", panel.title);
+    panel.x = Axis::linear("real part [mrad/s]").within(-MILLI * reach, MILLI * reach);
+    panel.y = Axis::linear("imaginary part [mrad/s]").within(-MILLI * reach, MILLI * reach);
+    for layer in &mut panel.layers {
+        if let Mark::Markers(_, points) = &mut layer.mark {
+            for (re, im) in points {
+                (*re, *im) = (MILLI * *re, MILLI * *im);
+            }
+        }
+    }
+    panel
 }

@@ -2,12 +2,13 @@
 
 use ahv_analysis::reproduce::printed::TABLE_2;
 use ahv_analysis::reproduce::vehicle::{TrimPoint, Vehicle};
+use ahv_models::dcom;
 
-use super::Findings;
-use super::page::{Cell, Section, Table, number};
+use super::page::{Cell, Row, Section, Table, number};
+use super::{Findings, sentences};
 
 /// Distance of a trim from the printed one: the largest relative difference of α, φ, δe.
-fn distance(trim: &TrimPoint) -> f64 {
+pub(super) fn distance(trim: &TrimPoint) -> f64 {
     let pairs = [
         (trim.alpha_deg, TABLE_2.alpha_deg),
         (trim.phi, TABLE_2.phi),
@@ -49,13 +50,14 @@ pub(super) fn section(vehicles: &[Vehicle], findings: &mut Findings) -> Section 
         });
         three.collect::<Vec<_>>()
     };
-    let mut rows = vec![vec![
+    let mut first = vec![
         Cell::words("printed (η of DCOM, SDCOM)"),
         Cell::number(TABLE_2.alpha_deg),
         Cell::number(TABLE_2.phi),
         Cell::number(TABLE_2.delta_e_deg),
-    ]];
-    rows[0].extend(TABLE_2.eta.map(Cell::number));
+    ];
+    first.extend(TABLE_2.eta.map(Cell::number));
+    let mut rows = vec![Row::from(first)];
     let mut nearest: Option<(f64, String)> = None;
     for vehicle in vehicles {
         let mut row = vec![Cell::words(name(vehicle))];
@@ -77,24 +79,23 @@ pub(super) fn section(vehicles: &[Vehicle], findings: &mut Findings) -> Section 
             }
             None => row.push(Cell::words(vehicle.problem.clone().unwrap_or_default())),
         }
-        rows.push(row);
+        rows.push(Row::from(row));
     }
-    let nearest = nearest.map_or_else(String::new, |(distance, name)| {
-        format!("{name} comes nearest, within {:.1} %", 100.0 * distance)
+    if let Some((distance, name)) = nearest {
+        findings.push(sentences::nearest_trim(distance, &name));
+    }
+    let rigid = vehicles.iter().filter_map(|vehicle| {
+        let condition = &vehicle.condition;
+        let trim = vehicle.trim.as_ref()?;
+        (condition.model == "com_rigid").then(|| (condition.earth, distance(trim)))
     });
-    findings.cannot.push(format!(
-        "Table 2: no model with the tables of this project trims where the paper does; {nearest}. The printed trim is said to be \
-         that of all models, which have different equations."
-    ));
     Section {
         id: "table2",
         title: "Table 2",
-        paragraphs: vec![format!(
-            "Level flight at {} ft/s and {} ft; the paper's table gives V the value of h and h that of V. One trim is printed for \
-             all models; it is not the COM's: with coefficients on which three transcriptions agree, the rigid COM trims \
-             elsewhere. {nearest}. The coefficients of the DCOM could not be had, so its rows are those of a table that was derived \
-             in its place. Differences from the printed values are in brackets; η of com is that of forebody and aftbody.",
-            TABLE_2.velocity, TABLE_2.altitude
+        paragraphs: vec![sentences::trims(
+            [TABLE_2.velocity, TABLE_2.altitude],
+            &rigid.collect::<Vec<_>>(),
+            dcom::PROVENANCE.c_n_1_alpha,
         )],
         tables: vec![Table {
             file: "table2.csv",
