@@ -6,15 +6,15 @@ requirements, in the folder ``generator``::
     pip install slycot
     python -m ahv_oracle zeros --tables tables --out ../tests/vectors/zeros.txt
 
-Line 1 is a comment; then for each model, set and canard stand rows ``case`` (model, set, canard), ``A`` and ``B`` (rows,
-columns and the entries by rows), and a row for each pair of inputs and outputs:
+Line 1 is a comment; then for each model, set and canard stand rows ``case`` (model, set, canard), ``A`` and ``B``
+(rows, columns and the entries by rows), and a row for each pair of inputs and outputs:
 ``inputs|outputs|rank|orders of infinite zeros|right|left Kronecker indices|zeros``, inputs and outputs by number, of a
 pair of conjugate zeros the upper one, as ``real`` or ``real:imaginary``.
 """
 
 import itertools
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,7 @@ from .model import build_model
 from .roots import GIVEN, REDUNDANT, SOUGHT, START, Matrix
 from .table import CHOICES, load_table
 
+Numbers = Sequence[Any]
 Pair = tuple[tuple[int, ...], tuple[int, ...]]
 
 CASES = (
@@ -95,7 +96,7 @@ class System:
         rounded = self._compiled(slopes, "math")([float(x) for x in state], [float(u) for u in held])
         self.rounded = numpy.array([[float(value) for value in row[:count]] for row in rounded])
 
-    def _compiled(self, outputs: object, module: str) -> Any:
+    def _compiled(self, outputs: object, module: str) -> Callable[[Numbers, Numbers], list[Any]]:
         values = self._model.table.values
         arguments = [symbol for name, symbol in self._model.arguments().items() if not name.startswith("noise.")]
         steps = list(self._model.names.definitions.items())
@@ -107,7 +108,7 @@ class System:
         unknown = [name for name in self._model.states if name not in GIVEN] + list(SOUGHT)
         equations = [i for i, name in enumerate(self._model.states) if name not in REDUNDANT]
 
-        def split(values: Any) -> tuple[list[Any], list[Any]]:
+        def split(values: Numbers) -> tuple[list[Any], list[Any]]:
             known = GIVEN | dict(zip(unknown, values, strict=True))
             point = [known.get(name, 0.0) for name in names]
             return point[: len(self._model.states)], point[len(self._model.states) :]
@@ -146,7 +147,7 @@ class System:
         inputs, outputs = pair
         generator = random.Random(5)
         rank = _rank(self._pencil(inputs, outputs, mpmath.mpf(generator.uniform(1, 2)))) - self.states
-        first, second = (self._roots(inputs, outputs, self.states + rank, generator) for _ in range(2))
+        first, second = (self._roots(pair, self.states + rank, generator) for _ in range(2))
         common = 0
         for root in first:
             near = [other for other in second if abs(other - root) < COMMON * (1 + abs(root))]
@@ -155,7 +156,7 @@ class System:
                 common += 1
         return rank, common
 
-    def _pencil(self, inputs: tuple[int, ...], outputs: tuple[int, ...], s: Any) -> Any:
+    def _pencil(self, inputs: tuple[int, ...], outputs: tuple[int, ...], s: mpmath.mpc) -> mpmath.matrix:
         size = self.states
         pencil = mpmath.zeros(size + len(outputs), size + len(inputs))
         kept = [*range(size), *(size + index for index in inputs)]
@@ -165,10 +166,11 @@ class System:
             pencil[size + index, output] = 1
         return pencil
 
-    def _roots(self, inputs: tuple[int, ...], outputs: tuple[int, ...], size: int, generator: random.Random) -> list[Any]:
-        def dense(rows: int, columns: int) -> Any:
+    def _roots(self, pair: Pair, size: int, generator: random.Random) -> list[mpmath.mpc]:
+        def dense(rows: int, columns: int) -> mpmath.matrix:
             return mpmath.matrix([[generator.uniform(-1, 1) for _ in range(columns)] for _ in range(rows)])
 
+        inputs, outputs = pair
         left = dense(size, self.states + len(outputs))
         right = dense(self.states + len(inputs), size)
         count = self.states + 1
@@ -188,7 +190,7 @@ class System:
         return [mpmath.mpf(0)] * present[0] + [RADIUS * root for root in roots]
 
 
-def _rank(matrix: Any) -> int:
+def _rank(matrix: mpmath.matrix) -> int:
     rank, rows, columns = 0, matrix.rows, matrix.cols
     for step in range(min(rows, columns)):
         places = itertools.product(range(step, rows), range(step, columns))

@@ -192,7 +192,7 @@ pub enum TrimError {
         nearest.worst_residual()
     )]
     Blocked {
-        /// The bounds that the search ran into, and those that the trim outside violates; at least one.
+        /// The bounds that the search ran into, then others that the trim outside violates; at least one.
         blocking: Vec<Blocking>,
         /// `phi` and `delta_e` of a trim outside the bounds, if there is one.
         beyond: Option<[f64; 2]>,
@@ -264,7 +264,6 @@ where
             blocking.push(violated);
         }
     }
-    blocking.sort_by_key(|it| SOUGHT_INPUTS.iter().position(|&input| input == it.input));
     let beyond = beyond.map(|it| system.sought_inputs(&it.point));
     let nearest = Box::new(system.describe(&nearest, iterations));
     if blocking.is_empty() {

@@ -218,9 +218,11 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
     pub(super) fn describe(&self, point: &Point<M>, iterations: usize) -> Nearest {
         let residuals = self.residuals(point);
         let scaled = self.scaled(&self.model.drift(&point.x, &point.u));
-        // The largest one, or the first that is no number.
-        let worst = scaled.iter().position(|it| !it.is_finite());
-        let worst = self.rows.get(worst.unwrap_or_else(|| scaled.iamax()));
+        let size = |index: usize| residuals.get(self.rows[index]).map_or(0.0, f64::abs);
+        // Where scaled ones are no numbers, the largest of those before scaling.
+        let beyond = (0..self.rows.len()).filter(|&index| !scaled[index].is_finite());
+        let beyond = beyond.max_by(|&a, &b| size(a).total_cmp(&size(b)));
+        let worst = self.rows.get(beyond.unwrap_or_else(|| scaled.iamax()));
         Nearest {
             state: named(&point.x),
             input: named(&point.u),

@@ -102,7 +102,10 @@ impl<'a, M: FlightModel> Map<'a, M> {
 
     /// Why a point does not trim, in a few words.
     fn why(&self, error: &TrimError) -> String {
-        match self.vehicle.blocking(error).as_slice() {
+        let mut bounds = self.vehicle.blocking(error);
+        // In one order, whichever was met first.
+        bounds.sort();
+        match bounds.as_slice() {
             [] => "no convergence".to_owned(),
             bounds => bounds.join(" and "),
         }
