@@ -53,8 +53,11 @@ COMMON = mpmath.mpf(10) ** -8
 RADIUS = 20
 """Of the circle on which polynomials are evaluated, in 1/s."""
 
-TOLERANCES = (("N", 0.0), ("S", 0.0), ("N", 1e-11), ("S", 1e-11), ("N", 1e-13), ("N", 1e-9))
+SETTINGS = (("S", 0.0), ("N", 0.0), ("N", 1e-11), ("S", 1e-11), ("N", 1e-13), ("N", 1e-9))
 """SLICOT's scaling and tolerance, in the order in which they are tried."""
+
+AGREE = 3
+"""So many of the settings must agree; otherwise the exact rank and number of zeros choose one of them."""
 
 
 @dataclass(frozen=True)
@@ -224,15 +227,15 @@ def slicot(a: Matrix, b: Matrix, c: Matrix, scaling: str, tolerance: float) -> S
 
 
 def reference(system: System, pair: Pair) -> Structure:
-    """SLICOT's result; where it depends on scaling, the first that has the rank and the number of the exact zeros."""
+    """SLICOT's result; where settings differ, the first that has the rank and the number of the exact zeros."""
     inputs, outputs = pair
     a, rest = system.rounded[:, : system.states], system.rounded[:, system.states :]
     b, c = rest[:, list(inputs)], numpy.eye(system.states)[list(outputs)]
-    plain, scaled, *others = (slicot(a, b, c, *how) for how in TOLERANCES)
-    if plain.kind == scaled.kind:
-        return scaled
+    results = [slicot(a, b, c, *setting) for setting in SETTINGS]
+    if len({found.kind for found in results[:AGREE]}) == 1:
+        return results[0]
     exact = system.kind(pair)
-    for found in (scaled, plain, *others):
+    for found in results:
         if (found.rank, len(found.zeros)) == exact:
             return found
     raise ValueError(f"{pair}: SLICOT has not the rank and number of zeros {exact}")

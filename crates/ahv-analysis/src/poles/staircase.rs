@@ -149,7 +149,6 @@ impl Quadruple {
 
 /// How many entries of the diagonal of a pivoted triangular factor exceed `tolerance`: they descend.
 fn leading(factor: &DMatrix<f64>, tolerance: f64) -> usize {
-    let diagonal = factor.diagonal();
-    let large = diagonal.iter().take_while(|entry| entry.abs() > tolerance);
-    large.count()
+    let diagonal = (0..factor.nrows().min(factor.ncols())).map(|index| factor[(index, index)]);
+    diagonal.take_while(|entry| entry.abs() > tolerance).count()
 }

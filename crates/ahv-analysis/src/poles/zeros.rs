@@ -10,10 +10,10 @@ use super::{PolesError, frequency, told_from_zero};
 use crate::linearize::LinearSystem;
 
 /// An entry up to this many roundings of the whole pencil counts as 0 in a rank.
-///
-/// Of all pairs of one and two inputs and outputs of the models, the largest entry that is 0 in exact arithmetic lies a
-/// factor of 90 below that, the smallest one that is not a factor of 1000 above.
 const ROUNDINGS: f64 = 100.0;
+
+/// Rows below which faer's QZ algorithm has no workspace.
+const FEWEST_ROWS: usize = 3;
 
 /// Singular value, as a share of the largest, below which a rank is lost.
 const RANK: f64 = 1e-9;
@@ -165,6 +165,12 @@ fn finite(system: &Quadruple) -> Result<Vec<Complex<f64>>, PolesError> {
     }
     let kernel = kernel.rows_range(rank..).transpose();
     let carried = pencil.rows_range(..n) * &kernel;
+    if n < FEWEST_ROWS {
+        let square = kernel.rows(0, n).into_owned();
+        let matrix = square.lu().solve(&carried);
+        let roots = matrix.map(|matrix| matrix.complex_eigenvalues().as_slice().to_vec());
+        return roots.ok_or(PolesError::NoConvergence);
+    }
     let left = Mat::from_fn(n, n, |row, column| carried[(row, column)]);
     let right = Mat::from_fn(n, n, |row, column| kernel[(row, column)]);
     let solved = GeneralizedEigen::new_from_real(left.as_ref(), right.as_ref())
