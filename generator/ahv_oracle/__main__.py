@@ -3,7 +3,7 @@
 ``python -m ahv_oracle flights --table T --out F`` writes SciPy's flights, ``python -m ahv_oracle riccati --out F`` its
 solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`` its trims, poles and zeros,
 ``python -m ahv_oracle elementary --out F`` values of sine, cosine and exponential, ``python -m ahv_oracle normals
---out F`` keyed normal numbers.
+--out F`` keyed normal numbers, ``python -m ahv_oracle zeros --tables D --out F`` SLICOT's invariant zeros (see there).
 ``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
 """
 
@@ -20,6 +20,7 @@ from .riccati import riccati_lines
 from .roots import root_lines
 from .table import TableError
 from .vectors import write_lines, write_vectors
+from .zeros import zero_lines
 
 ALONE = {
     "riccati": (riccati_lines, "solutions of Riccati equations"),
@@ -27,6 +28,12 @@ ALONE = {
     "normals": (normal_lines, "keyed normal numbers"),
 }
 """What takes no table: its lines, and what they are."""
+
+OF_TABLES = {
+    "roots": (root_lines, "trims, poles and zeros"),
+    "zeros": (zero_lines, "invariant zeros"),
+}
+"""What takes all tables: its lines, and what they are."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -46,16 +53,18 @@ def main(arguments: list[str] | None = None) -> int:
     for name, (_, what) in ALONE.items():
         alone = commands.add_parser(name, help=f"write reference {what}")
         alone.add_argument("--out", type=Path, required=True, help="file to write")
-    roots = commands.add_parser("roots", help="write reference trims, poles and zeros")
-    roots.add_argument("--tables", type=Path, required=True, help="folder of the coefficient tables")
-    roots.add_argument("--out", type=Path, required=True, help="file to write")
+    for name, (_, what) in OF_TABLES.items():
+        of_tables = commands.add_parser(name, help=f"write reference {what}")
+        of_tables.add_argument("--tables", type=Path, required=True, help="folder of the coefficient tables")
+        of_tables.add_argument("--out", type=Path, required=True, help="file to write")
     options = parser.parse_args(arguments)
     if options.command in ALONE:
         lines, _ = ALONE[options.command]
         write_lines(lines(), options.out)
         return 0
-    if options.command == "roots":
-        write_lines(root_lines(options.tables), options.out)
+    if options.command in OF_TABLES:
+        of_all, _ = OF_TABLES[options.command]
+        write_lines(of_all(options.tables), options.out)
         return 0
     try:
         if options.command == "flights":

@@ -1,7 +1,7 @@
 """Reference trims, linear systems, poles and zeros: SciPy on the drift as SymPy derives it, in double precision.
 
 Line 1 is a comment; then for each model and parameter set stand rows ``case`` (model, set), ``state``, ``input``,
-``A`` and ``B`` (rows, columns and the entries by rows; inputs delta_e, phi), ``poles`` and ``zeros`` (real and
+``A`` and ``B`` (rows, columns and the entries by rows; inputs phi, delta_e), ``poles`` and ``zeros`` (real and
 imaginary parts in turn) of the outputs velocity and gamma.
 """
 
@@ -33,7 +33,7 @@ GIVEN = {"velocity": 7702.0808, "altitude": 85000.0, "gamma": 0.0, "pitch_rate":
 SOUGHT = ("phi", "delta_e")
 REDUNDANT = ("altitude", "alpha")
 START = {"phi": 0.25, "delta_e": 0.2}
-INPUTS = ("delta_e", "phi")
+INPUTS = ("phi", "delta_e")
 OUTPUTS = ("velocity", "gamma")
 
 INFINITE = 1e-10

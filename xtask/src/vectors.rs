@@ -17,7 +17,8 @@ const MODELS: [(&str, &str); 7] = [
 ];
 
 /// Writes the oracle's points and values and CasADi's values at the same points, then SciPy's flights, Riccati
-/// solutions, poles and zeros, and mpmath's elementary functions and normal numbers.
+/// solutions, poles and zeros, and mpmath's elementary functions and normal numbers. SLICOT's zeros, `zeros.txt`, are made by
+/// hand, since `slycot` is no requirement: `generator/ahv_oracle/zeros.py` says how.
 pub(crate) fn run() -> Result<(), String> {
     let python = python::development()?;
     for (model, table) in MODELS {

@@ -23,7 +23,7 @@ pub use arithmetic::Mode;
 pub use batch::Loss;
 pub use experiment::{Control, Experiment, Seen};
 pub use family::{Dcom, Family, LANES, Packed, Sdcom};
-pub use feedback::Feedback;
+pub use feedback::{Feedback, Unsteady};
 pub use outcome::{Outcome, Point, Snapshot, StateSpread};
 pub use propagator::{Flown, Propagator};
 pub use rare::{FEWEST_REPETITIONS, Level, RareError, RareEstimate, RareEvent};

@@ -2,6 +2,7 @@
 
 mod balance;
 mod modes;
+mod staircase;
 mod zeros;
 
 use faer::Mat;
@@ -17,7 +18,7 @@ pub use zeros::{Decoupling, Zero, Zeros, zeros};
 pub struct Pole {
     /// The eigenvalue of A, 1/s.
     pub value: Complex<f64>,
-    /// The mode; `None` where the states of the system tell none.
+    /// The mode; `None` where the states of the system name none.
     pub mode: Option<Mode>,
     /// Share of the mode's states in the participation factors of this pole, from 0 to 1.
     pub participation: f64,
@@ -29,14 +30,9 @@ pub enum PolesError {
     /// The QR or QZ iteration did not converge, as with entries that are not finite.
     #[error("the eigenvalues did not converge")]
     NoConvergence,
-    /// Zeros as they are computed here need as many outputs as inputs.
-    #[error("zeros need as many outputs as inputs, not {outputs} and {inputs}")]
-    NotSquare {
-        /// Number of inputs.
-        inputs: usize,
-        /// Number of outputs.
-        outputs: usize,
-    },
+    /// The rank of the transfer matrix cannot be told from rounding.
+    #[error("the rank of the transfer matrix cannot be told from rounding")]
+    AmbiguousRank,
 }
 
 /// Damping ratio −Re λ/|λ| of a pole or zero λ: 1 for a real stable one; 0 for λ = 0.

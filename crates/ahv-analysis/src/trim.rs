@@ -10,6 +10,8 @@ mod newton;
 mod response;
 mod system;
 
+use std::f64::consts::FRAC_PI_2;
+
 use ahv_core::{Bounds, DifferentiableModel, Vector};
 
 pub use response::{Shift, response};
@@ -55,6 +57,26 @@ impl<U: Vector<f64>> SteadyFlight<U> {
     /// The same on a path that climbs by `gamma`, in rad.
     pub fn climbing(self, gamma: f64) -> Self {
         Self { gamma, ..self }
+    }
+
+    /// Whether there may be a steady flight: the velocity is above 0 and the path is not vertical.
+    ///
+    /// # Errors
+    ///
+    /// [`TrimError::Domain`]
+    pub fn check(&self) -> Result<(), TrimError> {
+        let fault = |name, value, must| Err(TrimError::Domain { name, value, must });
+        if !(self.velocity > 0.0 && self.velocity.is_finite()) {
+            return fault("velocity", self.velocity, "above 0");
+        }
+        if !self.altitude.is_finite() {
+            return fault("altitude", self.altitude, "a finite number");
+        }
+        // The double next to π/2 is not vertical, but an angle in deg that is rounds to it.
+        if !(self.gamma.abs() < FRAC_PI_2) {
+            return fault("gamma", self.gamma, "between -90 deg and 90 deg");
+        }
+        Ok(())
     }
 
     /// The same with `phi` and `delta_e` inside their `bounds`, a vector over the inputs.
@@ -144,6 +166,16 @@ pub enum TrimError {
         /// The name that was looked for.
         name: &'static str,
     },
+    /// A flight condition at which there is no steady flight.
+    #[error("{name} is {value:?}; it must be {must}")]
+    Domain {
+        /// The quantity, a field of [`SteadyFlight`].
+        name: &'static str,
+        /// Its value: in the model's unit, an angle in rad.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
     /// A derivative is infinite or NaN where the search starts.
     #[error("the derivative of {name} is {value:?} where the trim starts")]
     NonFinite {
@@ -154,22 +186,22 @@ pub enum TrimError {
     },
     /// No trim inside the bounds.
     #[error(
-        "no trim inside {}: at the nearest point the derivative of {} is {} per second",
+        "no trim inside {}: at the nearest point the derivative of {} is {:?} per second",
         list(blocking),
         nearest.worst,
         nearest.worst_residual()
     )]
     Blocked {
-        /// The bounds that the search ran into; at least one.
+        /// The bounds that the search ran into, then others that the trim outside violates; at least one.
         blocking: Vec<Blocking>,
         /// `phi` and `delta_e` of a trim outside the bounds, if there is one.
         beyond: Option<[f64; 2]>,
         /// The nearest point.
         nearest: Box<Nearest>,
     },
-    /// No trim was found, and it is not for the bounds.
+    /// No trim was found, and no bound is the reason.
     #[error(
-        "no trim after {} iterations: the derivative of {} is still {} per second",
+        "no trim after {} iterations: the derivative of {} is still {:?} per second",
         nearest.iterations,
         nearest.worst,
         nearest.worst_residual()
@@ -185,7 +217,7 @@ impl TrimError {
     pub fn nearest(&self) -> Option<&Nearest> {
         match self {
             Self::Blocked { nearest, .. } | Self::NoConvergence { nearest } => Some(nearest),
-            Self::MissingName { .. } | Self::NonFinite { .. } => None,
+            Self::MissingName { .. } | Self::Domain { .. } | Self::NonFinite { .. } => None,
         }
     }
 }
@@ -212,6 +244,7 @@ pub fn trim<M>(
 where
     M: DifferentiableModel<Scalar = f64>,
 {
+    flight.check()?;
     let system = System::new(model, flight)?;
     let start = system.start(flight)?;
     let first = system.solve(start);
@@ -224,15 +257,18 @@ where
     if last.converged && system.inside(&last.point) {
         return Ok(system.finish(&last.point, iterations));
     }
-    let blocking = system.blocking(&nearest);
+    let beyond = [first, last].into_iter().find(|it| it.converged);
+    let mut blocking = system.blocking(&nearest);
+    for violated in beyond.iter().flat_map(|it| system.violated(&it.point)) {
+        if !blocking.contains(&violated) {
+            blocking.push(violated);
+        }
+    }
+    let beyond = beyond.map(|it| system.sought_inputs(&it.point));
     let nearest = Box::new(system.describe(&nearest, iterations));
     if blocking.is_empty() {
         return Err(TrimError::NoConvergence { nearest });
     }
-    let mut trims = [first, last].into_iter();
-    let beyond = trims
-        .find(|it| it.converged)
-        .map(|it| system.sought_inputs(&it.point));
     Err(TrimError::Blocked {
         blocking,
         beyond,

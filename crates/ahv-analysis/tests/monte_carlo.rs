@@ -8,6 +8,7 @@ use ahv_analysis::monte_carlo::{
 };
 use ahv_analysis::statistics::Estimate;
 use ahv_analysis::track::Actuator;
+use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::{Bounds, ColouredNoise, Vector};
 use ahv_integrate::{ItoEulerMaruyama, ItoHeun, ItoStrangSplitting, NormalStream, WienerSource};
 use ahv_models::{dcom, sdcom};
@@ -172,6 +173,7 @@ fn feedback_moves_the_inputs_as_the_actuator_does() {
     };
     experiment.feedback = Some(Feedback {
         state: reference,
+        rate: sdcom::State::splat(0.0),
         input: INPUT,
         gain,
         actuators,
@@ -189,6 +191,85 @@ fn feedback_moves_the_inputs_as_the_actuator_does() {
         (points[50].input.delta_e - INPUT.delta_e).abs() > 1e-3,
         "it moves"
     );
+}
+
+/// Flights that regulate the altitude by the elevator, about a reference with these rates.
+fn about_a_reference(rate: sdcom::State<f64>) -> Experiment<Sdcom> {
+    let mut experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 50]);
+    let mut gain: sdcom::Input<sdcom::State<f64>> = Vector::splat(Vector::splat(0.0));
+    gain.delta_e.altitude = 1e-2;
+    let actuator = Actuator {
+        bandwidth: 20.0,
+        rate: 5.0,
+        bounds: Bounds::new(-1.0, 1.0),
+    };
+    experiment.feedback = Some(Feedback {
+        state: STATE,
+        rate,
+        input: INPUT,
+        gain,
+        actuators: sdcom::Input {
+            delta_e: Some(actuator),
+            ..sdcom::Input::splat(None)
+        },
+    });
+    experiment
+}
+
+#[test]
+fn the_reference_moves_with_the_flight() {
+    let rate = sdcom::State {
+        altitude: 134.0,
+        ..sdcom::State::splat(0.0)
+    };
+    let experiment = about_a_reference(rate);
+    let actuator = experiment.feedback.and_then(|it| it.actuators.delta_e);
+    let actuator = actuator.expect("an actuator");
+    let points = experiment.trajectory(2, 1).expect("it goes");
+    let mut position = INPUT.delta_e;
+    for (step, (before, after)) in points.iter().zip(&points[1..]).enumerate() {
+        let reference = STATE.altitude + 134.0 * (step as f64 * 1e-3);
+        let command = INPUT.delta_e - 1e-2 * (before.state.altitude - reference);
+        position = actuator.moved(position, command, 1e-3).0;
+        assert_relative_eq!(after.input.delta_e, position, max_relative = 1e-12);
+    }
+    assert!(position > INPUT.delta_e + 1e-3, "it moves");
+}
+
+/// A rate of 0 changes no bit: one that is not 0, but too small to move anything, gives the same.
+#[test]
+fn a_reference_that_stays_costs_no_bit() {
+    let tiny = sdcom::State::splat(1e-300);
+    let [still, moving] = [sdcom::State::splat(0.0), tiny].map(|rate| {
+        let points = about_a_reference(rate).trajectory(2, 1).expect("it goes");
+        points.last().map(|point| (point.state, point.input))
+    });
+    assert_eq!(still, moving);
+}
+
+#[test]
+fn a_reference_that_is_no_equilibrium_has_a_state_that_leaves_it() {
+    let model = sdcom::Model::new(&sdcom::NOMINAL);
+    let climb = SteadyFlight::new(7702.0808, 85_000.0).climbing(1.0_f64.to_radians());
+    let trim = trim(&model, &climb).expect("a trim");
+    let mut feedback = about_a_reference(sdcom::State::splat(0.0))
+        .feedback
+        .expect("a feedback");
+    (feedback.state, feedback.input) = (trim.state, trim.input);
+    let still = feedback.unsteady(&model).expect("the altitude climbs");
+    assert_eq!((still.state, still.rate), ("altitude", 0.0));
+    assert_relative_eq!(still.expected, 134.42, max_relative = 1e-4);
+    feedback.rate.altitude = still.expected;
+    assert_eq!(feedback.unsteady(&model), None);
+    feedback.rate.velocity = 1.0;
+    let faster = feedback.unsteady(&model).expect("the velocity stays");
+    assert_eq!(
+        (faster.state, faster.rate, faster.expected),
+        ("velocity", 1.0, 0.0)
+    );
+    feedback.rate.velocity = 0.0;
+    feedback.state.alpha += 1e-6;
+    assert!(feedback.unsteady(&model).is_some());
 }
 
 #[test]

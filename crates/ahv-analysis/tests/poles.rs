@@ -4,7 +4,7 @@
 use std::fs;
 
 use ahv_analysis::linearize::{LinearSystem, LinearizeError, PATH_INPUTS, PATH_OUTPUTS, linearize};
-use ahv_analysis::poles::{Decoupling, Mode, Pole, PolesError, damping, frequency, poles, zeros};
+use ahv_analysis::poles::{Decoupling, Mode, Pole, Zeros, damping, frequency, poles, zeros};
 use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::{DifferentiableModel, Vector};
 use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust};
@@ -123,10 +123,10 @@ fn poles_and_zeros_are_scipys_on_the_same_matrices() {
         let found = zeros(&system).expect("zeros");
         let finite: Vec<_> = found.finite.iter().map(|it| it.value).collect();
         assert_same(&finite, &reference.zeros, &what);
-        assert!(found.regular, "{what}");
+        assert_eq!(found.infinite_orders, [1, 1], "{what}");
         assert_eq!(
-            (finite.len(), found.infinite),
-            (states.len() - 2, 4),
+            (finite.len(), found.infinite(), found.normal_rank),
+            (states.len() - 2, 4, 2),
             "{what}"
         );
     }
@@ -312,13 +312,16 @@ fn small_systems_have_the_zeros_of_their_transfer_functions() {
         d: DMatrix::from_element(1, 1, d),
     };
     let none = zeros(&of([1.0, 0.0], 0.0)).expect("zeros");
-    assert_eq!((none.finite.len(), none.regular), (0, false));
+    assert_eq!((none.finite.len(), none.infinite_orders), (0, vec![2]));
     let one = zeros(&of([2.0, 1.0], 0.0)).expect("zeros");
-    assert_eq!((one.finite.len(), one.regular), (1, true));
+    assert_eq!((one.finite.len(), one.infinite_orders), (1, vec![1]));
     assert_abs_diff_eq!(one.finite[0].value.re, -2.0, epsilon = 1e-14);
     // 1 + 4/s²: zeros at ±2i.
     let pair = zeros(&of([4.0, 0.0], 1.0)).expect("zeros");
-    assert_eq!(pair.finite.len(), 2);
+    assert_eq!(
+        (pair.finite.len(), pair.infinite(), pair.normal_rank),
+        (2, 1, 1)
+    );
     assert_abs_diff_eq!(pair.finite[0].value.im, 2.0, epsilon = 1e-14);
 }
 
@@ -342,12 +345,193 @@ fn what_cannot_be_is_a_typed_error() {
         matches!(still, Err(LinearizeError::NonFinite { .. })),
         "{still:?}"
     );
-    let wide = linearize(&model, &x, &u, &PATH_INPUTS, &["velocity"]).expect("smooth");
+}
+
+/// A pair of inputs and outputs of a model, and what SLICOT found for it.
+struct Pair {
+    what: String,
+    system: LinearSystem,
+    rank: usize,
+    orders: Vec<usize>,
+    right: Vec<usize>,
+    left: Vec<usize>,
+    zeros: Vec<Complex<f64>>,
+}
+
+fn whole(text: &str) -> Vec<usize> {
+    let numbers = text.split_whitespace();
+    numbers.map(|it| it.parse().expect("a number")).collect()
+}
+
+/// Both zeros of a pair for the upper one.
+fn conjugates(text: &str) -> Vec<Complex<f64>> {
+    let number = |text: &str| -> f64 { text.parse().expect("a number") };
+    let roots = text
+        .split_whitespace()
+        .flat_map(|root| match root.split_once(':') {
+            Some((re, im)) => {
+                let upper = Complex::new(number(re), number(im));
+                vec![upper, upper.conj()]
+            }
+            None => vec![Complex::new(number(root), 0.0)],
+        });
+    roots.collect()
+}
+
+fn pairs() -> Vec<Pair> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/vectors/zeros.txt");
+    let text = fs::read_to_string(path).expect("the vectors are there");
+    let (mut case, mut a, mut b) = ("", DMatrix::zeros(0, 0), DMatrix::zeros(0, 0));
+    let mut pairs = Vec::new();
+    for line in text.lines().skip(1) {
+        let matrix = |numbers: &str| {
+            let numbers: Vec<f64> = numbers
+                .split(',')
+                .map(|it| it.parse().expect("a number"))
+                .collect();
+            DMatrix::from_row_slice(numbers[0] as usize, numbers[1] as usize, &numbers[2..])
+        };
+        match line.split_once(',').filter(|_| !line.contains('|')) {
+            Some(("case", name)) => case = name,
+            Some(("A", numbers)) => a = matrix(numbers),
+            Some((_, numbers)) => b = matrix(numbers),
+            None => {
+                let fields: Vec<&str> = line.split('|').collect();
+                let [inputs, outputs, rank, orders, right, left] =
+                    [0, 1, 2, 3, 4, 5].map(|index| whole(fields[index]));
+                let c = DMatrix::from_fn(outputs.len(), a.nrows(), |row, column| {
+                    f64::from(u8::from(outputs[row] == column))
+                });
+                pairs.push(Pair {
+                    what: format!("{case}: inputs {inputs:?}, outputs {outputs:?}"),
+                    system: LinearSystem {
+                        states: vec!["state"; a.nrows()],
+                        inputs: vec!["input"; inputs.len()],
+                        outputs: vec!["output"; outputs.len()],
+                        a: a.clone(),
+                        b: b.select_columns(&inputs),
+                        d: DMatrix::zeros(outputs.len(), inputs.len()),
+                        c,
+                    },
+                    rank: rank[0],
+                    orders,
+                    right,
+                    left,
+                    zeros: conjugates(fields[6]),
+                });
+            }
+        }
+    }
+    pairs
+}
+
+/// Every zero has a partner of its own. A multiple zero is known to a root of the rounding only: zeros are compared in
+/// groups that are nearer to each other than that, by their mean.
+fn assert_near(found: &[Complex<f64>], expected: &[Complex<f64>], what: &str) {
+    const NEAR: f64 = 1e-3;
+    let mut left: Vec<_> = expected.to_vec();
+    let mut own: Vec<_> = found.to_vec();
+    while let Some(&first) = left.first() {
+        let size = NEAR * frequency(first).max(1.0);
+        let take = |roots: &mut Vec<Complex<f64>>| -> Vec<Complex<f64>> {
+            let near = |root: &Complex<f64>| frequency(*root - first) <= size;
+            let group = roots.iter().copied().filter(near).collect();
+            roots.retain(|root| !near(root));
+            group
+        };
+        let (group, partners) = (take(&mut left), take(&mut own));
+        assert_eq!(
+            group.len(),
+            partners.len(),
+            "{what}: {found:?}, not {expected:?}"
+        );
+        let mean = |group: &[Complex<f64>]| group.iter().sum::<Complex<f64>>() / group.len() as f64;
+        let distance = frequency(mean(&group) - mean(&partners));
+        assert!(
+            distance <= 1e-7 * frequency(first).max(1.0),
+            "{what}: {partners:?}, not {group:?}"
+        );
+    }
+    assert!(own.is_empty(), "{what}: {found:?}, not {expected:?}");
+}
+
+#[test]
+fn zeros_of_every_pair_are_slicots() {
+    let pairs = pairs();
+    assert!(pairs.len() > 1800, "{}", pairs.len());
+    for pair in pairs {
+        let found = zeros(&pair.system).expect("zeros");
+        let what = &pair.what;
+        assert_eq!(found.normal_rank, pair.rank, "{what}");
+        assert_eq!(found.infinite_orders, pair.orders, "{what}");
+        assert_eq!(found.right_indices, pair.right, "{what}");
+        assert_eq!(found.left_indices, pair.left, "{what}");
+        let finite: Vec<_> = found.finite.iter().map(|it| it.value).collect();
+        assert_near(&finite, &pair.zeros, what);
+    }
+}
+
+fn pair<M: DifferentiableModel<Scalar = f64>>(
+    model: &M,
+    inputs: &[&str],
+    outputs: &[&str],
+) -> Zeros {
+    let (x, u) = level(model);
+    let system = linearize(model, &x, &u, inputs, outputs).expect("the model is smooth");
+    zeros(&system).expect("zeros")
+}
+
+/// The rows of altitude and gamma differ by V/s: the transfer matrix has rank 1.
+#[test]
+fn a_transfer_matrix_without_full_rank_has_no_invented_zeros() {
+    let dcom = dcom::Model::new(&dcom::NOMINAL);
+    let found = pair(&dcom, &PATH_INPUTS, &["altitude", "gamma"]);
+    assert_eq!((found.normal_rank, found.finite.len()), (1, 0));
     assert_eq!(
-        zeros(&wide),
-        Err(PolesError::NotSquare {
-            inputs: 2,
-            outputs: 1
-        })
+        (found.right_indices.len(), found.left_indices.len()),
+        (1, 1)
     );
+    let slaved = dcom::NOMINAL.with_canard(dcom::Canard::Slaved);
+    let found = pair(&dcom::Model::new(&slaved), &["delta_e"], &["altitude"]);
+    assert_eq!((found.finite.len(), found.infinite_orders), (8, vec![3]));
+    let rigid = com_rigid::Model::new(&com::NOMINAL);
+    let found = pair(&rigid, &PATH_INPUTS, &["altitude", "alpha"]);
+    assert_eq!((found.finite.len(), found.normal_rank), (1, 2));
+}
+
+/// Zeros do not depend on units, and neither does the rank: each state, input and output is scaled by itself.
+#[test]
+fn units_change_no_zero() {
+    let (x, u) = level(&dcom::Model::new(&dcom::SECTION5_3));
+    for outputs in [
+        ["altitude", "gamma"],
+        ["velocity", "gamma"],
+        ["alpha", "eta_1"],
+    ] {
+        let model = dcom::Model::new(&dcom::SECTION5_3);
+        let system = linearize(&model, &x, &u, &PATH_INPUTS, &outputs).expect("smooth");
+        let plain = zeros(&system).expect("zeros");
+        let factor = |index: usize| 10.0_f64.powi((index as i32 * 7) % 13 - 6);
+        let mut scaled = system.clone();
+        scaled.a = DMatrix::from_fn(11, 11, |i, j| system.a[(i, j)] * factor(i) / factor(j));
+        scaled.b = DMatrix::from_fn(11, 2, |i, j| system.b[(i, j)] * factor(i) * factor(j + 3));
+        scaled.c = DMatrix::from_fn(2, 11, |i, j| system.c[(i, j)] * factor(i + 5) / factor(j));
+        let scaled = zeros(&scaled).expect("zeros");
+        assert_eq!(plain.normal_rank, scaled.normal_rank);
+        assert_eq!(plain.infinite_orders, scaled.infinite_orders);
+        let [plain, scaled] = [plain, scaled].map(|zeros| {
+            let values = zeros.finite.iter().map(|it| it.value);
+            values.collect::<Vec<_>>()
+        });
+        assert_near(&scaled, &plain, outputs[0]);
+    }
+}
+
+#[test]
+fn there_may_be_more_outputs_than_inputs() {
+    let dcom = dcom::Model::new(&dcom::NOMINAL);
+    let tall = pair(&dcom, &["phi"], &["velocity", "gamma"]);
+    assert_eq!((tall.normal_rank, tall.left_indices.len()), (1, 1));
+    let wide = pair(&dcom, &PATH_INPUTS, &["velocity"]);
+    assert_eq!((wide.normal_rank, wide.right_indices.len()), (1, 1));
 }

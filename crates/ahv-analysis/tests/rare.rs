@@ -62,6 +62,7 @@ fn closed_loop(seed: u64) -> Experiment<Sdcom> {
     Experiment {
         feedback: Some(Feedback {
             state: at.state,
+            rate: State::splat(0.0),
             input: at.input,
             gain: Input {
                 phi: row(0),

@@ -1,6 +1,8 @@
 //! Trims of the models against values that were computed independently of this project.
 #![forbid(unsafe_code)]
 
+use std::f64::consts::PI;
+
 use ahv_analysis::trim::{SteadyFlight, TrimError, trim};
 use ahv_core::{Bounds, DifferentiableModel, Vector};
 use ahv_models::dcom::{Canard, Earth};
@@ -437,16 +439,51 @@ fn the_bound_that_blocks_is_told() {
     );
 }
 
+/// Each bound that the trim outside violates is named, whether or not the search for the nearest point ends at it.
+#[test]
+fn all_violated_bounds_are_named() {
+    let bounds = com::Input {
+        phi: Bounds::new(0.05, 0.2),
+        delta_e: Bounds::new(-0.2, 0.2),
+    };
+    let flight = SteadyFlight::new(VELOCITY, ALTITUDE).within(&bounds);
+    let error = trim(&com_rigid::Model::new(&com::NOMINAL), &flight).expect_err("out of bounds");
+    let TrimError::Blocked { blocking, .. } = &error else {
+        panic!("{error:?}");
+    };
+    let mut named: Vec<String> = blocking.iter().map(ToString::to_string).collect();
+    named.sort();
+    assert_eq!(named, ["delta_e <= 0.2", "phi <= 0.2"]);
+}
+
 #[test]
 fn impossible_flight_is_a_typed_error() {
     let model = dcom_model(Canard::None);
-    for (velocity, altitude) in [(0.0, ALTITUDE), (f64::NAN, ALTITUDE)] {
-        let still = trim(&model, &SteadyFlight::new(velocity, altitude));
+    let level = SteadyFlight::new(VELOCITY, ALTITUDE);
+    for (flight, quantity) in [
+        (SteadyFlight::new(0.0, ALTITUDE), "velocity"),
+        (SteadyFlight::new(-VELOCITY, ALTITUDE), "velocity"),
+        (SteadyFlight::new(f64::NAN, ALTITUDE), "velocity"),
+        (SteadyFlight::new(VELOCITY, f64::INFINITY), "altitude"),
+        (level.climbing(90.0_f64.to_radians()), "gamma"),
+        (level.climbing(-PI), "gamma"),
+        (level.climbing(f64::NAN), "gamma"),
+    ] {
+        let refused = trim(&model, &flight);
         assert!(
-            matches!(still, Err(TrimError::NonFinite { .. })),
-            "{still:?}"
+            matches!(refused, Err(TrimError::Domain { name, .. }) if name == quantity),
+            "{refused:?}"
         );
     }
+    // Too slow for the numbers of the machine: the row that fails has a name.
+    let slow = trim(&model, &SteadyFlight::new(1e-300, ALTITUDE)).expect_err("no flight");
+    let nearest = slow.nearest().expect("a nearest point");
+    assert_eq!(nearest.worst, "gamma");
+    let text = slow.to_string();
+    assert!(
+        text.contains("the derivative of gamma is still -") && text.len() < 120,
+        "{text}"
+    );
     let space = trim(&model, &SteadyFlight::new(VELOCITY, 1e6));
     assert!(
         matches!(space, Err(TrimError::NoConvergence { .. })),

@@ -124,25 +124,43 @@ fn parse_value(name: &str, text: &str, unit: &'static str) -> Result<f64, String
     }
 }
 
+/// Decimals that a person needs.
+const DECIMALS: usize = 6;
+
+/// Decimals of an angle in deg, or of a number near 1, at which two different doubles look different.
+const MOST_DECIMALS: usize = 17;
+
 /// A value with its unit for a person to read: angles are in deg.
 pub(crate) fn show(value: f64, unit: &str) -> String {
+    show_with(value, unit, DECIMALS)
+}
+
+/// The same with as many more decimals as it takes to tell it from `other`.
+pub(crate) fn show_beside(value: f64, other: f64, unit: &str) -> String {
+    let look =
+        |decimals: &usize| show_with(value, unit, *decimals) != show_with(other, unit, *decimals);
+    let decimals = (DECIMALS..MOST_DECIMALS).find(look);
+    show_with(value, unit, decimals.unwrap_or(DECIMALS))
+}
+
+fn show_with(value: f64, unit: &str, decimals: usize) -> String {
     match unit {
         // A unit belongs to a number.
-        _ if !value.is_finite() => number(value),
-        "1" => number(value),
-        "rad" => format!("{} deg", number(value / RAD_PER_DEG)),
-        "rad/s" => format!("{} deg/s", number(value / RAD_PER_DEG)),
-        other => format!("{} {other}", number(value)),
+        _ if !value.is_finite() => number(value, decimals),
+        "1" => number(value, decimals),
+        "rad" => format!("{} deg", number(value / RAD_PER_DEG, decimals)),
+        "rad/s" => format!("{} deg/s", number(value / RAD_PER_DEG, decimals)),
+        other => format!("{} {other}", number(value, decimals)),
     }
 }
 
-/// Six decimals at most; powers of ten where decimals would be unreadable.
-fn number(value: f64) -> String {
+/// So many decimals at most; powers of ten where decimals would be unreadable.
+fn number(value: f64, decimals: usize) -> String {
     if value.is_nan() || value.abs() >= 1e9 {
-        return format!("{:.6e}", Shown(value));
+        return format!("{:.decimals$e}", Shown(value));
     }
-    let decimals = format!("{value:.6}");
-    match decimals.trim_end_matches('0').trim_end_matches('.') {
+    let text = format!("{value:.decimals$}");
+    match text.trim_end_matches('0').trim_end_matches('.') {
         "-0" => "0".to_owned(),
         trimmed => trimmed.to_owned(),
     }
@@ -150,7 +168,14 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::show;
+    use super::{show, show_beside};
+
+    #[test]
+    fn a_value_is_told_from_a_bound() {
+        assert_eq!(show_beside(1.5, 1.0, "1"), "1.5");
+        assert_eq!(show_beside(1.000_000_03, 1.0, "1"), "1.00000003");
+        assert_eq!(show_beside(1.0, 1.0, "1"), "1");
+    }
 
     #[test]
     fn numbers_are_shown_for_a_person() {

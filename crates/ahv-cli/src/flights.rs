@@ -8,6 +8,7 @@ use ahv_analysis::disperse::{Distribution, Draws};
 use ahv_analysis::monte_carlo::{
     Control, Dcom, Experiment, Family, Flown, LANES, Mode, MonteCarloError, Scheme, Sdcom,
 };
+use ahv_analysis::trim::SteadyFlight;
 use ahv_core::{Bounds, Vector};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
@@ -148,7 +149,7 @@ impl Flights {
         let vehicle: Vehicle<M> = self.condition.vehicle()?;
         let flight = self.place.flight(&vehicle)?;
         let trim = vehicle.trim(&flight)?;
-        let experiment = self.experiment(&vehicle, trim.state, trim.input)?;
+        let experiment = self.experiment(&vehicle, &flight, (trim.state, trim.input))?;
         let most = std::thread::available_parallelism().ok();
         let threads = self.threads.into_iter().chain(most).min();
         Ok(Ready {
@@ -162,8 +163,8 @@ impl Flights {
     fn experiment<M: Pair<F>, F: Flown>(
         &self,
         vehicle: &Vehicle<M>,
-        state: F::State<f64>,
-        input: F::Input<f64>,
+        flight: &SteadyFlight<F::Input<f64>>,
+        (state, input): (F::State<f64>, F::Input<f64>),
     ) -> Result<Experiment<F>, Failure> {
         let steps = (self.t_end / self.dt).round();
         if !(1.0..=1e12).contains(&steps) {
@@ -183,7 +184,7 @@ impl Flights {
             dispersion: self.dispersion(vehicle)?,
             state: [state, deviations("--state-std", &self.state_std, vehicle)?],
             input: [input, deviations("--input-std", &self.input_std, vehicle)?],
-            feedback: self.feedback.read::<M, F>(vehicle)?,
+            feedback: self.feedback.read::<M, F>(vehicle, flight)?,
             watched: vec![vehicle.state_bounds],
             scheme: self.scheme.as_deref().and_then(named).unwrap_or(default),
             mode: Mode::ALL

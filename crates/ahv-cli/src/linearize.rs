@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_OUTPUTS)]
     outputs: Vec<String>,
 
-    /// File to write: .json and .csv with labels, .mat with A, B, C, D for python-control, MATLAB and Octave
+    /// File to write: .json, .csv, or .mat with A, B, C, D and their names for python-control, MATLAB and Octave
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 
@@ -180,8 +180,19 @@ fn write<M: FlightModel>(
         Some("json") => output::write(path, output::json(json)?),
         Some("csv") => csv::<M>(path, vehicle.units, system, json),
         Some("mat") => {
-            let LinearSystem { a, b, c, d, .. } = system;
-            output::write(path, mat::file(&[("A", a), ("B", b), ("C", c), ("D", d)]))
+            let LinearSystem {
+                a,
+                b,
+                c,
+                d,
+                states,
+                inputs,
+                outputs,
+            } = system;
+            let matrices = [("A", a), ("B", b), ("C", c), ("D", d)];
+            let names = [("states", states), ("inputs", inputs), ("outputs", outputs)];
+            let names = names.map(|(name, list)| (name, list.as_slice()));
+            output::write(path, mat::file(&matrices, &names))
         }
         _ => Err(Failure::Request(format!(
             "--out: {} should end in .json, .csv or .mat",

@@ -5,14 +5,15 @@ use std::path::PathBuf;
 
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
-use ahv_analysis::trim::Trim;
-use ahv_core::Vector;
+use ahv_analysis::trim::{SteadyFlight, Trim};
+use ahv_core::{Model, Vector};
 use clap::Args;
-use serde::Serialize;
+use nalgebra::DMatrix;
 
 use crate::assignment::Assignments;
-use crate::condition::{Condition, Heading, Vehicle};
+use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
+use crate::gains::{Gains, LAW, Named};
 use crate::number::Shown;
 use crate::output::{self, Pairs, describe};
 use crate::place::Place;
@@ -20,7 +21,8 @@ use crate::vehicle::{FlightModel, for_model};
 
 /// Designs a linear-quadratic regulator at a trim.
 ///
-/// The law is u = input - gain (x - state). It minimises the integral of the squares of the deviations of states and
+/// The law is u = input - gain (x - state - state_rate t): in a climb the altitude of the reference moves with the flight. It
+/// minimises the integral of the squares of the deviations of states and
 /// inputs, each over the deviation that costs 1. Customary are velocity=10ft/s, altitude=100ft, gamma=0.01rad,
 /// alpha=0.02rad, pitch_rate=0.05rad/s, phi=0.2 and delta_e=0.05rad; other states cost nothing, other inputs are held.
 #[derive(Args)]
@@ -48,31 +50,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// A file of gains.
-#[derive(Serialize)]
-struct Gains<'a> {
-    #[serde(flatten)]
-    heading: Heading<'a>,
-    law: &'static str,
-    /// Columns of the gain.
-    states: Vec<&'static str>,
-    /// Rows of the gain.
-    inputs: Vec<&'static str>,
-    units: Pairs<&'static str>,
-    /// State of the trim.
-    state: Pairs<f64>,
-    /// Input of the trim.
-    input: Pairs<f64>,
-    /// By rows.
-    gain: Vec<Vec<f64>>,
-    /// Diagonals of Q and R.
-    state_weight: Pairs<f64>,
-    input_weight: Pairs<f64>,
-    /// Of the closed loop, in 1/s.
-    poles: Vec<[f64; 2]>,
-    residual: f64,
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -88,7 +65,7 @@ fn design<M: FlightModel>(arguments: &Arguments) -> Result<(), Failure> {
     let trim = vehicle.trim(&flight)?;
     let states: M::State = costs("--state-deviation", &arguments.state_deviation, &vehicle)?;
     let inputs: M::Input = costs("--input-deviation", &arguments.input_deviation, &vehicle)?;
-    let gains = Gains::new(&vehicle, &trim, &states, &inputs)?;
+    let gains = gains(&vehicle, &flight, &trim, &states, &inputs)?;
     if let Some(path) = &arguments.out {
         output::write(path, output::json(&gains)? + "\n")?;
     }
@@ -101,7 +78,7 @@ fn design<M: FlightModel>(arguments: &Arguments) -> Result<(), Failure> {
             describe(&trim.state, vehicle.units),
             describe(&trim.input, vehicle.units)
         );
-        print(&gains.text(&place, &trim))
+        print(&text(&gains, &place, &trim))
     }
 }
 
@@ -122,75 +99,86 @@ fn costs<M: FlightModel, V: Vector<f64>>(
     }
 }
 
-impl<'a> Gains<'a> {
-    fn new<M: FlightModel>(
-        vehicle: &'a Vehicle<M>,
-        trim: &Trim<M::State, M::Input>,
-        states: &M::State,
-        inputs: &M::Input,
-    ) -> Result<Self, Failure> {
-        let cost = |inputs: &M::Input, index| inputs.get(index).unwrap_or(f64::INFINITY);
-        let moved = (0..M::Input::LEN).filter(|&index| cost(inputs, index).is_finite());
-        let efforts: Vec<f64> = moved.clone().map(|index| cost(inputs, index)).collect();
-        let names = moved.filter_map(|index| M::Input::NAMES.get(index).copied());
-        let names: Vec<&'static str> = names.collect();
-        let numeric = |error: String| Failure::Numeric(format!("{}: {error}", M::NAME));
-        let system = linearize(&vehicle.model, &trim.state, &trim.input, &names, &[])
-            .map_err(|error| numeric(error.to_string()))?;
-        let costs: Vec<f64> = Pairs::of(states)
-            .0
-            .into_iter()
-            .map(|(_, cost)| cost)
-            .collect();
-        let (q, r) = (bryson(&costs), bryson(&efforts));
-        let regulator = Regulator::new(&system.a, &system.b, &q, &r)
-            .map_err(|error| numeric(error.to_string()))?;
-        let weights = |names: &[&'static str], diagonal: &[f64]| {
-            Pairs(
-                names
-                    .iter()
-                    .copied()
-                    .zip(diagonal.iter().copied())
-                    .collect(),
-            )
-        };
-        let rows = regulator.gain.row_iter();
-        Ok(Self {
-            heading: vehicle.heading(),
-            law: "u = input - gain (x - state)",
-            units: Pairs::units_of_both::<M::State, M::Input>(vehicle.units),
-            state: Pairs::of(&trim.state),
-            input: Pairs::of(&trim.input),
-            gain: rows.map(|row| row.iter().copied().collect()).collect(),
-            state_weight: weights(&system.states, q.diagonal().as_slice()),
-            input_weight: weights(&names, r.diagonal().as_slice()),
-            poles: regulator
-                .poles
-                .iter()
-                .map(|pole| [pole.re, pole.im])
-                .collect(),
-            residual: regulator.residual,
-            states: system.states,
-            inputs: names,
-        })
-    }
+/// The gains at a trim for deviations of states and inputs that cost 1.
+fn gains<M: FlightModel>(
+    vehicle: &Vehicle<M>,
+    flight: &SteadyFlight<M::Input>,
+    trim: &Trim<M::State, M::Input>,
+    states: &M::State,
+    inputs: &M::Input,
+) -> Result<Gains, Failure> {
+    let moved: Vec<_> = Pairs::of(inputs)
+        .0
+        .into_iter()
+        .filter(|it| it.1.is_finite())
+        .collect();
+    let (names, efforts): (Vec<_>, Vec<_>) = moved.into_iter().unzip();
+    let costs: Vec<f64> = Pairs::of(states).0.into_iter().map(|it| it.1).collect();
+    let numeric = |error: String| Failure::Numeric(format!("{}: {error}", M::NAME));
+    let system = linearize(&vehicle.model, &trim.state, &trim.input, &names, &[])
+        .map_err(|error| numeric(error.to_string()))?;
+    let (q, r) = (bryson(&costs), bryson(&efforts));
+    let regulator =
+        Regulator::new(&system.a, &system.b, &q, &r).map_err(|error| numeric(error.to_string()))?;
+    let weights = |names: &[&str], weight: &DMatrix<f64>| {
+        Named::new(names.iter().zip(weight.diagonal().iter().copied()))
+    };
+    let drift = Pairs::of(&vehicle.model.drift(&trim.state, &trim.input)).0;
+    // Of all other states the trim leaves no more than rounding.
+    let rate = |(name, rate)| (name, if name == "altitude" { rate } else { 0.0 });
+    let choices = vehicle.choices.iter();
+    let text = |names: &[&str]| names.iter().map(ToString::to_string).collect();
+    Ok(Gains {
+        model: M::NAME.to_owned(),
+        table: vehicle.table.clone(),
+        set: vehicle.set.to_string(),
+        choices: Named::new(choices.map(|(name, chosen)| (name, chosen.map(str::to_owned)))),
+        unit_system: vehicle.units.name().to_owned(),
+        parameters_sha256: vehicle.fingerprint(),
+        velocity: flight.velocity,
+        altitude: flight.altitude,
+        gamma_deg: flight.gamma.to_degrees(),
+        law: LAW.to_owned(),
+        states: text(&system.states),
+        inputs: text(&names),
+        units: Named::new(
+            Pairs::units_of_both::<M::State, M::Input>(vehicle.units)
+                .0
+                .into_iter()
+                .map(|(name, unit)| (name, unit.to_owned())),
+        ),
+        state: Named::of(&trim.state),
+        state_rate: Named::new(drift.into_iter().map(rate)),
+        input: Named::of(&trim.input),
+        gain: regulator
+            .gain
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect(),
+        state_weight: weights(&system.states, &q),
+        input_weight: weights(&names, &r),
+        poles: regulator
+            .poles
+            .iter()
+            .map(|pole| [pole.re, pole.im])
+            .collect(),
+        residual: regulator.residual,
+    })
+}
 
-    fn text(&self, place: &str, trim: &str) -> String {
-        let mut text = format!(
-            "{}: regulator at {place}\n{trim}\ngain:",
-            self.heading.model
-        );
-        // Writing into a String cannot fail.
-        for (input, row) in self.inputs.iter().zip(&self.gain) {
-            let _ = write!(text, "\n  {input}");
-            for (state, gain) in self.states.iter().zip(row) {
-                let _ = write!(text, "\n    {state:<12} {:.6e}", Shown(*gain));
-            }
+/// The gains for a person.
+fn text(gains: &Gains, place: &str, trim: &str) -> String {
+    let mut text = format!("{}: regulator at {place}\n{trim}\ngain:", gains.model);
+    // Writing into a String cannot fail.
+    for (input, row) in gains.inputs.iter().zip(&gains.gain) {
+        let _ = write!(text, "\n  {input}");
+        for (state, gain) in gains.states.iter().zip(row) {
+            let _ = write!(text, "\n    {state:<12} {:.6e}", Shown(*gain));
         }
-        text.push_str("\npoles in 1/s:");
-        for [real, imaginary] in &self.poles {
-            let _ = write!(text, "\n  {:.6} {:+.6}i", Shown(*real), Shown(*imaginary));
-        }
-        text
     }
+    text.push_str("\npoles in 1/s:");
+    for [real, imaginary] in &gains.poles {
+        let _ = write!(text, "\n  {:.6} {:+.6}i", Shown(*real), Shown(*imaginary));
+    }
+    text
 }

@@ -8,6 +8,7 @@ mod csv_file;
 mod disperse;
 mod failure;
 mod flights;
+mod gains;
 #[cfg(feature = "generate")]
 mod generate;
 mod linearize;

@@ -3,10 +3,11 @@
 use ahv_analysis::trim::{SOUGHT_INPUTS, SteadyFlight, Trim, TrimError, trim};
 use clap::Args;
 
-use crate::assignment::{Assignments, show};
+use crate::assignment::{Assignments, show, show_beside};
 use crate::condition::Vehicle;
 use crate::failure::Failure;
 use crate::names;
+use crate::units::Units;
 use crate::vehicle::FlightModel;
 
 /// Velocity in ft/s of the standard trim.
@@ -18,7 +19,7 @@ pub(crate) const ALTITUDE: f64 = 85_000.0;
 /// Steady flight at a point.
 #[derive(Args)]
 pub(crate) struct Place {
-    /// Velocity in ft/s, with --units si in m/s [default: 7702.0808 ft/s]
+    /// Velocity in ft/s, above 0, with --units si in m/s [default: 7702.0808 ft/s]
     #[arg(long, value_name = "FT_S", value_parser = finite, allow_negative_numbers = true)]
     velocity: Option<f64>,
 
@@ -26,7 +27,7 @@ pub(crate) struct Place {
     #[arg(long, value_name = "FT", value_parser = finite, allow_negative_numbers = true)]
     altitude: Option<f64>,
 
-    /// Flight-path angle in deg
+    /// Flight-path angle in deg, between -90 and 90
     #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = finite, allow_negative_numbers = true)]
     gamma: f64,
 
@@ -45,7 +46,8 @@ impl Place {
     ///
     /// # Errors
     ///
-    /// [`Failure::Request`] for inputs that are not held, or have no effect.
+    /// [`Failure::Request`] for a place where there is no steady flight, and for inputs that are not held, or have no
+    /// effect.
     pub(crate) fn flight<M: FlightModel>(
         &self,
         vehicle: &Vehicle<M>,
@@ -68,8 +70,22 @@ impl Place {
             .climbing(self.gamma.to_radians())
             .within(&vehicle.input_bounds);
         inputs.apply(&mut flight.input, &[]);
+        flight
+            .check()
+            .map_err(|error| outside_domain::<M>(&error, units))?;
         Ok(flight)
     }
+}
+
+/// What to say of a flight condition outside the domain of steady flight.
+fn outside_domain<M: FlightModel>(error: &TrimError, units: Units) -> Failure {
+    Failure::Request(match *error {
+        TrimError::Domain { name, value, must } => {
+            let value = show(value, units.label::<M::State>(name));
+            format!("--{name}: {value} is outside the domain of steady flight; it must be {must}")
+        }
+        ref other => other.to_string(),
+    })
 }
 
 impl<M: FlightModel> Vehicle<M> {
@@ -105,17 +121,23 @@ impl<M: FlightModel> Vehicle<M> {
     /// Why there is no trim, for a person.
     pub(crate) fn no_trim(&self, error: &TrimError) -> String {
         let TrimError::Blocked {
-            beyond, nearest, ..
+            blocking,
+            beyond,
+            nearest,
         } = error
         else {
             return error.to_string();
         };
-        let unit = |name| self.units.label::<M::Input>(name);
         let instead = match beyond {
             Some(values) => {
                 let values = SOUGHT_INPUTS.iter().zip(values);
                 let values: Vec<String> = values
-                    .map(|(&name, &value)| format!("{name} = {}", show(value, unit(name))))
+                    .map(|(&name, &value)| {
+                        let mut bounds = blocking.iter().filter(|it| it.input == name);
+                        let bound = bounds.next().map_or(f64::NAN, |it| it.bound);
+                        let unit = self.units.label::<M::Input>(name);
+                        format!("{name} = {}", show_beside(value, bound, unit))
+                    })
                     .collect();
                 format!("without bounds the trim is at {}", values.join(", "))
             }
@@ -124,23 +146,22 @@ impl<M: FlightModel> Vehicle<M> {
         let rate = self.units.label::<M::State>(nearest.worst);
         format!(
             "no trim with {}; {instead}; at the nearest point {} still changes by {} a second",
-            self.blocking(error).unwrap_or_default(),
+            self.blocking(error).join(" and "),
             nearest.worst,
             show(nearest.worst_residual(), rate)
         )
     }
 
-    /// The bounds that block a trim, for a person.
-    pub(crate) fn blocking(&self, error: &TrimError) -> Option<String> {
+    /// The bounds that block a trim, for a person; none if it is not for bounds.
+    pub(crate) fn blocking(&self, error: &TrimError) -> Vec<String> {
         let TrimError::Blocked { blocking, .. } = error else {
-            return None;
+            return Vec::new();
         };
         let bounds = blocking.iter().map(|it| {
             let relation = if it.upper { "<=" } else { ">=" };
             let bound = show(it.bound, self.units.label::<M::Input>(it.input));
             format!("{} {relation} {bound}", it.input)
         });
-        let bounds: Vec<String> = bounds.collect();
-        Some(bounds.join(" and "))
+        bounds.collect()
     }
 }

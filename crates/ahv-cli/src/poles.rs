@@ -21,9 +21,9 @@ use crate::output;
 use crate::place::Place;
 use crate::vehicle::{FlightModel, for_model};
 
-/// Poles of a model about its trim, with their modes, and zeros from u = (delta_e, phi) to y = (velocity, gamma).
+/// Poles of a model about its trim, with their modes, and zeros from u = (phi, delta_e) to y = (velocity, gamma).
 ///
-/// Zeros are those of the system pencil, by a generalised eigenvalue problem. Modes are told by participation factors.
+/// Zeros are the invariant zeros, by a staircase reduction of the system pencil. Participation factors name the modes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_INPUTS)]
     inputs: Vec<String>,
 
-    /// Outputs of the zeros, as many states as inputs
+    /// Outputs of the zeros, states
     #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_OUTPUTS)]
     outputs: Vec<String>,
 
@@ -82,6 +82,8 @@ struct Json<'a> {
     modes: Vec<JsonMode>,
     zero_details: Vec<JsonZero>,
     zeros_at_infinity: usize,
+    normal_rank: usize,
+    infinite_zero_orders: &'a [usize],
     zero_count: String,
     inputs: &'a [&'static str],
     outputs: &'a [&'static str],
@@ -112,10 +114,7 @@ fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Re
     }
     let trim = vehicle.trim(&flight)?;
     let system = vehicle.linear(&trim, &arguments.inputs, &arguments.outputs)?;
-    let failed = |error: PolesError| match error {
-        PolesError::NotSquare { .. } => Failure::Request(format!("--inputs, --outputs: {error}")),
-        PolesError::NoConvergence => Failure::Numeric(format!("{}: {error}", M::NAME)),
-    };
+    let failed = |error: PolesError| Failure::Numeric(format!("{}: {error}", M::NAME));
     let roots = Roots {
         vehicle,
         place: vehicle.at(&flight),
@@ -154,24 +153,41 @@ fn decoupling(zero: &Zero) -> Option<&'static str> {
 impl<M: FlightModel> Roots<'_, M> {
     /// How many finite zeros there are, and why.
     fn count(&self) -> String {
-        let (finite, outputs) = (self.zeros.finite.len(), self.outputs.len());
-        let cancelled = self
-            .zeros
-            .finite
-            .iter()
-            .filter(|it| it.decoupling.is_some());
+        let Zeros {
+            finite,
+            normal_rank,
+            infinite_orders,
+            right_indices,
+            left_indices,
+        } = &self.zeros;
+        let (inputs, outputs) = (self.inputs.len(), self.outputs.len());
+        let rank = match *normal_rank < inputs.min(outputs) {
+            true => format!(
+                "the transfer matrix has rank {normal_rank} only: its {inputs} inputs cannot move its {outputs} outputs \
+                 apart from each other\n"
+            ),
+            false => String::new(),
+        };
+        let list = |numbers: &[usize]| {
+            let texts: Vec<String> = numbers.iter().map(usize::to_string).collect();
+            texts.join(", ")
+        };
+        let mut why = format!("{} states", M::State::LEN);
+        for (what, numbers) in [
+            ("orders of the infinite zeros", infinite_orders),
+            ("Kronecker indices of the inputs", right_indices),
+            ("Kronecker indices of the outputs", left_indices),
+        ] {
+            if numbers.iter().any(|&number| number > 0) {
+                why += &format!(" less the {what} ({})", list(numbers));
+            }
+        }
+        let cancelled = finite.iter().filter(|it| it.decoupling.is_some());
         let cancelled = match cancelled.count() {
             0 => String::new(),
             count => format!("; {count} of them are poles that inputs or outputs miss, and cancel"),
         };
-        let why = match self.zeros.regular {
-            true => format!(
-                "{} states less {outputs} outputs, for C B is regular",
-                M::State::LEN
-            ),
-            false => "C B is singular, so their number depends on the model".to_owned(),
-        };
-        format!("{finite} finite zeros: {why}{cancelled}")
+        format!("{rank}{} finite zeros: {why}{cancelled}", finite.len())
     }
 
     fn json(&self) -> Json<'_> {
@@ -195,7 +211,9 @@ impl<M: FlightModel> Roots<'_, M> {
             zeros: self.zeros.finite.iter().map(|it| pair(it.value)).collect(),
             modes: modes.collect(),
             zero_details: zeros.collect(),
-            zeros_at_infinity: self.zeros.infinite,
+            zeros_at_infinity: self.zeros.infinite(),
+            normal_rank: self.zeros.normal_rank,
+            infinite_zero_orders: &self.zeros.infinite_orders,
             zero_count: self.count(),
             inputs: &self.inputs,
             outputs: &self.outputs,

@@ -19,7 +19,7 @@ use report::Report;
 /// Finds the state and input of steady flight.
 ///
 /// A damped Newton method with the model's own Jacobian, from a cold start, phi and delta_e inside their validity box.
-/// Where there is no trim, it tells the nearest point and the bound that blocks, and ends with code 3.
+/// Where there is no trim, it reports the nearest point and the bounds that block, and ends with code 3.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]

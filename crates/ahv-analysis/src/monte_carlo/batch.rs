@@ -219,7 +219,7 @@ where
         while batch.step < self.until {
             batch.noise.fill(&mut normals, batch.step);
             if let Some(law) = &law {
-                law.apply(&x, &mut u);
+                law.apply(&x, &mut u, batch.step);
             }
             // A loop over members around code without branches: it becomes vector instructions.
             for lane in 0..LANES {

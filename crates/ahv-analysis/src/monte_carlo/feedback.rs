@@ -1,23 +1,41 @@
 //! State feedback through actuators, for all members of a batch at once.
 
-use ahv_core::Vector;
+use ahv_core::{DifferentiableModel, Real, Vector};
 
 use super::family::{Family, LANES, Packed};
 use crate::track::{Actuator, ActuatorStep};
 
-/// u = input − gain (x − state), through actuators.
+/// The state that climbs in a steady flight; all others stay.
+const CLIMBS: &str = "altitude";
+/// Largest rate of a state that stays, as a share of the terms of its drift, to first order.
+const STEADY: f64 = 1e-9;
+
+/// u = input − gain (x − state − rate t), through actuators; t counts from the start of the flight.
 ///
 /// Inputs without actuator are held.
 #[derive(Clone, Copy)]
 pub struct Feedback<F: Family> {
-    /// State of the trim.
+    /// State of the trim at the start.
     pub state: F::State<f64>,
+    /// Rate of the trim, per second: of a climb that of the altitude, else 0.
+    pub rate: F::State<f64>,
     /// Input of the trim.
     pub input: F::Input<f64>,
     /// Gain, row by row; the unit of an entry is that of the input over that of the state.
     pub gain: F::Input<F::State<f64>>,
     /// What moves each input.
     pub actuators: F::Input<Option<Actuator>>,
+}
+
+/// A state that does not follow its reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unsteady {
+    /// The state.
+    pub state: &'static str,
+    /// Its rate where the reference starts, per second.
+    pub rate: f64,
+    /// The rate that it should have, per second.
+    pub expected: f64,
 }
 
 /// A row of the law.
@@ -32,11 +50,45 @@ struct Row<F: Family> {
 #[derive(Clone, Copy)]
 pub(super) struct Law<F: Family> {
     state: F::State<f64>,
+    rate: F::State<f64>,
+    /// Whether the reference moves.
+    moves: bool,
+    dt: f64,
+    /// Steps that each member had flown before those that are counted.
+    flown: [u64; LANES],
     rows: F::Input<Option<Row<F>>>,
 }
 
 impl<F: Family> Feedback<F> {
-    pub(super) fn over(&self, dt: f64) -> Law<F> {
+    /// The first state of `model` that does not follow the reference: in a steady flight the altitude climbs, and all
+    /// other states stay.
+    pub fn unsteady<M>(&self, model: &M) -> Option<Unsteady>
+    where
+        M: DifferentiableModel<Scalar = f64, State = F::State<f64>, Input = F::Input<f64>>,
+    {
+        let drift = model.drift(&self.state, &self.input);
+        let (by_state, by_input) = model.jacobians(&self.state, &self.input);
+        F::State::<f64>::NAMES
+            .iter()
+            .enumerate()
+            .find_map(|(index, &state)| {
+                let (rate, own) = (drift.get(index)?, self.rate.get(index)?);
+                let expected = if state == CLIMBS { rate } else { 0.0 };
+                let row: F::State<f64> = by_state.get(index)?;
+                let terms = size(&row, &self.state) + size(&by_input.get(index)?, &self.input);
+                let follows = |rate: f64| (rate - expected).abs() <= STEADY * terms;
+                let rate = if follows(rate) { own } else { rate };
+                let unsteady = Unsteady {
+                    state,
+                    rate,
+                    expected,
+                };
+                (!follows(rate)).then_some(unsteady)
+            })
+    }
+
+    /// The law over steps of `dt`, for members that have flown some steps.
+    pub(super) fn over(&self, dt: f64, flown: [u64; LANES]) -> Law<F> {
         let rows = F::Input::from_fn(|index| {
             let actuator = self.actuators.get(index)??;
             Some(Row {
@@ -47,19 +99,38 @@ impl<F: Family> Feedback<F> {
         });
         Law {
             state: self.state,
+            rate: self.rate,
+            moves: self.rate.find(|rate| rate != 0.0).is_some(),
+            dt,
+            flown,
             rows,
         }
     }
 }
 
+/// Sum of the absolute products of two vectors' components.
+fn size<V: Vector<f64>>(slopes: &V, point: &V) -> f64 {
+    let terms = (0..V::LEN).filter_map(|index| Some(slopes.get(index)? * point.get(index)?));
+    terms.map(f64::abs).sum()
+}
+
 impl<F: Family> Law<F> {
-    /// Moves the inputs over one step, towards what the law wants at its start.
+    /// Moves the inputs over step number `step`, towards what the law wants at its start.
     #[inline(always)]
-    pub(super) fn apply(&self, x: &F::State<Packed>, u: &mut F::Input<Packed>) {
+    pub(super) fn apply(&self, x: &F::State<Packed>, u: &mut F::Input<Packed>, step: u64) {
         let mut deviation = *x;
         F::update_state(&mut deviation, self.state, |x, rest| {
             *x = *x - Packed::splat(rest);
         });
+        if self.moves {
+            let mut time = Packed::ZERO;
+            for lane in 0..LANES {
+                time.0[lane] = (self.flown[lane] + step) as f64 * self.dt;
+            }
+            F::update_state(&mut deviation, self.rate, |x, rate| {
+                *x = *x - Packed::splat(rate) * time;
+            });
+        }
         // No closure around this: it would be too large to be inlined.
         for index in 0..F::Input::<Packed>::LEN {
             let (Some(mut position), Some(Some(row))) = (u.get(index), self.rows.get(index)) else {
@@ -75,5 +146,51 @@ impl<F: Family> Law<F> {
             // The index is one of the input's own.
             let _ = u.set(index, position);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ahv_core::{Bounds, Vector};
+    use ahv_models::sdcom::{Input, State};
+
+    use super::{Actuator, Feedback, LANES, Packed, Real};
+    use crate::monte_carlo::Sdcom;
+
+    /// A member that flies on from step 40 sees the reference of step 40.
+    #[test]
+    fn the_reference_moves_from_the_start_of_each_member() {
+        let actuator = Actuator {
+            bandwidth: 20.0,
+            rate: 1.0,
+            bounds: Bounds::new(-1.0, 1.0),
+        };
+        let mut gain: Input<State<f64>> = Vector::splat(Vector::splat(0.0));
+        gain.delta_e.altitude = 1e-3;
+        let feedback = Feedback::<Sdcom> {
+            state: State::splat(0.0),
+            rate: State {
+                altitude: 134.0,
+                ..State::splat(0.0)
+            },
+            input: Input::splat(0.0),
+            gain,
+            actuators: Input {
+                delta_e: Some(actuator),
+                ..Input::splat(None)
+            },
+        };
+        let moved = |flown: [u64; LANES], step| {
+            let mut u = Input::splat(Packed::ZERO);
+            let law = feedback.over(0.01, flown);
+            law.apply(&State::splat(Packed::ZERO), &mut u, step);
+            u.delta_e.0
+        };
+        let mut flown = [0; LANES];
+        flown[1] = 40;
+        let (on, later) = (moved(flown, 0), moved([0; LANES], 40));
+        assert_eq!(on[0], 0.0);
+        assert_eq!(on[1], later[1]);
+        assert!(on[1] > 1e-3, "{on:?}");
     }
 }

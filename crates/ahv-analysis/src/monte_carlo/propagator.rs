@@ -243,7 +243,7 @@ where
         let law = experiment
             .feedback
             .as_ref()
-            .map(|feedback| feedback.over(experiment.dt));
+            .map(|feedback| feedback.over(experiment.dt, flying.map(|particle| particle.step)));
         let watches = experiment.watched.iter();
         let watches = watches.map(|&bounds| Watch::new(bounds)).collect();
         Ok(Batch::new(

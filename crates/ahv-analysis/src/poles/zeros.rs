@@ -1,35 +1,50 @@
-//! Zeros, by the generalised eigenvalue problem of the system pencil.
+//! Invariant zeros, by a staircase reduction of the system pencil.
 
 use faer::Mat;
 use faer::linalg::solvers::GeneralizedEigen;
 use nalgebra::{Complex, DMatrix};
 
 use super::balance::{balance, similar};
+use super::staircase::{Quadruple, reduce};
 use super::{PolesError, frequency, told_from_zero};
 use crate::linearize::LinearSystem;
 
-/// A zero is infinite when |β| is at most this share of |α| + |β|.
-const INFINITE: f64 = 1e-10;
+/// An entry up to this many roundings of the whole pencil counts as 0 in a rank.
+const ROUNDINGS: f64 = 100.0;
+
+/// Rows below which faer's QZ algorithm has no workspace.
+const FEWEST_ROWS: usize = 3;
 
 /// Singular value, as a share of the largest, below which a rank is lost.
 const RANK: f64 = 1e-9;
 
-/// Zeros of a square system.
+/// Zeros of a system, and its structure at infinity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Zeros {
-    /// Finite zeros, by rising frequency.
+    /// Finite zeros, by rising frequency, multiple ones several times.
     pub finite: Vec<Zero>,
-    /// Infinite eigenvalues of the pencil.
-    pub infinite: usize,
-    /// Whether C B is regular, with D = 0. Every output then answers to the inputs in its first derivative, and there
-    /// are exactly as many finite zeros as states less outputs.
-    pub regular: bool,
+    /// Rank of the transfer matrix for almost every s.
+    pub normal_rank: usize,
+    /// Orders of the infinite zeros, ascending: how many integrations lie between the inputs and outputs.
+    pub infinite_orders: Vec<usize>,
+    /// Right Kronecker indices, ascending: one for each input beyond the rank.
+    pub right_indices: Vec<usize>,
+    /// Left Kronecker indices, ascending: one for each output beyond the rank.
+    pub left_indices: Vec<usize>,
+}
+
+impl Zeros {
+    /// Infinite eigenvalues of the pencil: one more than its order for each infinite zero, and one for each direct path
+    /// from an input to an output.
+    pub fn infinite(&self) -> usize {
+        self.normal_rank + self.infinite_orders.iter().sum::<usize>()
+    }
 }
 
 /// A finite zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zero {
-    /// The eigenvalue of the pencil, 1/s.
+    /// Where the pencil loses rank, 1/s.
     pub value: Complex<f64>,
     /// Where the zero is a pole that inputs or outputs miss: it cancels, and is no zero of the transfer matrix.
     pub decoupling: Option<Decoupling>,
@@ -44,38 +59,27 @@ pub enum Decoupling {
     Output,
 }
 
-/// Invariant zeros of `system`: the s for which [A − s I, B; C, D] is singular. Those that do not decouple are its
-/// transmission zeros.
+/// Invariant zeros of `system`: the s at which [A − s I, B; C, D] has a lower rank than elsewhere. Those that do not
+/// decouple are its transmission zeros. There may be any numbers of inputs and outputs.
 ///
-/// The pencil is balanced by powers of two, and nothing is divided before a zero is known to be finite. A zero that
-/// rounding cannot tell from 0 is 0.
+/// The pencil is balanced by powers of two, so that units do not matter. Its infinite and singular parts are taken away
+/// by orthogonal transformations before an eigenvalue is computed. A zero that rounding cannot tell from 0 is 0.
 ///
 /// # Errors
 ///
 /// [`PolesError`]
 pub fn zeros(system: &LinearSystem) -> Result<Zeros, PolesError> {
-    let (n, inputs, outputs) = (system.a.nrows(), system.b.ncols(), system.c.nrows());
-    if inputs != outputs {
-        return Err(PolesError::NotSquare { inputs, outputs });
-    }
-    let matrix = balanced(system);
-    let size = n + inputs;
-    let left = Mat::from_fn(size, size, |row, column| matrix[(row, column)]);
-    let right = Mat::from_fn(size, size, |row, column| {
-        f64::from(u8::from(row == column && row < n))
-    });
-    let solved = GeneralizedEigen::new_from_real(left.as_ref(), right.as_ref())
-        .map_err(|_| PolesError::NoConvergence)?;
-    let (alphas, betas) = (solved.S_a().column_vector(), solved.S_b().column_vector());
-    let mut finite: Vec<Zero> = (0..size)
-        .map(|index| (alphas[index], betas[index]))
-        .filter(|&(alpha, beta)| {
-            let (alpha, beta) = (frequency(alpha), frequency(beta));
-            beta > INFINITE * (alpha + beta)
-        })
-        .map(|(alpha, beta)| {
-            let value = told_from_zero(alpha / beta, &matrix);
-            let decoupling = decoupling(&matrix, n, value);
+    let balanced = balanced(system);
+    let pencil = balanced.pencil();
+    let size = pencil.nrows().max(pencil.ncols()) as f64;
+    let tolerance = ROUNDINGS * f64::EPSILON * size * pencil.norm();
+    let n = balanced.a.nrows();
+    let reduced = reduce(balanced, tolerance).ok_or(PolesError::AmbiguousRank)?;
+    let mut finite: Vec<Zero> = finite(&reduced.regular)?
+        .into_iter()
+        .map(|value| {
+            let value = told_from_zero(value, &pencil);
+            let decoupling = decoupling(&pencil, n, value);
             Zero { value, decoupling }
         })
         .collect();
@@ -83,35 +87,110 @@ pub fn zeros(system: &LinearSystem) -> Result<Zeros, PolesError> {
         let frequencies = frequency(a.value).total_cmp(&frequency(b.value));
         frequencies.then(b.value.im.total_cmp(&a.value.im))
     });
-    let gain = matrix.view((n, 0), (outputs, n)) * matrix.view((0, n), (n, inputs));
     Ok(Zeros {
-        infinite: size - finite.len(),
         finite,
-        regular: full_rank(gain.map(Complex::from)) && system.d.iter().all(|&it| it == 0.0),
+        normal_rank: reduced.regular.d.nrows(),
+        infinite_orders: reduced.infinite_orders,
+        right_indices: reduced.right_indices,
+        left_indices: reduced.left_indices,
     })
 }
 
-/// [A, B; C, D] with the states, inputs and outputs scaled so that E = [I, 0; 0, 0] stays what it is.
-fn balanced(system: &LinearSystem) -> DMatrix<f64> {
-    let (n, m) = (system.a.nrows(), system.b.ncols());
-    let mut matrix = DMatrix::zeros(n + m, n + m);
-    matrix.view_mut((0, 0), (n, n)).copy_from(&system.a);
-    matrix.view_mut((0, n), (n, m)).copy_from(&system.b);
-    matrix.view_mut((n, 0), (m, n)).copy_from(&system.c);
-    matrix.view_mut((n, n), (m, m)).copy_from(&system.d);
-    similar(&matrix, &balance(&matrix))
+impl Quadruple {
+    /// [a, b; c, d].
+    fn pencil(&self) -> DMatrix<f64> {
+        let (n, m, p) = (self.a.nrows(), self.b.ncols(), self.c.nrows());
+        let mut pencil = DMatrix::zeros(n + p, n + m);
+        pencil.view_mut((0, 0), (n, n)).copy_from(&self.a);
+        pencil.view_mut((0, n), (n, m)).copy_from(&self.b);
+        pencil.view_mut((n, 0), (p, n)).copy_from(&self.c);
+        pencil.view_mut((n, n), (p, m)).copy_from(&self.d);
+        pencil
+    }
+}
+
+/// The system with the effect of each input and each output of about unit length, then with its states balanced.
+fn balanced(system: &LinearSystem) -> Quadruple {
+    let (n, m, p) = (system.a.nrows(), system.b.ncols(), system.c.nrows());
+    let mut scaled = Quadruple {
+        a: system.a.clone(),
+        b: system.b.clone(),
+        c: system.c.clone(),
+        d: system.d.clone(),
+    };
+    for input in 0..m {
+        let factor = unit(scaled.b.column(input).norm());
+        scaled.b.column_mut(input).scale_mut(factor);
+        scaled.d.column_mut(input).scale_mut(factor);
+    }
+    for output in 0..p {
+        let factor = unit(scaled.c.row(output).norm());
+        scaled.c.row_mut(output).scale_mut(factor);
+        scaled.d.row_mut(output).scale_mut(factor);
+    }
+    // Outputs without column and inputs without row keep their scale.
+    let mut square = DMatrix::zeros(n + m + p, n + m + p);
+    square.view_mut((0, 0), (n, n)).copy_from(&scaled.a);
+    square.view_mut((0, n), (n, m)).copy_from(&scaled.b);
+    square.view_mut((n + m, 0), (p, n)).copy_from(&scaled.c);
+    let square = similar(&square, &balance(&square));
+    Quadruple {
+        a: square.view((0, 0), (n, n)).into_owned(),
+        b: square.view((0, n), (n, m)).into_owned(),
+        c: square.view((n + m, 0), (p, n)).into_owned(),
+        d: scaled.d,
+    }
+}
+
+/// The power of two that brings `norm` near 1; 1 for 0.
+fn unit(norm: f64) -> f64 {
+    if norm > 0.0 {
+        (-norm.log2().round()).exp2()
+    } else {
+        1.0
+    }
+}
+
+/// Zeros of a system whose d is square and regular: eigenvalues of the pencil on the kernel of [c, d].
+fn finite(system: &Quadruple) -> Result<Vec<Complex<f64>>, PolesError> {
+    let (n, rank) = (system.a.nrows(), system.d.nrows());
+    if n == 0 {
+        return Ok(Vec::new());
+    }
+    let pencil = system.pencil();
+    let mut kernel = DMatrix::identity(n + rank, n + rank);
+    if rank > 0 {
+        let outputs = pencil.rows_range(n..).transpose();
+        outputs.qr().q_tr_mul(&mut kernel);
+    }
+    let kernel = kernel.rows_range(rank..).transpose();
+    let carried = pencil.rows_range(..n) * &kernel;
+    if n < FEWEST_ROWS {
+        let square = kernel.rows(0, n).into_owned();
+        let matrix = square.lu().solve(&carried);
+        let roots = matrix.map(|matrix| matrix.complex_eigenvalues().as_slice().to_vec());
+        return roots.ok_or(PolesError::NoConvergence);
+    }
+    let left = Mat::from_fn(n, n, |row, column| carried[(row, column)]);
+    let right = Mat::from_fn(n, n, |row, column| kernel[(row, column)]);
+    let solved = GeneralizedEigen::new_from_real(left.as_ref(), right.as_ref())
+        .map_err(|_| PolesError::NoConvergence)?;
+    let (alphas, betas) = (solved.S_a().column_vector(), solved.S_b().column_vector());
+    let roots = (0..n).map(|index| alphas[index] / betas[index]);
+    let roots: Vec<Complex<f64>> = roots.collect();
+    let sound = roots.iter().all(|root| frequency(*root).is_finite());
+    sound.then_some(roots).ok_or(PolesError::NoConvergence)
 }
 
 /// Whether [A − s I, B] or [A − s I; C] loses rank at the zero s.
-fn decoupling(matrix: &DMatrix<f64>, n: usize, zero: Complex<f64>) -> Option<Decoupling> {
-    let size = matrix.nrows();
-    let mut shifted = matrix.map(Complex::from);
+fn decoupling(pencil: &DMatrix<f64>, n: usize, zero: Complex<f64>) -> Option<Decoupling> {
+    let mut shifted = pencil.map(Complex::from);
     for i in 0..n {
         shifted[(i, i)] -= zero;
     }
-    if !full_rank(shifted.view((0, 0), (n, size)).into_owned()) {
+    if !full_rank(shifted.rows_range(..n).into_owned()) {
         Some(Decoupling::Input)
-    } else if !full_rank(shifted.view((0, 0), (size, n)).into_owned()) {
+    } else if !full_rank(shifted.columns_range(..n).into_owned()) {
         Some(Decoupling::Output)
     } else {
         None

@@ -80,7 +80,7 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
         }
         // Accelerations along and across the path weigh alike: V̇ as V γ̇.
         if let [Some(along), Some(across), _] = rigid {
-            system.row_scale[along] = system.row_scale[across] / flight.velocity.abs();
+            system.row_scale[along] = system.row_scale[across] / flight.velocity;
         }
         Ok(system)
     }
@@ -157,6 +157,22 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
         pairs.all(|(bounds, value)| bounds.contains(value))
     }
 
+    /// The bounds outside which the sought inputs lie.
+    pub(super) fn violated(&self, point: &Point<M>) -> Vec<Blocking> {
+        let values = self.sought_inputs(point);
+        let inputs = SOUGHT_INPUTS.into_iter().zip(values).zip(&self.bounds);
+        let violated = inputs.filter_map(|((input, value), bounds)| {
+            let upper = value > bounds.max;
+            let bound = if upper { bounds.max } else { bounds.min };
+            (upper || value < bounds.min).then_some(Blocking {
+                input,
+                bound,
+                upper,
+            })
+        });
+        violated.collect()
+    }
+
     /// `point` with the sought inputs moved into their bounds.
     pub(super) fn clamped(&self, point: &Point<M>) -> Point<M> {
         let Point { x, mut u } = *point;
@@ -201,15 +217,19 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
 
     pub(super) fn describe(&self, point: &Point<M>, iterations: usize) -> Nearest {
         let residuals = self.residuals(point);
-        let scaled = self.residual(point);
-        let worst = scaled.and_then(|scaled| self.rows.get(scaled.iamax()).copied());
+        let scaled = self.scaled(&self.model.drift(&point.x, &point.u));
+        let size = |index: usize| residuals.get(self.rows[index]).map_or(0.0, f64::abs);
+        // Where scaled ones are no numbers, the largest of those before scaling.
+        let beyond = (0..self.rows.len()).filter(|&index| !scaled[index].is_finite());
+        let beyond = beyond.max_by(|&a, &b| size(a).total_cmp(&size(b)));
+        let worst = self.rows.get(beyond.unwrap_or_else(|| scaled.iamax()));
         Nearest {
             state: named(&point.x),
             input: named(&point.u),
             residuals: named(&residuals),
             residual_max: largest(&residuals),
             worst: worst
-                .and_then(|row| M::State::NAMES.get(row).copied())
+                .and_then(|&row| M::State::NAMES.get(row).copied())
                 .unwrap_or_default(),
             iterations,
         }

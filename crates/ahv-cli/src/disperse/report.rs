@@ -61,13 +61,15 @@ struct JsonSensitivity {
 fn reason(error: &SolutionError) -> String {
     match error {
         SolutionError::Trim(TrimError::Blocked { blocking, .. }) => {
-            let inputs: Vec<String> = blocking
+            let mut inputs: Vec<String> = blocking
                 .iter()
                 .map(|it| {
                     let side = if it.upper { "upper" } else { "lower" };
                     format!("{side} bound of {}", it.input)
                 })
                 .collect();
+            // In one order, whichever was met first.
+            inputs.sort();
             format!("no trim: {}", inputs.join(" and "))
         }
         SolutionError::Trim(TrimError::NoConvergence { .. }) => {

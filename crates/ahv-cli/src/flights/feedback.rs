@@ -1,19 +1,18 @@
 //! A state feedback from a file of gains, as `ahv lqr --out` writes it.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use ahv_analysis::monte_carlo::{Feedback, Flown};
 use ahv_analysis::track::Actuator;
+use ahv_analysis::trim::SteadyFlight;
 use ahv_core::Vector;
-use clap::Args;
-use serde_json::Value;
+use clap::{Args, ValueEnum};
 
 use super::Pair;
 use crate::assignment::Assignments;
 use crate::condition::Vehicle;
-use crate::failure::Failure;
-use crate::names;
+use crate::failure::{Failure, complain};
+use crate::gains::Gains;
 
 /// Bandwidth of the actuators, in rad/s, unless another is given.
 const BANDWIDTH: f64 = 20.0;
@@ -23,9 +22,13 @@ const RATE: f64 = 1.0;
 /// State feedback.
 #[derive(Args)]
 pub(super) struct FeedbackArguments {
-    /// File of gains as `ahv lqr --out` writes it: inputs follow u = input - gain (x - state) through actuators
+    /// File of gains as `ahv lqr --out` writes it: inputs follow u = input - gain (x - state - state_rate t) through actuators
     #[arg(long, value_name = "FILE")]
     feedback: Option<PathBuf>,
+
+    /// Gains of another model, set, choice, table or flight condition
+    #[arg(long, value_enum, default_value_t = Mismatch::Refuse, requires = "feedback")]
+    feedback_mismatch: Mismatch,
 
     /// Bandwidth of the actuators in rad/s, a lag of first order
     #[arg(long, value_name = "RAD_S", default_value_t = BANDWIDTH, requires = "feedback", value_parser = crate::simulate::grid::positive, allow_negative_numbers = true)]
@@ -41,27 +44,62 @@ pub(super) struct FeedbackArguments {
     actuator_rate: Vec<String>,
 }
 
+/// What becomes of gains that were designed for another vehicle or flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Mismatch {
+    /// They are an error
+    Refuse,
+    /// They are flown, with a note
+    Allow,
+}
+
 impl FeedbackArguments {
     /// The feedback, if there is one. Actuators move within the validity box of the inputs.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] for a file that is no file of gains for this model, or was designed for another vehicle or
+    /// flight.
     pub(super) fn read<M: Pair<F>, F: Flown>(
         &self,
         vehicle: &Vehicle<M>,
+        flight: &SteadyFlight<F::Input<f64>>,
     ) -> Result<Option<Feedback<F>>, Failure> {
         let Some(path) = &self.feedback else {
             return Ok(None);
         };
         let fault = |what: &str| Failure::Request(format!("--feedback {}: {what}", path.display()));
-        let gains = gains(path).map_err(|what| fault(&what))?;
-        let system = gains["unit_system"].as_str().unwrap_or_default();
-        if system != vehicle.units.name() {
-            return Err(fault(&format!(
-                "its gains are in {system}, the flights in {}; see --units",
-                vehicle.units.name()
-            )));
+        let gains = Gains::read(path, vehicle, flight).map_err(|what| fault(&what))?;
+        let feedback = self.law::<M, F>(vehicle, &gains)?;
+        let mut differences = gains.differences(vehicle, flight);
+        if let Some(unsteady) = feedback.unsteady(&vehicle.model) {
+            let unit = vehicle.units.label::<F::State<f64>>(unsteady.state);
+            differences.push(format!(
+                "a reference that is no equilibrium of the flights: {} changes by {:?} {unit} a second, in a steady flight by \
+                 {:?}",
+                unsteady.state, unsteady.rate, unsteady.expected
+            ));
         }
-        let [states, inputs] = ["states", "inputs"].map(|key| texts(&gains[key]));
-        let columns = positions::<F::State<f64>>("state", &states).map_err(|what| fault(&what))?;
-        let rows = positions::<F::Input<f64>>("input", &inputs).map_err(|what| fault(&what))?;
+        if differences.is_empty() {
+            return Ok(Some(feedback));
+        }
+        let what = format!("its gains have {}", differences.join("; "));
+        if self.feedback_mismatch == Mismatch::Allow {
+            complain(&format!("note: --feedback {}: {what}", path.display()));
+            return Ok(Some(feedback));
+        }
+        Err(fault(&format!(
+            "{what}. What to do: {}",
+            Gains::remedy(vehicle, flight)
+        )))
+    }
+
+    /// The law of gains that fit the model.
+    fn law<M: Pair<F>, F: Flown>(
+        &self,
+        vehicle: &Vehicle<M>,
+        gains: &Gains,
+    ) -> Result<Feedback<F>, Failure> {
         let mut rates = F::Input::splat(RATE);
         Assignments::parse::<F::Input<f64>>("--actuator-rate", &self.actuator_rate, vehicle.units)?
             .apply(&mut rates, &[]);
@@ -72,16 +110,14 @@ impl FeedbackArguments {
         }
         let mut gain = F::Input::splat(F::State::splat(0.0));
         let mut actuators = F::Input::splat(None);
-        for (index, &input) in rows.iter().enumerate() {
-            let mut row = F::State::splat(0.0);
-            for (column, &state) in columns.iter().enumerate() {
-                let value = gains["gain"][index][column].as_f64();
-                row.set(
-                    state,
-                    value.ok_or_else(|| fault("its gain lacks a number"))?,
-                );
-            }
-            gain.set(input, row);
+        for (name, row) in gains.inputs.iter().zip(&gains.gain) {
+            let Some(input) = F::Input::<f64>::index_of(name) else {
+                continue;
+            };
+            gain.set(
+                input,
+                F::State::from_fn(|state| row.get(state).copied().unwrap_or(0.0)),
+            );
             let bounds = vehicle.input_bounds.get(input);
             actuators.set(
                 input,
@@ -92,50 +128,12 @@ impl FeedbackArguments {
                 }),
             );
         }
-        Ok(Some(Feedback {
-            state: named(&gains["state"]).map_err(|what| fault(&what))?,
-            input: named(&gains["input"]).map_err(|what| fault(&what))?,
+        Ok(Feedback {
+            state: gains.state.vector(),
+            rate: gains.state_rate.vector(),
+            input: gains.input.vector(),
             gain,
             actuators,
-        }))
+        })
     }
-}
-
-fn gains(path: &Path) -> Result<Value, String> {
-    let text = fs::read_to_string(path).map_err(|error| error.to_string())?;
-    serde_json::from_str(&text).map_err(|error| format!("it is no JSON: {error}"))
-}
-
-fn texts(value: &Value) -> Vec<String> {
-    let texts = value
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str);
-    texts.map(str::to_owned).collect()
-}
-
-/// Indices of the components with these names.
-fn positions<V: Vector<f64>>(kind: &str, names: &[String]) -> Result<Vec<usize>, String> {
-    if names.is_empty() {
-        return Err(format!(
-            "it names no {kind}s; `ahv lqr --out` writes such a file"
-        ));
-    }
-    let index =
-        |name: &String| V::index_of(name).ok_or_else(|| names::unknown(kind, name, V::NAMES));
-    names.iter().map(index).collect()
-}
-
-/// A vector from its components by name.
-fn named<V: Vector<f64>>(value: &Value) -> Result<V, String> {
-    let mut vector = V::splat(0.0);
-    for (index, name) in V::NAMES.iter().enumerate() {
-        let number = value[*name].as_f64();
-        vector.set(
-            index,
-            number.ok_or_else(|| format!("it has no number for {name} of the trim"))?,
-        );
-    }
-    Ok(vector)
 }

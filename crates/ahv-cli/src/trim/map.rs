@@ -103,8 +103,13 @@ impl<'a, M: FlightModel> Map<'a, M> {
 
     /// Why a point does not trim, in a few words.
     fn why(&self, error: &TrimError) -> String {
-        let blocking = self.vehicle.blocking(error);
-        blocking.unwrap_or_else(|| "no convergence".to_owned())
+        let mut bounds = self.vehicle.blocking(error);
+        // In one order, whichever was met first.
+        bounds.sort();
+        match bounds.as_slice() {
+            [] => "no convergence".to_owned(),
+            bounds => bounds.join(" and "),
+        }
     }
 
     /// What blocks, and how often, in the order in which it is met.

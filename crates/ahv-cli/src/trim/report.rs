@@ -39,6 +39,7 @@ pub(super) struct Json<'a> {
     converged: bool,
     reason: Option<String>,
     blocking_bound: Option<String>,
+    blocking_bounds: Vec<String>,
     alpha_deg: Option<f64>,
     phi: Option<f64>,
     delta_e_deg: Option<f64>,
@@ -91,6 +92,8 @@ impl<'a, M: FlightModel> Report<'a, M> {
         let state = |name| found.and_then(|it| it.state.get(M::State::index_of(name)?));
         let input = |name| found.and_then(|it| it.input.get(M::Input::index_of(name)?));
         let outside = self.outside();
+        let bounds = self.error.map(|error| vehicle.blocking(error));
+        let bounds = bounds.unwrap_or_default();
         Json {
             heading: vehicle.heading(),
             velocity: self.flight.velocity,
@@ -98,7 +101,8 @@ impl<'a, M: FlightModel> Report<'a, M> {
             gamma_deg: self.flight.gamma.to_degrees(),
             converged: self.error.is_none(),
             reason: self.error.map(|error| vehicle.no_trim(error)),
-            blocking_bound: self.error.and_then(|error| vehicle.blocking(error)),
+            blocking_bound: bounds.first().cloned(),
+            blocking_bounds: bounds,
             alpha_deg: state("alpha").map(f64::to_degrees),
             phi: input("phi"),
             delta_e_deg: input("delta_e").map(f64::to_degrees),

@@ -8,7 +8,7 @@ use crate::bench::{fail, json, number, numbers, text};
 fn the_matrices_are_labelled() {
     let system = json(&["linearize", "--model", "com_rigid"]);
     assert_eq!(system["states"].as_array().map(Vec::len), Some(5));
-    assert_eq!(system["inputs"], serde_json::json!(["delta_e", "phi"]));
+    assert_eq!(system["inputs"], serde_json::json!(["phi", "delta_e"]));
     assert_eq!(system["outputs"], serde_json::json!(["velocity", "gamma"]));
     // Kinematics: h' = V gamma, alpha' = Q - gamma'.
     let a = |row: usize| numbers(&system["A"][row]);
@@ -81,6 +81,7 @@ fn files_hold_the_same_matrices() {
     let cell = |row: usize, column: usize| rows[row][column].parse().expect("a number");
     same(cell(1, 4), &system["A"][0][3]);
     same(cell(5, 10), &system["B"][4][1]);
+    assert_eq!(rows[0][9..], ["phi [1]", "delta_e [rad]"]);
 
     write("sdcom.mat");
     let mat = fs::read(path("sdcom.mat")).expect("it is written");
@@ -91,7 +92,38 @@ fn files_hold_the_same_matrices() {
     let double = |at: usize| f64::from_le_bytes(mat[at..at + 8].try_into().expect("eight bytes"));
     same(double(22 + 8 * (3 * 8)), &system["A"][0][3]);
     let (square, tall) = (22 + 8 * 64, 22 + 8 * 16);
-    assert_eq!(mat.len(), square + 2 * tall + 22 + 8 * 4);
+    let labels = square + 2 * tall + 22 + 8 * 4;
+    // The names as rows of characters, column by column: bytes, text.
+    let list = |at: usize, name: &str, rows: usize, columns: usize| {
+        let head = [51, rows as i32, columns as i32, 0, name.len() as i32 + 1];
+        assert_eq!([0, 4, 8, 12, 16].map(|offset| int(at + offset)), head);
+        let text = at + 21 + name.len();
+        assert_eq!(&mat[at + 20..text - 1], name.as_bytes());
+        let row = |row| -> Vec<u8> {
+            (0..columns)
+                .map(|column| mat[text + column * rows + row])
+                .collect()
+        };
+        let rows: Vec<String> = (0..rows)
+            .map(|index| {
+                String::from_utf8(row(index))
+                    .expect("text")
+                    .trim_end()
+                    .to_owned()
+            })
+            .collect();
+        (rows.join(" "), text + columns * rows.len())
+    };
+    let (states, next) = list(labels, "states", 8, 10);
+    let expected = "velocity altitude gamma alpha pitch_rate chi_1 chi_2 chi_3";
+    assert_eq!(states, expected);
+    let (inputs, next) = list(next, "inputs", 2, 7);
+    let (outputs, end) = list(next, "outputs", 2, 8);
+    assert_eq!(
+        (inputs.as_str(), outputs.as_str()),
+        ("phi delta_e", "velocity gamma")
+    );
+    assert_eq!(mat.len(), end);
 
     fail(
         &["linearize", "--model", "sdcom", "--out", &path("sdcom.xls")],

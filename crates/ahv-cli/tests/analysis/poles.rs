@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::bench::{fail, json, number, numbers, text};
+use crate::bench::{json, number, numbers, text};
 
 fn named<'a>(roots: &'a Value, name: &str) -> Vec<&'a Value> {
     let modes = roots["modes"].as_array().expect("modes");
@@ -92,10 +92,33 @@ fn the_picture_and_the_table_are_written() {
 }
 
 #[test]
-fn outputs_and_inputs_must_be_as_many() {
-    fail(
-        &["poles", "--model", "dcom", "--outputs", "gamma"],
-        2,
-        &["as many outputs as inputs", "not 1 and 2"],
-    );
+fn a_pair_without_full_rank_says_so() {
+    let words = ["poles", "--model", "dcom", "--outputs", "altitude,gamma"];
+    let roots = json(&words);
+    assert_eq!(roots["normal_rank"], 1);
+    assert_eq!(roots["zeros"].as_array().map(Vec::len), Some(0));
+    let told = text(&words);
+    let part = "the transfer matrix has rank 1 only: its 2 inputs cannot move its 2 outputs apart";
+    assert!(told.contains(part), "{told}");
+    assert!(told.contains("0 finite zeros: 11 states less"), "{told}");
+}
+
+#[test]
+fn single_pairs_have_the_zeros_that_exist() {
+    let slaved = ["poles", "--model", "dcom", "--canard", "slaved"];
+    let pair = ["--inputs", "delta_e", "--outputs", "altitude"];
+    let roots = json(&[&slaved[..], &pair].concat());
+    assert_eq!(roots["zeros"].as_array().map(Vec::len), Some(8));
+    assert_eq!(roots["infinite_zero_orders"], serde_json::json!([3]));
+    assert_eq!(roots["zeros_at_infinity"], 4);
+    let rigid = json(&[
+        "poles",
+        "--model",
+        "com_rigid",
+        "--outputs",
+        "altitude,alpha",
+    ]);
+    assert_eq!(rigid["zeros"].as_array().map(Vec::len), Some(1));
+    let tall = json(&["poles", "--model", "dcom", "--inputs", "phi"]);
+    assert_eq!(tall["normal_rank"], 1);
 }

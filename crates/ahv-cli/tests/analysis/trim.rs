@@ -113,6 +113,8 @@ fn where_there_is_no_trim_the_nearest_point_and_the_bound_are_told() {
     let trim: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(trim["converged"], false);
     assert_eq!(trim["blocking_bound"], "delta_e <= 20 deg");
+    let bounds = trim["blocking_bounds"].as_array().expect("a list");
+    assert_eq!(bounds[0], trim["blocking_bound"]);
     assert_eq!(number(&trim["delta_e_deg"]), 20.0);
     assert!(
         trim["reason"]
@@ -126,15 +128,67 @@ fn where_there_is_no_trim_the_nearest_point_and_the_bound_are_told() {
         told.contains("dcom: no trim") && told.contains("at the nearest point:"),
         "{told}"
     );
+}
 
-    let still = fail(
-        &["trim", "--model", "dcom", "--velocity", "0", "--json"],
-        3,
-        &["the derivative of gamma", "0 ft/s"],
+#[test]
+fn flight_conditions_without_steady_flight_are_refused_everywhere() {
+    let commands: [&[&str]; 6] = [
+        &["trim"],
+        &["linearize"],
+        &["poles"],
+        &["lqr"],
+        &["covariance", "--t-end", "1"],
+        &["montecarlo", "--members", "8", "--t-end", "1"],
+    ];
+    for command in commands {
+        for (option, word) in [
+            ("--velocity=-7702", "above 0"),
+            ("--velocity=0", "above 0"),
+            ("--gamma=180", "between -90 deg and 90 deg"),
+            ("--gamma=-90", "between -90 deg and 90 deg"),
+        ] {
+            let words = [command, &["--model", "sdcom", option]].concat();
+            let output = fail(&words, 2, &["outside the domain of steady flight", word]);
+            assert!(output.stdout.is_empty(), "{words:?}");
+        }
+    }
+    let words = ["trim", "--model", "dcom", "--velocity", "1e-300"];
+    let output = fail(&words, 3, &["the derivative of gamma is still -"]);
+    assert!(output.stderr.len() < 300);
+}
+
+/// A trim that misses its bound by less than the usual digits shows more of them.
+#[test]
+fn a_bound_and_the_trim_beyond_look_different() {
+    let outcome = |altitude: &str| {
+        let words = [
+            "trim",
+            "--model",
+            "dcom",
+            "--velocity",
+            "7702",
+            "--altitude",
+            altitude,
+        ];
+        crate::bench::ahv(&words)
+    };
+    let (mut low, mut high) = (85_000.0_f64, 130_000.0_f64);
+    while high - low > 1e-6 {
+        let middle = 0.5 * (low + high);
+        if outcome(&middle.to_string()).status.success() {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let output = outcome(&high.to_string());
+    let message = crate::bench::stderr(&output);
+    assert!(
+        message.contains("no trim with delta_e <= 20 deg"),
+        "{message}"
     );
-    let still: serde_json::Value = serde_json::from_slice(&still.stdout).expect("JSON");
-    assert_eq!(still["converged"], false);
-    assert!(still["alpha_deg"].is_null(), "{still}");
+    assert!(!message.contains("delta_e = 20 deg"), "{message}");
+    assert!(message.contains("delta_e = 20.000000"), "{message}");
 }
 
 #[test]
