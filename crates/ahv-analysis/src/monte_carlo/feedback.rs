@@ -1,8 +1,10 @@
 //! State feedback through actuators, for all members of a batch at once.
 
 use ahv_core::Vector;
+use nalgebra::DMatrix;
 
 use super::family::{Family, LANES, Packed};
+use crate::covariance::Regulation;
 use crate::track::{Actuator, ActuatorStep};
 
 /// u = input − gain (x − state), through actuators.
@@ -36,6 +38,22 @@ pub(super) struct Law<F: Family> {
 }
 
 impl<F: Family> Feedback<F> {
+    /// The same law for a linear covariance: it acts all the time, and the actuators have no limits.
+    pub fn regulation(&self) -> Regulation<F::State<f64>, F::Input<f64>> {
+        let (inputs, states) = (F::Input::<f64>::LEN, F::State::<f64>::LEN);
+        let gain = |input, state| self.gain.get(input)?.get(state);
+        Regulation {
+            state: self.state,
+            input: self.input,
+            gain: DMatrix::from_fn(inputs, states, |input, state| {
+                gain(input, state).unwrap_or(0.0)
+            }),
+            bandwidth: F::map_input(&self.actuators, |actuator| {
+                actuator.map_or(0.0, |actuator| actuator.bandwidth)
+            }),
+        }
+    }
+
     pub(super) fn over(&self, dt: f64) -> Law<F> {
         let rows = F::Input::from_fn(|index| {
             let actuator = self.actuators.get(index)??;

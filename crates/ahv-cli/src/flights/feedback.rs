@@ -22,7 +22,7 @@ const RATE: f64 = 1.0;
 
 /// State feedback.
 #[derive(Args)]
-pub(super) struct FeedbackArguments {
+pub(crate) struct FeedbackArguments {
     /// File of gains as `ahv lqr --out` writes it: inputs follow u = input - gain (x - state) through actuators
     #[arg(long, value_name = "FILE")]
     feedback: Option<PathBuf>,
@@ -42,8 +42,13 @@ pub(super) struct FeedbackArguments {
 }
 
 impl FeedbackArguments {
+    /// Whether there is a file of gains.
+    pub(crate) const fn is_given(&self) -> bool {
+        self.feedback.is_some()
+    }
+
     /// The feedback, if there is one. Actuators move within the validity box of the inputs.
-    pub(super) fn read<M: Pair<F>, F: Flown>(
+    pub(crate) fn read<M: Pair<F>, F: Flown>(
         &self,
         vehicle: &Vehicle<M>,
     ) -> Result<Option<Feedback<F>>, Failure> {
