@@ -279,3 +279,6 @@ pub fn normal_density(x: f64, std: f64) -> f64 {
     let z = x / std;
     (-0.5 * z * z).exp() / (std * std::f64::consts::TAU.sqrt())
 }
+
+#[cfg(test)]
+mod tests;
