@@ -266,7 +266,8 @@ fn intervals_of_probabilities_cover_as_documented() {
 fn estimates(spread: &StateSpread) -> Option<[QuantileEstimate; 4]> {
     let place = |share| QUANTILES.iter().position(|&it| it == share);
     let [low, middle] = [0.005, 0.5].map(|share| spread.quantiles.get(place(share)?).copied());
-    Some([spread.mean?.into(), spread.std?.into(), low?, middle?])
+    let moments = [spread.mean?, spread.std?].map(|it| QuantileEstimate::from(Some(it)));
+    Some([moments[0], moments[1], low?, middle?])
 }
 
 /// Coverage of a state's intervals at the end, with one large ensemble as the truth.
