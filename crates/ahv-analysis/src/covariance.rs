@@ -85,7 +85,7 @@ pub enum CovarianceError {
     },
     /// A mode of the flight does not decay.
     #[error(
-        "there is no stationary covariance: the {mode} mode has the pole {real:+} {imaginary:+}i 1/s, which does not decay"
+        "there is no stationary covariance: the {mode} mode has the pole {real:+.6} {imaginary:+.6}i 1/s, which does not decay"
     )]
     UndampedMode {
         /// The mode.
@@ -98,6 +98,16 @@ pub enum CovarianceError {
     /// The poles could not be found.
     #[error(transparent)]
     Poles(#[from] PolesError),
+    /// A mode grows by a factor within the step.
+    #[error(
+        "before {time} s a mode grows too fast for the step of {dt} s: shorten it, or end before the flight diverges"
+    )]
+    StepTooLong {
+        /// In s.
+        time: f64,
+        /// The step, in s.
+        dt: f64,
+    },
     /// State or covariance is not finite: the step is too long, or the flight diverges.
     #[error("at {time} s the {what} of {name} is {value}")]
     Diverged {

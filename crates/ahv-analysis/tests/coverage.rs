@@ -94,7 +94,9 @@ impl Table {
             let agrees = told.len() == counts.len()
                 && counts.iter().zip(&told).all(|(count, told)| {
                     let told = told / 100.0;
-                    let error = (told * (1.0 - told) / count.trials as f64).sqrt();
+                    // No number of trials shows that a coverage is exactly 1.
+                    let trials = count.trials as f64;
+                    let error = ((told * (1.0 - told) + 1.0 / trials) / trials).sqrt();
                     (count.share() - told).abs() <= ERRORS * error + ROUNDING
                 });
             if !agrees {

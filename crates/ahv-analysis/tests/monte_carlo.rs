@@ -166,7 +166,11 @@ fn moments_and_quantiles_are_those_of_the_members() {
                 let [low, high] = sides.map(|side| side * spread.resolution);
                 assert!((low - 1e-9..=high + 1e-9).contains(&off), "{share}: {off}");
             };
-            near(found.value, expected.value, [-1.0, 1.0]);
+            // Between neighbouring numbers a quantile is a matter of definition.
+            let rank = share * members as f64;
+            let [below, above] = [rank.floor() as usize - 1, rank.ceil() as usize];
+            let range = sample[below] - spread.resolution..=sample[above] + spread.resolution;
+            assert!(range.contains(&found.value.expect("a value")), "{share}");
             near(found.low, expected.low, [-1.0, 0.0]);
             near(found.high, expected.high, [0.0, 1.0]);
         }

@@ -166,7 +166,9 @@ where
         CovarianceError::Times => Failure::Request(format!("--dt and --t-end: {error}")),
         _ => Failure::Numeric(format!("{}: {error}", M::NAME)),
     };
-    let times: Vec<f64> = (1..=SAMPLES).map(|index| part * f64::from(index)).collect();
+    // Not multiples of a part: 14 of 20 parts of 1 s are 0.7 s.
+    let time = |index| arguments.t_end * f64::from(index) / f64::from(SAMPLES);
+    let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
     let outcome = Outcome {
         linear: flight.covariance(&vehicle.model, &times).map_err(failed)?,
         stationary: arguments

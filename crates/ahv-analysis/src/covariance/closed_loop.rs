@@ -93,7 +93,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
     ///
     /// # Errors
     ///
-    /// [`CovarianceError::Times`], [`CovarianceError::Diverged`], [`CovarianceError::Indefinite`],
+    /// [`CovarianceError::Times`], [`CovarianceError::StepTooLong`], [`CovarianceError::Diverged`], [`CovarianceError::Indefinite`],
     /// [`CovarianceError::TooLarge`].
     pub fn covariance<M>(
         &self,
@@ -239,8 +239,11 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
         // Half a step by the implicit Euler method: no mode is too fast for it.
         let half = 0.5 * dt;
         let implicit = DMatrix::identity(size, size) - start.a * half;
-        let slope = implicit.lu().solve(&start.rate);
-        let middle = z + slope.unwrap_or_else(|| Joint::from_element(size, f64::NAN)) * half;
+        let implicit = implicit.lu();
+        // A mode that grows by more than a factor in half a step would be led to the wrong side.
+        let sound = implicit.determinant() > 0.0;
+        let slope = implicit.solve(&start.rate).filter(|_| sound);
+        let middle = z + slope.ok_or(CovarianceError::StepTooLong { time, dt })? * half;
         finite::<X, U>(time, &middle)?;
         let linear = self.linear(model, &middle);
         let padded = |matrix: &DMatrix<f64>| -> [[f64; MOST]; MOST] {
