@@ -236,16 +236,21 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
     {
         let size = z.len();
         let start = self.linear(model, z);
-        // Half a step by the implicit Euler method: no mode is too fast for it.
         let half = 0.5 * dt;
-        let implicit = DMatrix::identity(size, size) - start.a * half;
-        let implicit = implicit.lu();
-        // A mode that grows by more than a factor in half a step would be led to the wrong side.
-        let sound = implicit.determinant() > 0.0;
-        let slope = implicit.solve(&start.rate).filter(|_| sound);
+        // Where a mode grows by a factor within half a step, an implicit step leads to the wrong side.
+        let implicit = |a: &DMatrix<f64>| {
+            let factors = (DMatrix::identity(size, size) - a * half).lu();
+            let sound = factors.determinant() > 0.0;
+            Some(factors)
+                .filter(|_| sound)
+                .ok_or(CovarianceError::StepTooLong { time, dt })
+        };
+        // Half a step by the implicit Euler method: no mode decays too fast for it.
+        let slope = implicit(&start.a)?.solve(&start.rate);
         let middle = z + slope.ok_or(CovarianceError::StepTooLong { time, dt })? * half;
         finite::<X, U>(time, &middle)?;
         let linear = self.linear(model, &middle);
+        implicit(&linear.a)?;
         let padded = |matrix: &DMatrix<f64>| -> [[f64; MOST]; MOST] {
             let entry =
                 |row: usize, column: usize| matrix.get((row, column)).copied().unwrap_or(0.0);
