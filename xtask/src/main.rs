@@ -28,11 +28,15 @@ enum Task {
     Setup,
     /// Run everything that must hold before a change goes in
     Test,
-    /// Compare the generated functions with 50-digit arithmetic at many random points
+    /// Compare the generated functions with 50-digit arithmetic at many random points, and the coverage of intervals with that
+    /// which docs/monte-carlo.md has, over many seeds
     Audit {
         /// Number of points for each function
         #[arg(long, default_value_t = 10_000)]
         points: u32,
+        /// Number of seeds for each interval
+        #[arg(long, default_value_t = 400)]
+        seeds: u32,
     },
     /// Compare the bits of every stepper between builds of all optimisation levels
     Determinism,
@@ -67,7 +71,7 @@ fn main() -> ExitCode {
         Task::Generate(args) => return ahv_generate::run(&args).into(),
         Task::Setup => python::set_up(),
         Task::Test => steps::run(),
-        Task::Audit { points } => audit(points),
+        Task::Audit { points, seeds } => audit(points).and_then(|()| coverage(seeds)),
         Task::Determinism => determinism::run(),
         Task::Vectors => vectors::run(),
         Task::Bench { peers } => bench::run(peers),
@@ -101,4 +105,19 @@ fn audit(points: u32) -> Result<(), String> {
         .args(["--points", &points.to_string(), "--python"])
         .arg(python);
     shell::run(&mut audit)
+}
+
+/// The test of the intervals' coverage, which the gate runs with few seeds.
+fn coverage(seeds: u32) -> Result<(), String> {
+    let mut test = shell::cargo();
+    test.args(["test", "--release", "--package", "ahv-analysis"]);
+    test.args([
+        "--test",
+        "coverage",
+        "--",
+        "--nocapture",
+        "--test-threads",
+        "1",
+    ]);
+    shell::run(test.env("AHV_COVERAGE_SEEDS", seeds.to_string()))
 }

@@ -1,15 +1,18 @@
-//! Linear covariance: stationary, and along a trajectory.
+//! Linear covariance: along a flight, and stationary.
 //!
 //! Deviations from a solution of dx = f dt + G dW follow d(δx) = A δx dt + G dW to first order, with A = ∂f/∂x and G at the
-//! solution without noise. Their covariance is that of Ṗ = A P + P Aᵀ + G Gᵀ; of a stable linear system it comes to rest
-//! where the right-hand side vanishes (Lyapunov).
+//! solution without noise. Over a step with constant A and G the covariance goes from P to Φ P Φᵀ + Q, with Φ = exp(A h) and Q
+//! the covariance that the noise adds (Van Loan 1978). Of a stable linear system it comes to rest where
+//! A P + P Aᵀ + G Gᵀ vanishes (Lyapunov).
 
-mod monte_carlo;
+mod closed_loop;
 
-use ahv_core::{DifferentiableModel, StochasticModel, Vector};
+use ahv_core::{StochasticModel, Vector};
 use nalgebra::{DMatrix, DVector};
 
-pub use monte_carlo::{Ensemble, Sampled};
+use crate::poles::PolesError;
+
+pub use closed_loop::{Flight, Regulation, Spreading};
 
 /// Largest residual of a stationary covariance, relative to the intensity of the noise and what it is balanced with.
 const RESIDUAL: f64 = 1e-9;
@@ -54,19 +57,58 @@ pub enum CovarianceError {
     /// Times that do not ascend from 0, or a step that is not positive.
     #[error("times must ascend from 0 and the step be positive and finite")]
     Times,
-    /// Too few members of an ensemble are left for a standard deviation.
-    #[error(
-        "at {time} s {left} of {members} flights are left, too few for a standard deviation: the others are no longer finite"
-    )]
-    BrokenDown {
-        /// Time, in s.
-        time: f64,
-        /// Members whose state is finite.
-        left: usize,
-        /// Members in all.
-        members: u64,
+    /// More states and inputs than transitions are made for.
+    #[error("the model has {found} states and inputs; {most} at most are propagated")]
+    TooLarge {
+        /// States and inputs of the model.
+        found: usize,
+        /// The largest number of them.
+        most: usize,
     },
-    /// State or covariance is not finite, or a variance is negative: the step is too long, or the flight diverges.
+    /// A covariance that no random numbers have.
+    #[error(
+        "the initial covariance has the eigenvalue {least} of its correlations; it must be 0 or more"
+    )]
+    Indefinite {
+        /// Least eigenvalue of the correlations.
+        least: f64,
+    },
+    /// The flight does not stay where it starts.
+    #[error(
+        "there is no stationary covariance: the flight is not at rest, {name} changes by {rate} per s"
+    )]
+    NotAtRest {
+        /// Name of the state or input.
+        name: &'static str,
+        /// Its rate, in its unit per s.
+        rate: f64,
+    },
+    /// A mode of the flight does not decay.
+    #[error(
+        "there is no stationary covariance: the {mode} mode has the pole {real:+.6} {imaginary:+.6}i 1/s, which does not decay"
+    )]
+    UndampedMode {
+        /// The mode.
+        mode: String,
+        /// Real part of its pole, in 1/s.
+        real: f64,
+        /// Imaginary part, in rad/s.
+        imaginary: f64,
+    },
+    /// The poles could not be found.
+    #[error(transparent)]
+    Poles(#[from] PolesError),
+    /// A mode grows by a factor within the step.
+    #[error(
+        "before {time} s a mode grows too fast for the step of {dt} s: shorten it, or end before the flight diverges"
+    )]
+    StepTooLong {
+        /// In s.
+        time: f64,
+        /// The step, in s.
+        dt: f64,
+    },
+    /// State or covariance is not finite: the step is too long, or the flight diverges.
     #[error("at {time} s the {what} of {name} is {value:?}")]
     Diverged {
         /// In s.
@@ -153,125 +195,6 @@ pub fn noise_intensity<M: StochasticModel<Scalar = f64>>(
     });
     let g = DMatrix::from_columns(&columns.collect::<Vec<_>>());
     &g * g.transpose()
-}
-
-/// A state on a trajectory, with the covariance of the deviations from it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Spreading<X> {
-    /// Time, in s.
-    pub time: f64,
-    /// The state without noise.
-    pub state: X,
-    /// Covariance, in the units of the states over one another.
-    pub covariance: DMatrix<f64>,
-}
-
-impl<X> Spreading<X> {
-    /// Standard deviation of each state, in its own unit.
-    pub fn std(&self) -> Vec<f64> {
-        self.covariance
-            .diagonal()
-            .iter()
-            .map(|p| p.sqrt())
-            .collect()
-    }
-}
-
-/// A flight that begins at a known state, with held inputs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flight<X, U> {
-    /// State at time 0.
-    pub start: X,
-    /// Held input.
-    pub input: U,
-    /// Longest step, in s.
-    pub dt: f64,
-}
-
-impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
-    /// State without noise and covariance at `times`, in s, from a start that is known exactly.
-    ///
-    /// The state by ẋ = f and the covariance by Ṗ = A P + P Aᵀ + G Gᵀ, together by the classical Runge–Kutta method.
-    ///
-    /// # Errors
-    ///
-    /// [`CovarianceError::Times`] and [`CovarianceError::Diverged`].
-    pub fn covariance<M>(
-        &self,
-        model: &M,
-        times: &[f64],
-    ) -> Result<Vec<Spreading<X>>, CovarianceError>
-    where
-        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
-    {
-        let steps = self.steps(times)?;
-        let rate = |(x, p): &(X, DMatrix<f64>)| {
-            let (drift, jacobian, _) = model.drift_and_jacobians(x, &self.input);
-            let rows = (0..X::LEN).filter_map(|row| Some(column(&jacobian.get(row)?).transpose()));
-            let carried = DMatrix::from_rows(&rows.collect::<Vec<_>>()) * p;
-            let noise = noise_intensity(model, x, &self.input);
-            (drift, &carried + carried.transpose() + noise)
-        };
-        let moved = |(x, p): &(X, DMatrix<f64>), (dx, dp): &(X, DMatrix<f64>), h: f64| {
-            (x.zip_with(*dx, |x, d| x + h * d), p + dp * h)
-        };
-        let mut now = (self.start, DMatrix::zeros(X::LEN, X::LEN));
-        let mut trajectory = Vec::with_capacity(times.len());
-        for (&time, (count, dt)) in times.iter().zip(steps) {
-            for _ in 0..count {
-                let first = rate(&now);
-                let second = rate(&moved(&now, &first, 0.5 * dt));
-                let third = rate(&moved(&now, &second, 0.5 * dt));
-                let fourth = rate(&moved(&now, &third, dt));
-                for (slope, weight) in [(first, 1.0), (second, 2.0), (third, 2.0), (fourth, 1.0)] {
-                    now = moved(&now, &slope, weight * dt / 6.0);
-                }
-            }
-            finite(time, &now)?;
-            trajectory.push(Spreading {
-                time,
-                state: now.0,
-                covariance: now.1.clone(),
-            });
-        }
-        Ok(trajectory)
-    }
-
-    /// Number and length of the steps to each time from the one before.
-    fn steps(&self, times: &[f64]) -> Result<Vec<(u64, f64)>, CovarianceError> {
-        let mut steps = Vec::with_capacity(times.len());
-        let mut before = 0.0;
-        for &time in times {
-            let count = ((time - before) / self.dt - 1e-9).ceil().max(0.0);
-            let sound = self.dt > 0.0 && time >= before && time.is_finite() && count < 1e9;
-            if !sound {
-                return Err(CovarianceError::Times);
-            }
-            steps.push((count as u64, (time - before) / count.max(1.0)));
-            before = time;
-        }
-        Ok(steps)
-    }
-}
-
-fn finite<X: Vector<f64>>(
-    time: f64,
-    (x, covariance): &(X, DMatrix<f64>),
-) -> Result<(), CovarianceError> {
-    let wrong = |what, found: Option<(&'static str, f64)>| match found {
-        Some((name, value)) => Err(CovarianceError::Diverged {
-            time,
-            what,
-            name,
-            value,
-        }),
-        None => Ok(()),
-    };
-    wrong("value", x.find(|value| !value.is_finite()))?;
-    let variance = |index: usize| covariance.get((index, index)).copied().unwrap_or(f64::NAN);
-    // Rounding may leave a variance of 0 a little below it.
-    let bad = |value: f64| !(value.is_finite() && value >= 0.0);
-    wrong("variance", X::from_fn(variance).find(bad))
 }
 
 /// A vector whose components have names, as a column.

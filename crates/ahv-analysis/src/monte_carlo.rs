@@ -22,7 +22,7 @@ use ahv_integrate::NoiseError;
 pub use arithmetic::Mode;
 pub use batch::Loss;
 pub use experiment::{Control, Experiment, Seen};
-pub use family::{Dcom, Family, LANES, Packed, Sdcom};
+pub use family::{Dcom, Family, LANES, Packed, Sdcom, SdcomGust, SdcomPrinted};
 pub use feedback::{Feedback, Unsteady};
 pub use outcome::{Outcome, Point, Snapshot, StateSpread};
 pub use propagator::{Flown, Propagator};
@@ -40,6 +40,14 @@ pub enum MonteCarloError {
         scheme: &'static str,
         /// What its stepper says.
         reason: NoiseError,
+    },
+    /// A scheme that the model is not flown by.
+    #[error("the scheme {scheme} is not available for {model}; splitting is")]
+    SchemeOfModel {
+        /// The scheme.
+        scheme: &'static str,
+        /// The model.
+        model: &'static str,
     },
     /// A mode that the scheme does not have.
     #[error("the scheme {scheme} has no mode {mode}; splitting, heun and euler-maruyama have it")]

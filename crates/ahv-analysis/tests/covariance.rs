@@ -1,13 +1,18 @@
-//! Covariances against closed forms, SciPy, exact transitions and flights.
+//! Covariances against closed forms, SciPy, quadrature and flights.
 #![forbid(unsafe_code)]
 
 use ahv_analysis::covariance::{
-    CovarianceError, Ensemble, Flight, Spreading, lyapunov, noise_intensity,
+    CovarianceError, Flight, Regulation, Spreading, lyapunov, noise_intensity,
 };
+use ahv_analysis::linearize::linearize;
+use ahv_analysis::lqr::{Regulator, bryson, deviations};
+use ahv_analysis::monte_carlo::{
+    Control, Dcom, Experiment, Flown, Mode, Scheme, Sdcom, SdcomGust, SdcomPrinted, Snapshot,
+};
+use ahv_analysis::statistics::Estimate;
 use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::{DifferentiableModel, Model, Pattern, StochasticModel, Vector};
-use ahv_integrate::LinearTransition;
-use ahv_models::{dcom, sdcom};
+use ahv_models::{dcom, sdcom, sdcom_gust, sdcom_printed};
 use approx::assert_relative_eq;
 use nalgebra::DMatrix;
 
@@ -136,31 +141,36 @@ impl StochasticModel for Square {
 
 /// x = 1/(1 + t), so that Ṗ = −4 P/(1 + t) + σ² and P = σ² ((1 + t)⁵ − 1)/(5 (1 + t)⁴).
 #[test]
-fn the_covariance_follows_a_curved_trajectory() {
+fn the_covariance_follows_a_curved_flight_with_order_2() {
     let (model, one) = (Square(0.3), One { x: 1.0 });
-    let flight = Flight {
-        start: one,
-        input: one,
-        dt: 0.01,
-    };
     let times = [0.0, 0.5, 0.505, 3.0];
-    let spread = flight.covariance(&model, &times).expect("a flight");
-    for (spread, time) in spread.iter().zip(times) {
-        let r = 1.0 + time;
-        assert_relative_eq!(spread.state.x, 1.0 / r, max_relative = 1e-9);
-        let expected = 0.09 * (r.powi(5) - 1.0) / (5.0 * r.powi(4));
-        assert_relative_eq!(spread.covariance[(0, 0)], expected, max_relative = 1e-8);
+    let errors = [1e-2, 5e-3].map(|dt| {
+        let spread = Flight::new(one, one, dt).covariance(&model, &times);
+        let errors = spread
+            .expect("a flight")
+            .into_iter()
+            .zip(times)
+            .map(|(it, time)| {
+                let r = 1.0 + time;
+                let expected = 0.09 * (r.powi(5) - 1.0) / (5.0 * r.powi(4));
+                [it.state.x - 1.0 / r, it.covariance[(0, 0)] - expected]
+            });
+        errors.collect::<Vec<_>>()
+    });
+    assert_eq!(errors[0][0], [0.0, 0.0]);
+    for (coarse, fine) in errors[0].iter().zip(&errors[1]).skip(1) {
+        for (coarse, fine) in coarse.iter().zip(fine) {
+            assert!(coarse.abs() < 1e-5, "{errors:?}");
+            let ratio = coarse / fine;
+            assert!((3.5..4.5).contains(&ratio), "{ratio} of {errors:?}");
+        }
     }
 }
 
 #[test]
 fn times_and_steps_without_sense_are_refused() {
     let (model, one) = (Square(0.3), One { x: 1.0 });
-    let flight = |dt| Flight {
-        start: one,
-        input: one,
-        dt,
-    };
+    let flight = |dt| Flight::new(one, one, dt);
     for (dt, times) in [
         (0.0, vec![1.0]),
         (f64::NAN, vec![1.0]),
@@ -176,10 +186,176 @@ fn times_and_steps_without_sense_are_refused() {
         ..flight(0.01)
     };
     let failure = diverged.covariance(&model, &[3.0]);
+    assert_eq!(
+        failure,
+        Err(CovarianceError::StepTooLong {
+            time: 3.0,
+            dt: 0.01
+        })
+    );
+    let indefinite = Flight {
+        initial: matrix(&[&[1.0, 2.0], &[2.0, 1.0]]),
+        ..flight(0.01)
+    };
+    let failure = indefinite.covariance(&model, &[1.0]);
     assert!(
-        matches!(failure, Err(CovarianceError::Diverged { name: "x", .. })),
+        matches!(failure, Err(CovarianceError::Indefinite { least }) if (least + 1.0).abs() < 1e-12),
         "{failure:?}"
     );
+}
+
+/// A linear model of two states and one input: dx₁ = (−a x₁ + c u) dt + g dW, dx₂ = x₁ dt.
+struct Pair {
+    a: f64,
+    c: f64,
+    g: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Two<T> {
+    x: T,
+    y: T,
+}
+
+ahv_core::impl_vector! { Two { x: ["1", "1", 1.0], y: ["1", "1", 1.0] } }
+
+impl Model for Pair {
+    type Scalar = f64;
+    type State = Two<f64>;
+    type Input = One<f64>;
+
+    fn drift(&self, x: &Two<f64>, u: &One<f64>) -> Two<f64> {
+        Two {
+            x: self.c * u.x - self.a * x.x,
+            y: x.x,
+        }
+    }
+}
+
+impl DifferentiableModel for Pair {
+    type StateJacobian = Two<Two<f64>>;
+    type InputJacobian = Two<One<f64>>;
+    const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new([2, 2], &[[0, 0], [1, 0]]);
+
+    fn jacobians(&self, _: &Two<f64>, _: &One<f64>) -> (Two<Two<f64>>, Two<One<f64>>) {
+        (
+            Two {
+                x: Two { x: -self.a, y: 0.0 },
+                y: Two { x: 1.0, y: 0.0 },
+            },
+            Two {
+                x: One { x: self.c },
+                y: One { x: 0.0 },
+            },
+        )
+    }
+
+    fn drift_and_jacobians(
+        &self,
+        x: &Two<f64>,
+        u: &One<f64>,
+    ) -> (Two<f64>, Two<Two<f64>>, Two<One<f64>>) {
+        let (by_state, by_input) = self.jacobians(x, u);
+        (self.drift(x, u), by_state, by_input)
+    }
+}
+
+impl StochasticModel for Pair {
+    type Noise = One<f64>;
+
+    fn noise_increment(&self, _: &Two<f64>, _: &One<f64>, dw: &One<f64>) -> Two<f64> {
+        Two {
+            x: self.g * dw.x,
+            y: 0.0,
+        }
+    }
+}
+
+const REST: Two<f64> = Two { x: 0.0, y: 0.0 };
+const IDLE: One<f64> = One { x: 0.0 };
+
+/// Var x = g²(1 − e^(−2at))/(2a) and Var y = g²/a² (t − 2(1 − e^(−at))/a + (1 − e^(−2at))/(2a)): a step as long as one likes.
+#[test]
+fn coloured_noise_and_its_integral_have_their_closed_form_however_stiff() {
+    for a in [0.5, 40.0, 2625.0, 1e5] {
+        let model = Pair { a, c: 0.0, g: 3.0 };
+        for dt in [1e-3, 0.05, 1.0] {
+            let spread = Flight::new(REST, IDLE, dt).covariance(&model, &[0.05, 1.0]);
+            for it in spread.expect("a flight") {
+                let t = it.time;
+                let [once, twice] = [1.0, 2.0].map(|k| -f64::exp_m1(-k * a * t) / (k * a));
+                let x = 9.0 * twice;
+                let y = 9.0 / (a * a) * (t - 2.0 * once + twice);
+                assert_relative_eq!(it.covariance[(0, 0)], x, max_relative = 1e-9);
+                assert_relative_eq!(it.covariance[(1, 1)], y, max_relative = 1e-9);
+                assert_relative_eq!(
+                    it.covariance[(0, 1)],
+                    4.5 * once * once,
+                    max_relative = 1e-9
+                );
+            }
+        }
+    }
+}
+
+/// Held inputs and states that are not known exactly: x = x₀ e^(−at) + c u (1 − e^(−at))/a.
+#[test]
+fn an_initial_covariance_moves_with_the_flight() {
+    let (a, c, t) = (0.8, 2.0, 0.7);
+    let model = Pair { a, c, g: 0.0 };
+    let flight = Flight {
+        initial: matrix(&[&[0.04, 0.0, 0.01], &[0.0, 0.0, 0.0], &[0.01, 0.0, 0.09]]),
+        ..Flight::new(REST, IDLE, 0.1)
+    };
+    let spread = flight.covariance(&model, &[t]).expect("a flight");
+    let (e, r) = ((-a * t).exp(), -f64::exp_m1(-a * t) * c / a);
+    let expected = 0.04 * e * e + 0.02 * e * r + 0.09 * r * r;
+    assert_relative_eq!(spread[0].covariance[(0, 0)], expected, max_relative = 1e-12);
+}
+
+/// u̇ = b (−k₁ x − k₂ y − u): the loop comes to rest, and what rests is what a long flight comes to.
+#[test]
+fn a_closed_loop_comes_to_rest_where_lyapunov_says() {
+    let model = Pair {
+        a: -0.5,
+        c: 1.0,
+        g: 0.3,
+    };
+    let open = Flight::new(REST, IDLE, 0.05);
+    let failure = open.stationary(&model);
+    assert!(
+        matches!(
+            failure,
+            Err(CovarianceError::UndampedMode { real: 0.5, .. })
+        ),
+        "{failure:?}"
+    );
+    let closed = Flight {
+        feedback: Some(Regulation {
+            state: REST,
+            rate: REST.map(|_| 0.0),
+            input: IDLE,
+            gain: matrix(&[&[3.0, 2.0]]),
+            bandwidth: One { x: 20.0 },
+        }),
+        ..open.clone()
+    };
+    let rest = closed.stationary(&model).expect("it is stable");
+    let late = closed.covariance(&model, &[60.0]).expect("a flight");
+    assert_relative_eq!(
+        late[0].covariance,
+        rest,
+        max_relative = 1e-9,
+        epsilon = 1e-12
+    );
+    let moving = Flight {
+        start: Two { x: 0.1, y: 0.0 },
+        ..closed
+    };
+    assert!(matches!(
+        moving.stationary(&model),
+        Err(CovarianceError::NotAtRest { name: "x", .. })
+    ));
 }
 
 /// Level flight of a model at its trim, with held inputs.
@@ -188,109 +364,197 @@ where
     M: DifferentiableModel<Scalar = f64>,
 {
     let trim = trim(model, &SteadyFlight::new(7702.0808, 85_000.0)).expect("it trims");
-    Flight {
-        start: trim.state,
-        input: trim.input,
-        dt,
-    }
+    Flight::new(trim.state, trim.input, dt)
 }
 
-/// A trim stays, so that the covariance is that of a constant linear system: its exact transition is another way.
+/// exp(M), by its series for M/2⁸ and squaring.
+fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let small = matrix / 256.0;
+    let mut term = DMatrix::identity(matrix.nrows(), matrix.ncols());
+    let mut sum = term.clone();
+    for order in 1..=20 {
+        term = &term * &small / f64::from(order);
+        sum += &term;
+    }
+    for _ in 0..8 {
+        sum = &sum * &sum;
+    }
+    sum
+}
+
+/// A trim stays, so that the covariance is that of a constant linear system: exp([−A, Q; 0, Aᵀ] t) has it (Van Loan 1978).
 #[test]
-fn the_covariance_at_a_trim_is_that_of_the_exact_transition() {
+fn the_covariance_at_a_trim_is_that_of_one_matrix_exponential() {
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let flight = level(&model, 1e-3);
+    let flight = level(&model, 0.1);
     let spread = flight.covariance(&model, &[0.5]).expect("a flight");
     let (a, _) = model.jacobians(&flight.start, &flight.input);
+    let a: [[f64; 8]; 8] = a.to_matrix();
     let noise = noise_intensity(&model, &flight.start, &flight.input);
-    let intensity = std::array::from_fn(|i| std::array::from_fn(|j| noise[(i, j)]));
-    let exact: LinearTransition<f64, 8> =
-        LinearTransition::new(a.to_matrix(), intensity, 0.5).expect("a step");
+    let t = 0.05;
+    let mut block = DMatrix::zeros(16, 16);
+    for row in 0..8 {
+        for column in 0..8 {
+            block[(row, column)] = -a[row][column] * t;
+            block[(8 + row, 8 + column)] = a[column][row] * t;
+            block[(row, 8 + column)] = noise[(row, column)] * t;
+        }
+    }
+    let exponential = exponential(&block);
+    let transition = exponential.view((8, 8), (8, 8)).transpose();
+    let added = &transition * exponential.view((0, 8), (8, 8));
+    let mut expected = DMatrix::zeros(8, 8);
+    for _ in 0..10 {
+        expected = &transition * expected * transition.transpose() + &added;
+    }
     for (index, std) in spread[0].std().into_iter().enumerate() {
-        let expected = exact.covariance()[index][index].sqrt();
-        assert_relative_eq!(std, expected, max_relative = 1e-7);
+        assert_relative_eq!(std, expected[(index, index)].sqrt(), max_relative = 1e-7);
     }
 }
 
-/// Every standard deviation in its interval of 95 % would be luck: 4.5 such half widths hold each with near certainty.
-fn agrees(linear: &Spreading<impl Vector<f64>>, std: &[ahv_analysis::statistics::Estimate]) {
-    for (index, (linear, flown)) in linear.std().into_iter().zip(std).enumerate() {
-        let half = 0.5 * (flown.high - flown.low);
+/// The ensemble of the same flight, by the default scheme of its model.
+fn sample<F: Flown>(
+    flight: &Flight<F::State<f64>, F::Input<f64>>,
+    parameters: F::Parameters<f64>,
+    scheme: Scheme,
+    snapshots: Vec<u64>,
+    members: u64,
+) -> Vec<Snapshot> {
+    let experiment = Experiment::<F> {
+        parameters,
+        dispersion: None,
+        state: [flight.start, Vector::splat(0.0)],
+        input: [flight.input, Vector::splat(0.0)],
+        feedback: None,
+        watched: Vec::new(),
+        scheme,
+        mode: Mode::Exact,
+        dt: flight.dt,
+        snapshots,
+        seed: 3,
+    };
+    let outcome = experiment.run(members, 2, &Control::default());
+    outcome.expect("flights").snapshots
+}
+
+/// Every standard deviation in its interval of 95 % would be luck: 2.3 half widths hold each with near certainty.
+fn agrees(linear: &Spreading<impl Vector<f64>>, sampled: &Snapshot) {
+    for (index, (linear, state)) in linear.std().into_iter().zip(&sampled.states).enumerate() {
+        let Estimate { value, low, high } = state.std.expect("a deviation");
+        let half = 0.5 * (high - low);
         assert!(
-            (linear - flown.value).abs() <= 2.3 * half,
-            "{index}: {linear} {flown:?}"
+            (linear - value).abs() <= 2.3 * half + 1e-12 * linear,
+            "{index}: {linear} {value} {low} {high}"
         );
     }
 }
 
 #[test]
-fn flights_spread_as_the_linear_covariance_says() {
-    let ensemble = Ensemble {
-        members: 400,
-        seed: 3,
-    };
-    let times = [0.1, 0.4];
-    let exact = sdcom::Model::new(&sdcom::NOMINAL);
-    let flight = level(&exact, 2e-3);
-    let linear = flight.covariance(&exact, &times).expect("a flight");
-    let flown = flight
-        .monte_carlo::<_, 6>(&exact, &times, ensemble)
-        .expect("flights");
-    let modes = dcom::Model::new(&dcom::NOMINAL);
-    let flexible = level(&modes, 2e-3);
-    let linear_modes = flexible.covariance(&modes, &times).expect("a flight");
-    let flown_modes = flexible
-        .monte_carlo::<_, 6>(&modes, &times, ensemble)
-        .expect("flights");
-    for index in 0..times.len() {
-        assert_eq!(
-            (flown[index].members, flown_modes[index].members),
-            (400, 400)
-        );
-        agrees(&linear[index], &flown[index].std);
-        agrees(&linear_modes[index], &flown_modes[index].std);
+fn flights_of_every_model_spread_as_the_linear_covariance_says() {
+    let dt = 5e-3;
+    macro_rules! compare {
+        ($module:ident, $family:ty, $scheme:expr) => {{
+            let model = $module::Model::new(&$module::NOMINAL);
+            let flight = level(&model, dt);
+            let linear = flight.covariance(&model, &[0.1, 0.3]).expect("a flight");
+            let sampled = sample::<$family>(&flight, $module::NOMINAL, $scheme, vec![20, 60], 400);
+            for (linear, sampled) in linear.iter().zip(&sampled) {
+                assert_eq!(sampled.members, 400);
+                agrees(linear, sampled);
+            }
+            sampled
+        }};
     }
+    let exact = compare!(sdcom, Sdcom, Scheme::Splitting);
+    compare!(sdcom_gust, SdcomGust, Scheme::Splitting);
+    compare!(sdcom_printed, SdcomPrinted, Scheme::Splitting);
+    // The modes of DCOM want shorter steps.
+    let model = dcom::Model::new(&dcom::NOMINAL);
+    let flight = level(&model, 2e-3);
+    let linear = flight.covariance(&model, &[0.2]).expect("a flight");
+    let sampled = sample::<Dcom>(&flight, dcom::NOMINAL, Scheme::Heun, vec![100], 400);
+    agrees(&linear[0], &sampled[0]);
     // A wrong linearisation is seen: the noise of modes as large again.
     let loud = sdcom::Model::new(&sdcom::Parameters {
         sigma_1: 2.0 * sdcom::NOMINAL.sigma_1,
         ..sdcom::NOMINAL
     });
-    let other = flight.covariance(&loud, &times).expect("a flight");
-    assert!(!flown[1].std[5].holds(other[1].std()[5]));
+    let other = level(&loud, dt)
+        .covariance(&loud, &[0.3])
+        .expect("a flight");
+    let std = exact[1].states[5].std.expect("a deviation");
+    assert!(!std.holds(other[0].std()[5]));
 }
 
+/// The fast decay of a reduction that keeps the moments, a = 2625 1/s, at steps of 5 and 1.3 times its time constant: the linear
+/// covariance and the ensemble have the exact deviation of the coloured noise.
 #[test]
-fn threads_do_not_matter() {
-    let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let flight = level(&model, 5e-3);
-    let ensemble = Ensemble {
-        members: 40,
-        seed: 1,
+fn stiff_coloured_noise_has_its_exact_deviation_at_any_step() {
+    let parameters = sdcom::SECTION5_3.with_reduction(sdcom::Reduction::Moment);
+    let model = sdcom::Model::new(&parameters);
+    let chi = 7;
+    let exact = {
+        let flight = level(&model, 1.0);
+        let (a, _) = model.jacobians(&flight.start, &flight.input);
+        let rate = -a.chi_3.chi_3;
+        assert!((2600.0..2650.0).contains(&rate), "{rate}");
+        let noise = noise_intensity(&model, &flight.start, &flight.input);
+        (noise[(chi, chi)] / (2.0 * rate)).sqrt()
     };
-    let on = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads")
-            .install(|| flight.monte_carlo::<_, 6>(&model, &[0.2], ensemble))
-    };
-    assert_eq!(on(1), on(3));
+    assert!((exact - 0.0329).abs() < 5e-5, "{exact}");
+    for (dt, steps) in [(2e-3, 50), (5e-4, 200)] {
+        let flight = level(&model, dt);
+        let linear = flight.covariance(&model, &[0.1]).expect("a flight");
+        assert_relative_eq!(linear[0].std()[chi], exact, max_relative = 1e-9);
+        let least = linear[0].covariance.clone().symmetric_eigenvalues().min();
+        assert!(least >= -1e-12 * linear[0].covariance.amax(), "{least}");
+        let sampled = sample::<Sdcom>(&flight, parameters, Scheme::Splitting, vec![steps], 2000);
+        let std = sampled[0].states[chi].std.expect("a deviation");
+        assert!((std.value / exact - 1.0).abs() < 0.06, "{std:?}, {exact}");
+    }
 }
 
+/// A linear-quadratic regulator on SDCOM: its stationary covariance is a fixed point of the exact transition.
 #[test]
-fn an_ensemble_that_breaks_down_is_an_error() {
+fn a_regulated_flight_has_a_stationary_covariance() {
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let mut flight = level(&model, 0.1);
-    // So far down that the density overflows.
-    flight.start.altitude = -1e8;
-    let ensemble = Ensemble {
-        members: 5,
-        seed: 1,
-    };
-    assert_eq!(
-        flight.monte_carlo::<_, 6>(&model, &[0.2], ensemble),
-        Err(CovarianceError::BrokenDown {
-            time: 0.2,
-            left: 0,
-            members: 5
-        })
+    let open = level(&model, 0.02);
+    assert!(matches!(
+        open.stationary(&model),
+        Err(CovarianceError::UndampedMode { mode, .. }) if mode == "short period"
+    ));
+    let inputs = ["phi", "delta_e"];
+    let system = linearize(&model, &open.start, &open.input, &inputs, &[]).expect("linear");
+    let x_std: sdcom::State<f64> = deviations();
+    let u_std: sdcom::Input<f64> = deviations();
+    let regulator = Regulator::new(
+        &system.a,
+        &system.b,
+        &bryson(&x_std.to_array()),
+        &bryson(&[u_std.phi, u_std.delta_e]),
     );
+    let gain = regulator.expect("a regulator").gain.insert_row(2, 0.0);
+    let closed = Flight {
+        feedback: Some(Regulation {
+            state: open.start,
+            rate: sdcom::State::splat(0.0),
+            input: open.input,
+            gain,
+            bandwidth: sdcom::Input {
+                phi: 20.0,
+                delta_e: 20.0,
+                delta_c: 0.0,
+            },
+        }),
+        ..open
+    };
+    let rest = closed.stationary(&model).expect("it is stable");
+    // Slow modes take their time to get there.
+    let late = closed.covariance(&model, &[20.0]).expect("a flight");
+    for index in 0..8 {
+        let (rest, late) = (rest[(index, index)].sqrt(), late[0].std()[index]);
+        assert!(late <= rest * (1.0 + 1e-9), "{index}: {late} {rest}");
+    }
+    let fast = late[0].std()[3] / rest[(3, 3)].sqrt();
+    assert!((0.9..=1.0 + 1e-9).contains(&fast), "{fast}");
 }

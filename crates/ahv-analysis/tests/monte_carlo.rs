@@ -4,14 +4,15 @@
 use std::sync::atomic::Ordering;
 
 use ahv_analysis::monte_carlo::{
-    Control, Dcom, Experiment, Feedback, Flown, Mode, MonteCarloError, Scheme, Sdcom, Seen,
+    Control, Dcom, Experiment, Feedback, Flown, Mode, MonteCarloError, QUANTILES, Scheme, Sdcom,
+    SdcomGust, Seen,
 };
-use ahv_analysis::statistics::Estimate;
+use ahv_analysis::statistics::{Estimate, QuantileEstimate};
 use ahv_analysis::track::Actuator;
 use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::{Bounds, ColouredNoise, Vector};
 use ahv_integrate::{ItoEulerMaruyama, ItoHeun, ItoStrangSplitting, NormalStream, WienerSource};
-use ahv_models::{dcom, sdcom};
+use ahv_models::{dcom, sdcom, sdcom_gust};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 
 const SEED: u64 = 5;
@@ -133,6 +134,50 @@ fn threads_and_chunks_change_no_bit() {
         for (a, b) in a.states.iter().zip(&b.states) {
             assert_eq!((a.mean, a.std, a.quantiles), (b.mean, b.std, b.quantiles));
         }
+    }
+}
+
+/// Sums over the members give what their numbers give, beyond the first group of 2048 too.
+#[test]
+fn moments_and_quantiles_are_those_of_the_members() {
+    let experiment = experiment(Scheme::EulerMaruyama, 1e-2, vec![10]);
+    let index = <sdcom::State<f64> as Vector<f64>>::index_of("altitude").expect("a state");
+    for members in [300, 2300] {
+        let outcome = experiment.run(members, 2, &Control::default());
+        let spread = &outcome.expect("it goes").snapshots[0].states[index];
+        let numbers: Vec<u64> = (0..members).collect();
+        let batches = numbers.chunks(8).flat_map(|batch| last(&experiment, batch));
+        let mut sample: Vec<f64> = batches.map(|x| x.altitude).collect();
+        let expected = Estimate::of_sample_std(&sample);
+        let std = spread.std.expect("a deviation");
+        for (found, expected) in [
+            (std.value, expected.value),
+            (std.low, expected.low),
+            (std.high, expected.high),
+        ] {
+            assert_relative_eq!(found, expected, max_relative = 1e-9);
+        }
+        sample.sort_by(f64::total_cmp);
+        for (found, share) in spread.quantiles.iter().zip(QUANTILES) {
+            let expected = QuantileEstimate::of_sorted(&sample, share);
+            // A side is open for both, and bins widen the interval by one at most.
+            let near = |found: Option<f64>, expected: Option<f64>, sides: [f64; 2]| {
+                assert_eq!(found.is_some(), expected.is_some(), "{share}");
+                let off = found
+                    .zip(expected)
+                    .map_or(0.0, |(found, expected)| found - expected);
+                let [low, high] = sides.map(|side| side * spread.resolution);
+                assert!((low - 1e-9..=high + 1e-9).contains(&off), "{share}: {off}");
+            };
+            // Between neighbouring numbers a quantile is a matter of definition.
+            let rank = share * members as f64;
+            let [below, above] = [rank.floor() as usize - 1, rank.ceil() as usize];
+            let range = sample[below] - spread.resolution..=sample[above] + spread.resolution;
+            assert!(range.contains(&found.value.expect("a value")), "{share}");
+            near(found.low, expected.low, [-1.0, 0.0]);
+            near(found.high, expected.high, [0.0, 1.0]);
+        }
+        assert_eq!(spread.resolution > 0.0, members > 2048);
     }
 }
 
@@ -363,6 +408,26 @@ fn a_scheme_that_does_not_go_says_why() {
     assert!(matches!(
         fly(&deterministic, &[0]),
         Err(MonteCarloError::Scheme { .. })
+    ));
+    let gust = Experiment::<SdcomGust> {
+        parameters: sdcom_gust::NOMINAL,
+        dispersion: None,
+        state: [Vector::splat(0.0); 2],
+        input: [Vector::splat(0.0); 2],
+        feedback: None,
+        watched: Vec::new(),
+        scheme: Scheme::Heun,
+        mode: Mode::Exact,
+        dt: 1e-3,
+        snapshots: vec![1],
+        seed: 0,
+    };
+    assert!(matches!(
+        fly(&gust, &[0]),
+        Err(MonteCarloError::SchemeOfModel {
+            model: "sdcom_gust",
+            ..
+        })
     ));
 }
 

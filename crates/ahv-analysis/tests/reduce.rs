@@ -261,7 +261,7 @@ fn held_noise_is_weaker_by_the_step() {
         .ends(&mode, 0)
         .expect("an ensemble");
     let (_, std) = ahv_analysis::statistics::mean_and_std(&ends[0]);
-    let estimate = Estimate::of_std(std, 2000.0);
+    let estimate = Estimate::of_normal_std(std, 2000.0);
     let white = reduced(mode, Reduction::Printed).eta_variance().sqrt();
     assert!(estimate.holds(0.1 * white), "{estimate:?} {white}");
 }
@@ -309,7 +309,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn intervals_and_distances_are_the_tabulated_ones() {
     // χ² quantiles with 99 degrees of freedom (SciPy): 73.361, 128.422.
-    let std = Estimate::of_std(1.0, 100.0);
+    let std = Estimate::of_normal_std(1.0, 100.0);
     assert_abs_diff_eq!(std.low, f64::sqrt(99.0 / 128.422), epsilon = 5e-4);
     assert_abs_diff_eq!(std.high, f64::sqrt(99.0 / 73.361), epsilon = 5e-4);
     let sample: Vec<f64> = (0..=100).rev().map(f64::from).collect();

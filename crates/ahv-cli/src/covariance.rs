@@ -3,19 +3,26 @@
 mod figure;
 
 use std::fmt::Write;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use ahv_analysis::covariance::{CovarianceError, Ensemble, Flight, Sampled, Spreading};
+use ahv_analysis::covariance::{CovarianceError, Flight, Spreading};
+use ahv_analysis::monte_carlo::{
+    Control, Dcom, Experiment, Flown, Mode, Scheme, Sdcom, SdcomGust, SdcomPrinted, Snapshot,
+};
 use ahv_analysis::statistics::Estimate;
-use ahv_core::{ItoCorrected, Vector};
+use ahv_core::{StochasticModel, Vector};
 use ahv_models::{dcom, sdcom, sdcom_gust, sdcom_printed};
 use clap::Args;
+use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use crate::assignment::show;
 use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
+use crate::flights::feedback::FeedbackArguments;
+use crate::flights::{Pair, deviations};
 use crate::number::{Shown, cell, time};
 use crate::output::{self, Pairs};
 use crate::place::Place;
@@ -23,16 +30,18 @@ use crate::progress::{Progress, Work};
 use crate::simulate::grid::positive;
 use crate::vehicle::{FlightModel, ModelName};
 
+/// Fewest members that have a standard deviation.
+const FEWEST: u64 = 2;
 /// Times at which the spread is told, in equal parts of the flight.
 const SAMPLES: u32 = 20;
 /// Of these, every so many is printed.
 const STRIDE: usize = 5;
 
-/// Propagates the covariance of the states along level flight, and flies the same many times.
+/// Propagates the covariance of the states along a flight from the trim, and flies the same many times.
 ///
-/// The flight starts at the trim, known exactly, and holds its inputs. To first order deviations have the covariance of
-/// P' = A P + P A' + G G'; beside it stands the spread of an ensemble (Heun, Ito) with intervals of 95 %. The airframe is
-/// unstable: the spread grows, and what is first order about it holds for a second or two.
+/// To first order deviations have the covariance of P' = A P + P A' + G G', here by matrix exponentials; beside it stands the
+/// spread of an ensemble (splitting of Strang, for dcom Heun, Ito) with intervals of 95 %, and the ratio of the two standard
+/// deviations. Inputs are held, or follow a state feedback. In open loop the airframe is unstable, and the spread grows.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -40,6 +49,21 @@ pub(crate) struct Arguments {
 
     #[command(flatten)]
     place: Place,
+
+    /// Standard deviations of the states at the start, e.g. altitude=50ft,gamma=0.2deg
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    state_std: Vec<String>,
+
+    /// Standard deviations of the inputs at the start, e.g. phi=0.01; without feedback they are held
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    input_std: Vec<String>,
+
+    #[command(flatten)]
+    feedback: FeedbackArguments,
+
+    /// Add the covariance at which the linear system comes to rest
+    #[arg(long)]
+    stationary: bool,
 
     /// End of the flight in s
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = positive, allow_negative_numbers = true)]
@@ -74,13 +98,13 @@ pub(crate) struct Arguments {
 /// flight diverges.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.condition.model {
-        ModelName::Dcom => spread::<dcom::Model<f64>, { dcom::Noise::<()>::LEN }>(arguments),
-        ModelName::Sdcom => spread::<sdcom::Model<f64>, { sdcom::Noise::<()>::LEN }>(arguments),
+        ModelName::Dcom => spread::<dcom::Model<f64>, Dcom>(arguments, Scheme::Heun),
+        ModelName::Sdcom => spread::<sdcom::Model<f64>, Sdcom>(arguments, Scheme::Splitting),
         ModelName::SdcomPrinted => {
-            spread::<sdcom_printed::Model<f64>, { sdcom_printed::Noise::<()>::LEN }>(arguments)
+            spread::<sdcom_printed::Model<f64>, SdcomPrinted>(arguments, Scheme::Splitting)
         }
         ModelName::SdcomGust => {
-            spread::<sdcom_gust::Model<f64>, { sdcom_gust::Noise::<()>::LEN }>(arguments)
+            spread::<sdcom_gust::Model<f64>, SdcomGust>(arguments, Scheme::Splitting)
         }
         ModelName::Com | ModelName::ComRigid => Err(Failure::Request(
             "--model: com and com_rigid have no noise; dcom and the sdcom models have".to_owned(),
@@ -88,33 +112,46 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// What is told: the spread to first order and of the ensemble, at the same times.
+/// What is printed: the spread to first order and of the ensemble, at the same times.
 struct Outcome<'a, M: FlightModel> {
     vehicle: &'a Vehicle<M>,
     arguments: &'a Arguments,
     place: String,
+    scheme: Scheme,
     linear: Vec<Spreading<M::State>>,
-    sampled: Vec<Sampled>,
+    sampled: Vec<Snapshot>,
+    stationary: Option<DMatrix<f64>>,
 }
 
-fn spread<M, const N: usize>(arguments: &Arguments) -> Result<(), Failure>
+fn spread<M, F>(arguments: &Arguments, scheme: Scheme) -> Result<(), Failure>
 where
-    M: FlightModel + ItoCorrected + Sync,
-    M::State: Send + Sync,
-    M::Input: Sync,
+    M: Pair<F> + StochasticModel,
+    F: Flown,
 {
     let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
     let steady = arguments.place.flight(&vehicle)?;
     let trim = vehicle.trim(&steady)?;
-    let flight = Flight {
-        start: trim.state,
-        input: trim.input,
-        dt: arguments.dt,
-    };
     let part = arguments.t_end / f64::from(SAMPLES);
-    let times: Vec<f64> = (1..=SAMPLES).map(|index| part * f64::from(index)).collect();
-    let ensemble = Ensemble {
-        members: arguments.members,
+    let steps = (part / arguments.dt - 1e-9).ceil().max(1.0);
+    let experiment = Experiment::<F> {
+        parameters: vehicle.parameters,
+        dispersion: None,
+        state: [
+            trim.state,
+            deviations("--state-std", &arguments.state_std, &vehicle)?,
+        ],
+        input: [
+            trim.input,
+            deviations("--input-std", &arguments.input_std, &vehicle)?,
+        ],
+        feedback: arguments.feedback.read::<M, F>(&vehicle, &steady)?,
+        watched: Vec::new(),
+        scheme,
+        mode: Mode::Exact,
+        dt: part / steps,
+        snapshots: (1..=u64::from(SAMPLES))
+            .map(|index| index.saturating_mul(steps as u64))
+            .collect(),
         seed: arguments.seed,
     };
     let folder = arguments.out.as_deref();
@@ -126,16 +163,32 @@ where
         unit: "",
         total: None,
     });
+    let [x_std, u_std] = [
+        Pairs::of(&experiment.state[1]),
+        Pairs::of(&experiment.input[1]),
+    ];
+    let variances = x_std.0.iter().chain(&u_std.0).map(|(_, std)| std * std);
+    let flight = Flight {
+        initial: DMatrix::from_diagonal(&DVector::from_vec(variances.collect())),
+        feedback: experiment.feedback.as_ref().map(|it| it.regulation()),
+        ..Flight::new(trim.state, trim.input, arguments.dt)
+    };
     let failed = |error: CovarianceError| match error {
         CovarianceError::Times => Failure::Request(format!("--dt and --t-end: {error}")),
         _ => Failure::Numeric(format!("{}: {error}", M::NAME)),
     };
+    // Not multiples of a part: 14 of 20 parts of 1 s are 0.7 s.
+    let time = |index| arguments.t_end * f64::from(index) / f64::from(SAMPLES);
+    let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
     let outcome = Outcome {
         linear: flight.covariance(&vehicle.model, &times).map_err(failed)?,
-        sampled: flight
-            .monte_carlo::<M, N>(&vehicle.model, &times, ensemble)
-            .map_err(failed)?,
+        stationary: arguments
+            .stationary
+            .then(|| flight.stationary(&vehicle.model).map_err(failed))
+            .transpose()?,
+        sampled: sample::<M, F>(&experiment, arguments.members)?,
         place: vehicle.at(&steady),
+        scheme,
         vehicle: &vehicle,
         arguments,
     };
@@ -153,6 +206,29 @@ where
     written.and(printed).and(drawn)
 }
 
+/// Flies the ensemble.
+fn sample<M: Pair<F>, F: Flown>(
+    experiment: &Experiment<F>,
+    members: u64,
+) -> Result<Vec<Snapshot>, Failure> {
+    let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let outcome = experiment
+        .run(members, threads, &Control::default())
+        .map_err(|error| Failure::Numeric(format!("{}: {error}", M::NAME)))?;
+    match outcome.snapshots.iter().find(|it| it.members < FEWEST) {
+        None => Ok(outcome.snapshots),
+        Some(Snapshot {
+            time,
+            members: left,
+            ..
+        }) => Err(Failure::Numeric(format!(
+            "{}: at {time} s {left} of {members} flights are left, too few for a standard deviation: the others are no longer \
+             finite",
+            M::NAME
+        ))),
+    }
+}
+
 #[derive(Serialize)]
 struct Json<'a> {
     #[serde(flatten)]
@@ -161,7 +237,12 @@ struct Json<'a> {
     members: u64,
     seed: u64,
     dt: f64,
+    scheme: &'static str,
+    feedback: bool,
     share_inside: f64,
+    worst_ratio: Option<JsonRatio>,
+    stationary_std: Option<Pairs<f64>>,
+    stationary_covariance: Option<Vec<Vec<f64>>>,
     times: Vec<JsonTime>,
 }
 
@@ -170,9 +251,41 @@ struct JsonTime {
     time: f64,
     members: u64,
     linear_std: Pairs<f64>,
-    sampled_std: Pairs<Estimate>,
+    sampled_std: Pairs<Option<Estimate>>,
+    /// Linear over sampled standard deviation.
+    ratio: Pairs<Option<Estimate>>,
+    linear_covariance: Vec<Vec<f64>>,
     linear_mean: Pairs<f64>,
-    sampled_mean: Pairs<Estimate>,
+    sampled_mean: Pairs<Option<Estimate>>,
+}
+
+/// A ratio of linear to sampled standard deviation.
+#[derive(Serialize)]
+struct JsonRatio {
+    state: &'static str,
+    time: f64,
+    #[serde(flatten)]
+    ratio: Estimate,
+}
+
+/// Linear over sampled standard deviation with its interval of 95 %; `None` where nothing spreads.
+fn ratio(linear: f64, sampled: Option<Estimate>) -> Option<Estimate> {
+    let Estimate { value, low, high } = sampled?;
+    let ratio = Estimate {
+        value: linear / value,
+        low: linear / high,
+        high: linear / low,
+    };
+    Some(ratio).filter(|ratio| ratio.low > 0.0 && ratio.is_finite())
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    let row = |row: usize| matrix.row(row).iter().copied().collect();
+    (0..matrix.nrows()).map(row).collect()
+}
+
+fn stds(snapshot: &Snapshot) -> Vec<Option<Estimate>> {
+    snapshot.states.iter().map(|state| state.std).collect()
 }
 
 /// Names of the states, each with its value.
@@ -187,62 +300,106 @@ fn named<X: Vector<f64>, V: Clone>(values: &[V]) -> Pairs<V> {
 }
 
 impl<M: FlightModel> Outcome<'_, M> {
-    fn pairs(&self) -> impl Iterator<Item = (&Spreading<M::State>, &Sampled)> {
+    fn pairs(&self) -> impl Iterator<Item = (&Spreading<M::State>, &Snapshot)> {
         self.linear.iter().zip(&self.sampled)
     }
 
-    /// Share of the standard deviations, over states and times, that lie in the interval of the ensemble.
+    /// Ratios of linear to sampled standard deviation, over states and times.
+    fn ratios(&self) -> impl Iterator<Item = JsonRatio> {
+        self.pairs().flat_map(|(linear, sampled)| {
+            let stds = linear.std().into_iter().zip(stds(sampled));
+            let named = M::State::NAMES.iter().zip(stds);
+            let time = linear.time;
+            named.filter_map(move |(&state, (linear, sampled))| {
+                Some(JsonRatio {
+                    state,
+                    time,
+                    ratio: ratio(linear, sampled)?,
+                })
+            })
+        })
+    }
+
+    /// Share of the standard deviations, over states and times, that lie in the interval of the ensemble; what does not
+    /// spread does not count.
     fn share_inside(&self) -> f64 {
-        let inside: Vec<bool> = self
-            .pairs()
-            .flat_map(|(linear, sampled)| linear.std().into_iter().zip(&sampled.std))
-            // What does not move, does not in the ensemble either.
-            .filter(|(linear, sampled)| *linear > 0.0 || sampled.value > 0.0)
-            .map(|(linear, sampled)| sampled.holds(linear))
-            .collect();
+        let inside: Vec<bool> = self.ratios().map(|it| it.ratio.holds(1.0)).collect();
         inside.iter().filter(|&&it| it).count() as f64 / inside.len().max(1) as f64
     }
 
+    /// The ratio that is farthest from 1.
+    fn worst(&self) -> Option<JsonRatio> {
+        let distance = |it: &JsonRatio| it.ratio.value.ln().abs();
+        self.ratios()
+            .max_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    fn stationary_std(&self) -> Option<Vec<f64>> {
+        let variances = self.stationary.as_ref()?.diagonal();
+        Some(
+            variances
+                .iter()
+                .map(|variance| variance.max(0.0).sqrt())
+                .collect(),
+        )
+    }
+
     fn json(&self) -> Json<'_> {
-        let time = |(linear, sampled): (&Spreading<M::State>, &Sampled)| JsonTime {
-            time: time(linear.time),
-            members: sampled.members,
-            linear_std: named::<M::State, _>(&linear.std()),
-            sampled_std: named::<M::State, _>(&sampled.std),
-            linear_mean: Pairs::of(&linear.state),
-            sampled_mean: named::<M::State, _>(&sampled.mean),
+        let at = |(linear, sampled): (&Spreading<M::State>, &Snapshot)| {
+            let stds = stds(sampled);
+            let ratios = linear.std().into_iter().zip(&stds);
+            let ratios: Vec<_> = ratios.map(|(linear, &std)| ratio(linear, std)).collect();
+            let means: Vec<_> = sampled.states.iter().map(|state| state.mean).collect();
+            JsonTime {
+                time: time(linear.time),
+                members: sampled.members,
+                linear_std: named::<M::State, _>(&linear.std()),
+                sampled_std: named::<M::State, _>(&stds),
+                ratio: named::<M::State, _>(&ratios),
+                linear_covariance: rows(&linear.covariance),
+                linear_mean: Pairs::of(&linear.state),
+                sampled_mean: named::<M::State, _>(&means),
+            }
         };
+        let stationary = self.stationary_std();
         Json {
             heading: self.vehicle.heading(),
             units: Pairs::units::<M::State>(self.vehicle.units),
             members: self.arguments.members,
             seed: self.arguments.seed,
             dt: self.arguments.dt,
+            scheme: self.scheme.name(),
+            feedback: self.arguments.feedback.is_given(),
             share_inside: self.share_inside(),
-            times: self.pairs().map(time).collect(),
+            worst_ratio: self.worst(),
+            stationary_std: stationary.map(|std| named::<M::State, _>(&std)),
+            stationary_covariance: self.stationary.as_ref().map(rows),
+            times: self.pairs().map(at).collect(),
         }
     }
 
     fn text(&self) -> String {
         let mut text = format!(
-            "{}: {}, {}\nstandard deviations to first order, and of {} flights, seed {}, with intervals of 95 %",
+            "{}: {}, {}\nstandard deviations to first order, and of {} flights ({}, seed {}) with intervals of 95 %, and the \
+             ratio of the two",
             M::NAME,
             self.place,
             self.vehicle.described(),
             self.arguments.members,
+            self.scheme.name(),
             self.arguments.seed
         );
         let units = self.vehicle.units.labels::<M::State>();
+        // Writing into a String cannot fail.
         for (index, (name, unit)) in M::State::NAMES.iter().zip(units).enumerate() {
             let shown = |value: f64| show(value, unit);
             for (linear, sampled) in self.pairs().skip(STRIDE - 1).step_by(STRIDE) {
-                let (Some(std), Some(flown)) = (
+                let (Some(std), Some(Some(flown))) = (
                     linear.std().get(index).copied(),
-                    sampled.std.get(index).copied(),
+                    stds(sampled).get(index).copied(),
                 ) else {
                     continue;
                 };
-                // Writing into a String cannot fail.
                 let _ = write!(
                     text,
                     "\n  {name:<12} at {:<5} s: {:<16} flown {} [{}, {}]",
@@ -252,7 +409,25 @@ impl<M: FlightModel> Outcome<'_, M> {
                     shown(flown.low),
                     shown(flown.high)
                 );
+                if let Some(ratio) = ratio(std, Some(flown)) {
+                    let _ = write!(text, "  ratio {:.3}", ratio.value);
+                }
             }
+        }
+        for ((name, unit), std) in M::State::NAMES
+            .iter()
+            .zip(units)
+            .zip(self.stationary_std().into_iter().flatten())
+        {
+            let _ = write!(text, "\n  {name:<12} stationary: {}", show(std, unit));
+        }
+        if let Some(worst) = self.worst() {
+            let Estimate { value, low, high } = worst.ratio;
+            let _ = write!(
+                text,
+                "\nlinear over flown standard deviation: farthest from 1 is {value:.3} [{low:.3}, {high:.3}], {} at {} s",
+                worst.state, worst.time
+            );
         }
         let lost = self.arguments.members - self.sampled.last().map_or(0, |it| it.members);
         let _ = write!(
@@ -274,15 +449,28 @@ impl<M: FlightModel> Outcome<'_, M> {
                 "sampled_std_low",
                 "sampled_std_high",
             ];
-            kinds.map(|kind| format!("{name}_{kind} [{unit}]"))
+            let stds = kinds.map(|kind| format!("{name}_{kind} [{unit}]"));
+            let ratios = ["", "_low", "_high"].map(|end| format!("{name}_ratio{end} [1]"));
+            stds.into_iter().chain(ratios)
         });
         let first = ["time [s]", "members"].map(str::to_owned).into_iter();
         file.row(&first.chain(columns).collect::<Vec<_>>())?;
+        let cells = |it: Option<Estimate>| {
+            let numbers = [
+                it.map(|it| it.value),
+                it.map(|it| it.low),
+                it.map(|it| it.high),
+            ];
+            numbers.map(|number| number.map_or_else(String::new, |number| number.to_string()))
+        };
         for (linear, sampled) in self.pairs() {
-            let stds = linear.std().into_iter().zip(&sampled.std);
-            let stds = stds.flat_map(|(std, flown)| [std, flown.value, flown.low, flown.high]);
-            let first = [time(linear.time), sampled.members as f64].into_iter();
-            file.row(&first.chain(stds).map(cell).collect::<Vec<_>>())?;
+            let stds = linear.std().into_iter().zip(stds(sampled));
+            let stds = stds.flat_map(|(std, flown)| {
+                let rest = cells(flown).into_iter().chain(cells(ratio(std, flown)));
+                std::iter::once(cell(std)).chain(rest)
+            });
+            let first = [cell(time(linear.time)), sampled.members.to_string()];
+            file.row(&first.into_iter().chain(stds).collect::<Vec<_>>())?;
         }
         file.finish()
     }

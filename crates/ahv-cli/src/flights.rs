@@ -1,6 +1,6 @@
 //! Flights with noise and dispersions: what `ahv montecarlo` and `ahv rare` fly.
 
-mod feedback;
+pub(crate) mod feedback;
 
 use std::num::NonZeroUsize;
 
@@ -265,7 +265,7 @@ impl<F: Flown, M: Pair<F>> Ready<F, M> {
 }
 
 /// Standard deviations, 0 where none is given.
-fn deviations<M: FlightModel, V: Vector<f64>>(
+pub(crate) fn deviations<M: FlightModel, V: Vector<f64>>(
     option: &str,
     texts: &[String],
     vehicle: &Vehicle<M>,

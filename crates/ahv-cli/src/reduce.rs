@@ -195,13 +195,14 @@ impl Arguments {
 }
 
 impl Subject {
-    /// Standard deviations of the samples with their intervals, at each time.
+    /// Standard deviations of the samples with their intervals, at each time. The steps are exact transitions of linear
+    /// equations: the samples are normal.
     fn sampled(&self, moments: &Moments) -> Vec<Estimate> {
         let runs = self.runs as f64;
         moments
             .std
             .iter()
-            .map(|&std| Estimate::of_std(std, runs))
+            .map(|&std| Estimate::of_normal_std(std, runs))
             .collect()
     }
 
@@ -303,7 +304,7 @@ impl JsonMode {
         };
         let last = |moments: &Moments| {
             let last = moments.std.last().copied().unwrap_or_default();
-            Estimate::of_std(last, subject.runs as f64)
+            Estimate::of_normal_std(last, subject.runs as f64)
         };
         Self {
             omega,

@@ -59,6 +59,51 @@ fn the_same_seed_gives_the_same_numbers_on_any_threads() {
     assert_ne!(one["digest"], other["digest"]);
 }
 
+/// A hundred members have no rank for the ends of a 0.5 % quantile: the side is open, not the sample's end.
+#[test]
+fn a_side_of_a_quantile_without_a_rank_is_open() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let told = json(&[&FEW[..], &["--out", &out]].concat());
+    let snapshots = told["snapshots"].as_array().expect("a list");
+    let quantiles = &snapshots[10]["quantiles"]["alpha"];
+    let (lowest, median, highest) = (&quantiles[0], &quantiles[3], &quantiles[6]);
+    assert_eq!(
+        (&lowest["share"], &lowest["low"]),
+        (&0.005.into(), &Value::Null)
+    );
+    assert_eq!(highest["high"], Value::Null);
+    for (quantile, ends) in [
+        (lowest, &["value", "high"][..]),
+        (median, &["low", "value", "high"]),
+        (highest, &["low", "value"]),
+    ] {
+        let ends: Vec<f64> = ends
+            .iter()
+            .filter_map(|end| quantile[*end].as_f64())
+            .collect();
+        assert!(ends.len() >= 2 && ends.is_sorted(), "{quantile}");
+    }
+    let table = fs::read_to_string(folder.path().join("snapshots.csv")).expect("rows");
+    let mut rows = csv(&table);
+    let heading = rows.remove(0);
+    let column = |name: &str| heading.iter().position(|it| it == name).expect("a column");
+    let last = rows.iter().rfind(|row| row[2] == "alpha").expect("a row");
+    assert_eq!(last[column("quantile_0.005_low")], "");
+    assert_ne!(last[column("quantile_0.005_high")], "");
+    assert_eq!(last[column("quantile_0.995_high")], "");
+    let printed = String::from_utf8(run(&FEW).stdout).expect("text");
+    assert!(
+        printed.contains(" [open, ") && printed.contains(", open]"),
+        "{printed}"
+    );
+}
+
+fn csv(text: &str) -> Vec<Vec<String>> {
+    let row = |line: &str| line.split(',').map(str::to_owned).collect();
+    text.lines().map(row).collect()
+}
+
 #[test]
 fn files_hold_what_was_flown_and_feedback_follows_the_gains() {
     let folder = tempfile::tempdir().expect("a folder");

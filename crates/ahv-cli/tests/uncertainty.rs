@@ -214,14 +214,101 @@ fn first_order_and_flights_stand_side_by_side() {
     assert!((number(&last["linear_std"]["chi_1"]) - expected).abs() < 1e-6);
     assert_eq!(last["members"], 200);
     assert!(number(&outcome["share_inside"]) > 0.7);
+    let ratio = number(&last["ratio"]["alpha"]["value"]);
+    let std = number(&last["sampled_std"]["alpha"]["value"]);
+    assert!((ratio * std / number(&last["linear_std"]["alpha"]) - 1.0).abs() < 1e-12);
+    // Of all states and times the ratio that is farthest from 1.
+    let worst = number(&outcome["worst_ratio"]["value"]).ln().abs();
+    let names = ["velocity", "alpha", "chi_3"];
+    assert!(
+        names
+            .iter()
+            .all(|name| number(&last["ratio"][name]["value"]).ln().abs() <= worst)
+    );
+    assert_eq!(outcome["scheme"], "splitting");
     let printed = text(&arguments);
     assert!(
         printed.contains("alpha")
             && printed.contains("deg [")
             && printed.contains("flights broke down")
+            && printed.contains("farthest from 1")
     );
     let svg = fs::read_to_string(folder.path().join("covariance.svg")).expect("a picture");
     assert!(svg.contains("standard deviation [deg]") && !svg.contains("NaN"));
     let table = fs::read_to_string(folder.path().join("covariance.csv")).expect("a table");
     assert_eq!(table.lines().count(), 21);
+}
+
+/// The modes of the reduction that keeps the moments decay with 2625 1/s: the step need not resolve that.
+#[test]
+fn a_stiff_reduction_has_its_exact_deviation() {
+    let arguments = [
+        "covariance",
+        "--model",
+        "sdcom",
+        "--set",
+        "section5.3",
+        "--reduction",
+        "moment",
+        "--t-end",
+        "0.1",
+        "--members",
+        "1000",
+    ];
+    for dt in ["0.0005", "0.002"] {
+        let outcome = json(&[&arguments[..], &["--dt", dt]].concat());
+        let last = &outcome["times"][19];
+        let linear = number(&last["linear_std"]["chi_3"]);
+        let sampled = number(&last["sampled_std"]["chi_3"]["value"]);
+        assert!((linear - 0.0329).abs() < 5e-5, "{linear}");
+        assert!((sampled / linear - 1.0).abs() < 0.08, "{sampled}");
+    }
+}
+
+#[test]
+fn a_regulated_flight_stays_and_an_unstable_one_has_no_stationary_covariance() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let gains = folder.path().join("gains.json");
+    let gains = gains.to_str().expect("text");
+    text(&["lqr", "--model", "sdcom", "--out", gains]);
+    let few = [
+        "covariance",
+        "--model",
+        "sdcom",
+        "--members",
+        "400",
+        "--dt",
+        "0.01",
+        "--stationary",
+    ];
+    let output = run(&few);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(
+        message.contains("the short period mode has the pole +1.67"),
+        "{message}"
+    );
+    let spread = [
+        "--feedback",
+        gains,
+        "--state-std",
+        "gamma=0.02deg",
+        "--input-std",
+        "phi=0.001",
+    ];
+    let outcome = json(&[&few[..], &spread].concat());
+    assert_eq!(outcome["feedback"], true);
+    let last = &outcome["times"][19];
+    for state in ["velocity", "altitude", "gamma", "alpha", "pitch_rate"] {
+        let linear = number(&last["linear_std"][state]);
+        let sampled = number(&last["sampled_std"][state]["value"]);
+        assert!(
+            (linear / sampled - 1.0).abs() < 0.15,
+            "{state}: {linear} {sampled}"
+        );
+        assert!(number(&outcome["stationary_std"][state]) > 0.0);
+    }
+    // At rest 1 s is enough for the angle of attack.
+    let rest = number(&outcome["stationary_std"]["alpha"]);
+    assert!((number(&last["linear_std"]["alpha"]) / rest - 1.0).abs() < 0.5);
 }

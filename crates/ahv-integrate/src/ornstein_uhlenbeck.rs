@@ -146,6 +146,11 @@ impl<R: Real, const N: usize> LinearTransition<R, N> {
         &self.covariance
     }
 
+    /// L, lower triangular; a direction without variance has a column of zeros.
+    pub const fn root(&self) -> &[[R; N]; N] {
+        &self.root
+    }
+
     /// The state after the step without force: `normals` are independent standard normal numbers.
     #[inline(always)]
     pub fn free_step(&self, x: &[R; N], normals: &[R; N]) -> [R; N] {

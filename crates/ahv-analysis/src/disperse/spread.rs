@@ -1,6 +1,6 @@
 //! How a number spreads over members.
 
-use crate::statistics::{excess_kurtosis, mean_and_std, quantile};
+use crate::statistics::{Estimate, kurtosis, mean_and_std, quantile};
 
 /// The distribution of a number over members.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -13,6 +13,10 @@ pub struct Spread {
     pub std: f64,
     /// Standard error of the standard deviation, by the fourth moment of the sample: for any distribution.
     pub std_error: f64,
+    /// Lower end of the interval of 95 % of the standard deviation.
+    pub std_low: f64,
+    /// Its upper end.
+    pub std_high: f64,
     /// Least value.
     pub min: f64,
     /// 5 % point.
@@ -36,16 +40,15 @@ impl Spread {
         let (mean, std) = mean_and_std(sample);
         let count = sample.len();
         // Equal numbers have no kurtosis.
-        let kurtosis = if std > 0.0 {
-            excess_kurtosis(sample)
-        } else {
-            0.0
-        };
+        let kurtosis = if std > 0.0 { kurtosis(sample) } else { 3.0 };
+        let interval = Estimate::of_std(std, kurtosis, count as f64);
         Some(Self {
             count,
             mean,
             std,
-            std_error: 0.5 * std * ((kurtosis + 2.0).max(0.0) / count as f64).sqrt(),
+            std_error: 0.5 * std * ((kurtosis - 1.0).max(0.0) / count as f64).sqrt(),
+            std_low: interval.low,
+            std_high: interval.high,
             min: *sorted.first()?,
             p05: quantile(&sorted, 0.05)?,
             p50: quantile(&sorted, 0.5)?,

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use ahv_core::{Bounds, DifferentiableNoise, Lanes, Real, Vector};
-use ahv_models::{dcom, sdcom};
+use ahv_models::{dcom, sdcom, sdcom_gust, sdcom_printed};
 
 /// Members that are flown side by side.
 pub const LANES: usize = 8;
@@ -186,4 +186,8 @@ families! {
     Sdcom = sdcom;
     /// The deterministic model, with noise on path, attitude and modes.
     Dcom = dcom;
+    /// The stochastic model as the paper prints it.
+    SdcomPrinted = sdcom_printed;
+    /// The stochastic model with a band-limited gust.
+    SdcomGust = sdcom_gust;
 }

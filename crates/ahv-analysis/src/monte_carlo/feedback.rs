@@ -1,8 +1,10 @@
 //! State feedback through actuators, for all members of a batch at once.
 
 use ahv_core::{DifferentiableModel, Real, Vector};
+use nalgebra::DMatrix;
 
 use super::family::{Family, LANES, Packed};
+use crate::covariance::Regulation;
 use crate::track::{Actuator, ActuatorStep};
 
 /// The state that climbs in a steady flight; all others stay.
@@ -85,6 +87,23 @@ impl<F: Family> Feedback<F> {
                 };
                 (!follows(rate)).then_some(unsteady)
             })
+    }
+
+    /// The same law for a linear covariance: it acts all the time, and the actuators have no limits.
+    pub fn regulation(&self) -> Regulation<F::State<f64>, F::Input<f64>> {
+        let (inputs, states) = (F::Input::<f64>::LEN, F::State::<f64>::LEN);
+        let gain = |input, state| self.gain.get(input)?.get(state);
+        Regulation {
+            state: self.state,
+            rate: self.rate,
+            input: self.input,
+            gain: DMatrix::from_fn(inputs, states, |input, state| {
+                gain(input, state).unwrap_or(0.0)
+            }),
+            bandwidth: F::map_input(&self.actuators, |actuator| {
+                actuator.map_or(0.0, |actuator| actuator.bandwidth)
+            }),
+        }
     }
 
     /// The law over steps of `dt`, for members that have flown some steps.

@@ -14,7 +14,7 @@ use super::propagator::{Flown, Propagator};
 use super::spread::{Bin, QUANTILES, Spread};
 use super::{Loss, MonteCarloError};
 use crate::ordered::in_order;
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, QuantileEstimate, mean_and_std};
 
 /// Members whose flights are in memory at a time.
 const GROUP: u64 = 2048;
@@ -79,10 +79,10 @@ pub struct Snapshot {
 pub struct StateSpread {
     /// Mean with its interval of 95 %; `None` where numbers are too large, or members too few.
     pub mean: Option<Estimate>,
-    /// Standard deviation with its interval of 95 % (of normal numbers).
+    /// Standard deviation with its interval of 95 %, by the fourth moment; `None` as for the mean.
     pub std: Option<Estimate>,
     /// Quantiles of [`QUANTILES`], each with its interval of 95 %.
-    pub quantiles: [Option<Estimate>; QUANTILES.len()],
+    pub quantiles: [QuantileEstimate; QUANTILES.len()],
     /// What the bins of the quantiles add to their error, in the unit of the state.
     pub resolution: f64,
     /// Counts between the least and the greatest number.
@@ -200,8 +200,6 @@ fn group<F: Family>(
 /// Sums over members, in their order.
 struct Collector<'e, F: Family> {
     experiment: &'e Experiment<F>,
-    /// Number that sums are taken about, state by state.
-    origin: Vec<f64>,
     sums: Vec<Sums>,
     members: u64,
     lost: u64,
@@ -212,12 +210,64 @@ struct Collector<'e, F: Family> {
 /// What is summed at a snapshot.
 struct Sums {
     count: u64,
-    first: Vec<f64>,
-    /// Products of the deviations from the origin, by rows.
+    /// Sums of each state.
+    states: Vec<PowerSums>,
+    /// Products of the deviations from the origins, by rows.
     second: Vec<Vec<f64>>,
     spreads: Vec<Spread>,
     left: Vec<Vec<u64>>,
     left_any: Vec<u64>,
+}
+
+/// Sums of powers of a state's deviation from an origin.
+///
+/// Origin and scale are mean and standard deviation of the first members that are added, however many follow: near those of
+/// all, nothing cancels.
+#[derive(Clone, Copy)]
+struct PowerSums {
+    origin: f64,
+    scale: f64,
+    first: f64,
+    /// Of the deviation in units of the scale.
+    third: f64,
+    /// Of the deviation in units of the scale.
+    fourth: f64,
+}
+
+impl PowerSums {
+    fn about(first: &[f64]) -> Self {
+        let (origin, std) = mean_and_std(first);
+        Self {
+            origin,
+            scale: if std > 0.0 { std } else { 1.0 },
+            first: 0.0,
+            third: 0.0,
+            fourth: 0.0,
+        }
+    }
+
+    fn add(&mut self, deviation: f64) {
+        let scaled = deviation / self.scale;
+        let cube = scaled * scaled * scaled;
+        self.first += deviation;
+        self.third += cube;
+        self.fourth += cube * scaled;
+    }
+
+    /// m₄/m₂² of `count` numbers with the sum `second` of squared deviations; 3 where all are equal.
+    fn kurtosis(&self, second: f64, count: f64) -> f64 {
+        let mean = self.first / count / self.scale;
+        let square = second / count / (self.scale * self.scale);
+        let variance = square - mean * mean;
+        if variance <= 0.0 {
+            return 3.0;
+        }
+        let cube = self.third / count;
+        let fourth = self.fourth / count - 4.0 * mean * cube + 6.0 * mean * mean * square
+            - 3.0 * mean.powi(4);
+        // Rounding must not push it below its least value.
+        (fourth / (variance * variance)).max(1.0)
+    }
 }
 
 fn components<T: Copy>(x: &impl Vector<T>, len: usize) -> Vec<T> {
@@ -229,14 +279,13 @@ impl<'e, F: Family> Collector<'e, F> {
         let states = F::State::<f64>::LEN;
         let sums = experiment.snapshots.iter().map(|_| Sums {
             count: 0,
-            first: vec![0.0; states],
+            states: Vec::new(),
             second: vec![vec![0.0; states]; states],
             spreads: Vec::new(),
             left: vec![vec![0; states]; experiment.watched.len()],
             left_any: vec![0; experiment.watched.len()],
         });
         Self {
-            origin: components(&experiment.state[0], states),
             sums: sums.collect(),
             experiment,
             members: 0,
@@ -266,7 +315,7 @@ impl<'e, F: Family> Collector<'e, F> {
         sums.for_each(|(index, (sums, &step))| {
             let at = seen.iter().filter_map(|seen| seen.at.get(index));
             let values: Vec<_> = at.map(|(x, _)| components(x, states)).collect();
-            sums.add(&self.origin, &values);
+            sums.add(&values);
             for seen in &seen {
                 sums.leave::<F>(&seen.left, step);
             }
@@ -280,7 +329,7 @@ impl<'e, F: Family> Collector<'e, F> {
             members: self.members,
             asked,
             snapshots: snapshots
-                .map(|(sums, &step)| sums.snapshot(&self.origin, step as f64 * dt))
+                .map(|(sums, &step)| sums.snapshot(step as f64 * dt))
                 .collect(),
             lost: self.lost,
             losses: self.losses,
@@ -311,17 +360,19 @@ impl Sums {
         }
     }
 
-    fn add(&mut self, origin: &[f64], members: &[Vec<f64>]) {
-        if self.spreads.is_empty() {
-            let column = |state| {
-                members
-                    .iter()
-                    .filter_map(|x| x.get(state).copied())
-                    .collect()
-            };
-            self.spreads = (0..origin.len())
-                .map(|state| Spread::new(column(state)))
-                .collect();
+    fn add(&mut self, members: &[Vec<f64>]) {
+        // Members that are lost before leave nothing to begin with.
+        let Some(first) = members.first() else {
+            return;
+        };
+        if self.states.is_empty() {
+            let columns = (0..first.len()).map(|state| -> Vec<f64> {
+                let column = members.iter().filter_map(|x| x.get(state).copied());
+                column.collect()
+            });
+            let columns: Vec<_> = columns.collect();
+            self.states = columns.iter().map(|it| PowerSums::about(it)).collect();
+            self.spreads = columns.into_iter().map(Spread::new).collect();
         } else {
             for x in members {
                 for (spread, &value) in self.spreads.iter_mut().zip(x) {
@@ -330,10 +381,11 @@ impl Sums {
             }
         }
         for x in members {
-            let deviation: Vec<f64> = x.iter().zip(origin).map(|(x, origin)| x - origin).collect();
+            let origins = x.iter().zip(&self.states);
+            let deviation: Vec<f64> = origins.map(|(x, state)| x - state.origin).collect();
             self.count += 1;
-            for ((first, row), &a) in self.first.iter_mut().zip(&mut self.second).zip(&deviation) {
-                *first += a;
+            for ((state, row), &a) in self.states.iter_mut().zip(&mut self.second).zip(&deviation) {
+                state.add(a);
                 for (second, &b) in row.iter_mut().zip(&deviation) {
                     *second += a * b;
                 }
@@ -341,9 +393,14 @@ impl Sums {
         }
     }
 
-    fn snapshot(self, origin: &[f64], time: f64) -> Snapshot {
+    fn snapshot(mut self, time: f64) -> Snapshot {
+        if self.states.is_empty() {
+            let states = self.second.len();
+            self.states = vec![PowerSums::about(&[]); states];
+            self.spreads = vec![Spread::new(Vec::new()); states];
+        }
         let n = self.count as f64;
-        let means: Vec<f64> = self.first.iter().map(|sum| sum / n).collect();
+        let means: Vec<f64> = self.states.iter().map(|state| state.first / n).collect();
         let covariance: Vec<Vec<f64>> = self
             .second
             .iter()
@@ -353,16 +410,21 @@ impl Sums {
                 row.iter().zip(&means).map(entry).collect()
             })
             .collect();
-        let states = self.spreads.iter().enumerate().map(|(state, spread)| {
-            let variance = covariance.get(state).and_then(|row| row.get(state));
-            let std = variance.map_or(f64::NAN, |variance| variance.max(0.0).sqrt());
-            let mean = origin
-                .get(state)
-                .zip(means.get(state))
-                .map_or(f64::NAN, |(o, m)| o + m);
+        let states = self.states.iter().zip(&self.spreads).enumerate();
+        let states = states.map(|(index, (sums, spread))| {
+            let entry = |matrix: &[Vec<f64>]| {
+                let row = matrix.get(index);
+                row.and_then(|row| row.get(index).copied())
+                    .unwrap_or(f64::NAN)
+            };
+            let std = entry(&covariance).max(0.0).sqrt();
+            let mean = sums.origin + sums.first / n;
+            let kurtosis = sums.kurtosis(entry(&self.second), n);
+            // One number has no spread.
+            let known = |estimate: Estimate| Some(estimate).filter(|it| n > 1.0 && it.is_finite());
             StateSpread {
-                mean: Some(Estimate::of_mean(mean, std, n)).filter(Estimate::is_finite),
-                std: Some(Estimate::of_std(std, n)).filter(Estimate::is_finite),
+                mean: known(Estimate::of_mean(mean, std, n)),
+                std: known(Estimate::of_std(std, kurtosis, n)),
                 quantiles: QUANTILES.map(|share| spread.quantile(share)),
                 resolution: spread.resolution(),
                 histogram: spread.histogram(TOLD_BINS),

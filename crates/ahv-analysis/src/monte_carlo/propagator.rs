@@ -11,7 +11,7 @@ use super::MonteCarloError;
 use super::arithmetic::{Called, In, Mode, Narrowed};
 use super::batch::{Batch, Dynamics, Member, Noise, Watch};
 use super::experiment::{Control, Experiment, Seen};
-use super::family::{Dcom, Family, LANES, Packed, Sdcom};
+use super::family::{Dcom, Family, LANES, Packed, Sdcom, SdcomGust, SdcomPrinted};
 use super::rare::{Goal, Particle, Passed, pass};
 use super::scheme::{
     Dri1, EulerMaruyama, Heun, InStratonovichSense, MOST_NORMALS, Milstein, Scheme, Splitting,
@@ -103,7 +103,7 @@ macro_rules! in_doubles {
 }
 
 macro_rules! flown {
-    ($($name:ident: $($splitting:ident)?;)+) => {$(
+    ($($name:ident: $($splitting:ty)?;)+) => {$(
         impl Flown for $name {
             fn propagator(
                 experiment: &Experiment<Self>,
@@ -128,8 +128,33 @@ macro_rules! flown {
 }
 
 flown! {
-    Sdcom: Splitting;
+    Sdcom: Splitting<3>;
     Dcom:;
+}
+
+/// Models of one scheme without vector loops: they are flown beside others, not by the million, and each loop takes long to
+/// compile.
+macro_rules! flown_by_splitting {
+    ($($name:ident: $splitting:ty;)+) => {$(
+        impl Flown for $name {
+            fn propagator(
+                experiment: &Experiment<Self>,
+            ) -> Result<Box<dyn Propagator<Self> + '_>, MonteCarloError> {
+                match experiment.scheme {
+                    Scheme::Splitting => in_doubles!(experiment, $splitting),
+                    scheme => Err(MonteCarloError::SchemeOfModel {
+                        scheme: scheme.name(),
+                        model: Self::NAME,
+                    }),
+                }
+            }
+        }
+    )+};
+}
+
+flown_by_splitting! {
+    SdcomPrinted: Splitting<3>;
+    SdcomGust: Splitting<4>;
 }
 
 /// A propagator with a scheme `S`, fast in the arithmetic `A` and again in `E` where that has no result.

@@ -18,7 +18,7 @@ use super::MonteCarloError;
 use super::experiment::{Control, Experiment};
 use super::family::LANES;
 use super::propagator::{Flown, Propagator};
-use crate::statistics::{Estimate, Z_95, mean_and_std};
+use crate::statistics::{Estimate, Z_95, mean_and_std, student_95};
 
 /// Fewest repetitions: from there on, Student's quantile is right to four digits.
 pub const FEWEST_REPETITIONS: u64 = 10;
@@ -416,15 +416,4 @@ fn mean_and_half(values: &[f64]) -> (f64, f64) {
     let (mean, std) = mean_and_std(values);
     let count = values.len() as f64;
     (mean, student_95(count - 1.0) * std / count.sqrt())
-}
-
-/// 97.5 % point of Student's distribution, by the expansion about the normal one (Abramowitz and Stegun 1964, 26.7.5).
-fn student_95(freedom: f64) -> f64 {
-    let z = Z_95;
-    let [z_3, z_5, z_7, z_9] = [3, 5, 7, 9].map(|power| z.powi(power));
-    z + (z_3 + z) / (4.0 * freedom)
-        + (5.0 * z_5 + 16.0 * z_3 + 3.0 * z) / (96.0 * freedom.powi(2))
-        + (3.0 * z_7 + 19.0 * z_5 + 17.0 * z_3 - 15.0 * z) / (384.0 * freedom.powi(3))
-        + (79.0 * z_9 + 776.0 * z_7 + 1482.0 * z_5 - 1920.0 * z_3 - 945.0 * z)
-            / (92160.0 * freedom.powi(4))
 }

@@ -150,17 +150,14 @@ plain! {
     InStratonovichSense, StratonovichHeun, StochasticModel;
 }
 
-/// Coloured states of the models that have coloured noise.
-const COLOURED: usize = 3;
-
-/// The exact transitions of the coloured noise around a step of Heun's.
+/// The exact transitions of `N` states of coloured noise around a step of Heun's.
 #[derive(Clone, Copy)]
-pub(super) struct Splitting {
-    splitting: ItoStrangSplitting<Packed, COLOURED>,
+pub(super) struct Splitting<const N: usize> {
+    splitting: ItoStrangSplitting<Packed, N>,
     root: f64,
 }
 
-impl<F: Family> Stepping<F> for Splitting
+impl<F: Family, const N: usize> Stepping<F> for Splitting<N>
 where
     F::Model<Packed>: ColouredNoise,
 {
@@ -176,7 +173,7 @@ where
         })
     }
 
-    const EXTRA: usize = 2 * COLOURED;
+    const EXTRA: usize = 2 * N;
 
     fn uses(model: &F::Model<Packed>, column: &F::State<Packed>) -> bool {
         (0..F::State::<Packed>::LEN).any(|state| {
@@ -186,9 +183,11 @@ where
     }
 }
 
-impl<F: Family, M: ColouredNoise<Scalar: Arithmetic> + ItoCorrected> Steps<F, M> for Splitting
+impl<F, M, const N: usize> Steps<F, M> for Splitting<N>
 where
+    F: Family,
     F::Model<Packed>: ColouredNoise,
+    M: ColouredNoise<Scalar: Arithmetic> + ItoCorrected,
 {
     #[inline(always)]
     fn step(
@@ -201,10 +200,10 @@ where
         normal: impl Fn(usize) -> f64 + Copy,
     ) -> Result<(), StepError<M::Scalar>> {
         let dw = increments::<M>(self.root, normal);
-        let mut normals = [[M::Scalar::ZERO; COLOURED]; 2];
+        let mut normals = [[M::Scalar::ZERO; N]; 2];
         for (half, normals) in normals.iter_mut().enumerate() {
             for (index, place) in normals.iter_mut().enumerate() {
-                *place = M::Scalar::of(normal(M::Noise::LEN + half * COLOURED + index));
+                *place = M::Scalar::of(normal(M::Noise::LEN + half * N + index));
             }
         }
         let splitting = self.splitting.map_ref(pick).with_step(dt);

@@ -1,6 +1,6 @@
 //! How a number spreads over the members, in memory that does not grow with them.
 
-use crate::statistics::{Estimate, Z_95, quantile};
+use crate::statistics::{QuantileEstimate, ranks};
 
 /// Bins between the outer two.
 const BINS: usize = 2000;
@@ -78,32 +78,36 @@ impl Spread {
         }
     }
 
-    /// The quantile of this share, with its interval of 95 % by the ranks (binomial); wider by a bin where there are bins.
+    /// The quantile of this share, with its interval of 95 % by the ranks (binomial); the ends are edges where there are bins.
     ///
-    /// `None` if it lies in an outer bin, or of no numbers.
-    pub(super) fn quantile(&self, share: f64) -> Option<Estimate> {
-        let spread = Z_95 * (share * (1.0 - share) / self.count as f64).sqrt();
-        let ends = [share, share - spread, share + spread].map(|share| share.clamp(0.0, 1.0));
-        let [value, low, high] = match &self.exact {
-            Some(numbers) => {
-                let mut sorted = numbers.clone();
-                sorted.sort_by(f64::total_cmp);
-                ends.map(|share| quantile(&sorted, share))
-            }
-            None => {
-                let [value, low, high] = ends.map(|share| self.binned(share));
-                [
-                    value,
-                    low.map(|low| (low - self.width).max(self.min)),
-                    high.map(|high| (high + self.width).min(self.max)),
-                ]
-            }
-        };
-        Some(Estimate {
-            value: value?,
-            low: low?,
-            high: high?,
-        })
+    /// A value that lies in an outer bin is not known, nor one of no numbers.
+    pub(super) fn quantile(&self, share: f64) -> QuantileEstimate {
+        if let Some(numbers) = &self.exact {
+            let mut sorted = numbers.clone();
+            sorted.sort_by(f64::total_cmp);
+            return QuantileEstimate::of_sorted(&sorted, share);
+        }
+        let [low, high] = ranks(share, self.count);
+        let edges = |rank: Option<u64>| rank.and_then(|rank| self.edges(rank));
+        QuantileEstimate {
+            value: self.binned(share),
+            low: edges(low).map(|[low, _]| low),
+            high: edges(high).map(|[_, high]| high),
+        }
+    }
+
+    /// Numbers that the one of this rank, from 1, lies between: the edges of its bin.
+    fn edges(&self, rank: u64) -> Option<[f64; 2]> {
+        let mut below = 0;
+        let bin = self.counts.iter().position(|&count| {
+            below += count;
+            below >= rank
+        })?;
+        let edge = |bin: usize| self.low + bin as f64 * self.width;
+        let low = if bin == 0 { self.min } else { edge(bin - 1) };
+        let high = if bin > BINS { self.max } else { edge(bin) };
+        Some([low.max(self.min), high.min(self.max)])
+            .filter(|ends| ends.iter().all(|end| end.is_finite()))
     }
 
     /// The quantile by straight lines within bins.

@@ -3,6 +3,7 @@
 use ahv_analysis::backstepping::{Backstepping, DESIGN, Design, Loop};
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::deviations;
+use ahv_analysis::monte_carlo::Control;
 use ahv_analysis::track::{
     ACTUATORS, Controller, Flight, Increments, LoopState, Manoeuvre, PERIOD, SUBSTEPS, Trial,
     silent,
@@ -303,7 +304,7 @@ fn weights() -> String {
 }
 
 fn flown<C: Controller>(trial: &Trial, controller: &C) -> Vec<Flight> {
-    trial.fly(controller, || ()).expect("a trim")
+    trial.fly(controller, &Control::default()).expect("a trim")
 }
 
 /// One flight without noise. The controller knows the noise that the vehicle does not have here.

@@ -25,10 +25,9 @@ fn panel<M: FlightModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel
         .iter()
         .filter_map(|it| Some((it.time, factor * *it.std().get(index)?)));
     let flown = outcome.sampled.iter().filter_map(|it| {
-        let std = it.std.get(index)?;
+        let std = it.states.get(index)?.std?;
         Some((it.time, factor * std.low, factor * std.high))
     });
-    let from_rest = std::iter::once((0.0, 0.0)).chain(linear);
     Some(Panel {
         title: (*name).to_owned(),
         x: Axis::linear("time [s]"),
@@ -42,7 +41,7 @@ fn panel<M: FlightModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel
             Layer::new(
                 "first order",
                 Colour::Vermillion,
-                Mark::Line(from_rest.collect()),
+                Mark::Line(linear.collect()),
             ),
         ],
     })

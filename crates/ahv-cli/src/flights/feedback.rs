@@ -21,7 +21,7 @@ const RATE: f64 = 1.0;
 
 /// State feedback.
 #[derive(Args)]
-pub(super) struct FeedbackArguments {
+pub(crate) struct FeedbackArguments {
     /// File of gains as `ahv lqr --out` writes it: inputs follow u = input - gain (x - state - state_rate t) through actuators
     #[arg(long, value_name = "FILE")]
     feedback: Option<PathBuf>,
@@ -54,13 +54,18 @@ enum Mismatch {
 }
 
 impl FeedbackArguments {
+    /// Whether there is a file of gains.
+    pub(crate) const fn is_given(&self) -> bool {
+        self.feedback.is_some()
+    }
+
     /// The feedback, if there is one. Actuators move within the validity box of the inputs.
     ///
     /// # Errors
     ///
     /// [`Failure::Request`] for a file that is no file of gains for this model, or was designed for another vehicle or
     /// flight.
-    pub(super) fn read<M: Pair<F>, F: Flown>(
+    pub(crate) fn read<M: Pair<F>, F: Flown>(
         &self,
         vehicle: &Vehicle<M>,
         flight: &SteadyFlight<F::Input<f64>>,

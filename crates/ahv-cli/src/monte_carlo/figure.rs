@@ -50,9 +50,8 @@ fn fan<F: Flown, M: Pair<F>>(
         let snapshots = told.outcome.snapshots.iter();
         snapshots.filter_map(move |it| Some((it.time, it.states.get(index)?)))
     };
-    let quantile = |state: &StateSpread, place: usize| {
-        Some(factor * state.quantiles.get(place)?.as_ref()?.value)
-    };
+    let quantile =
+        |state: &StateSpread, place: usize| Some(factor * state.quantiles.get(place)?.value?);
     let outer = QUANTILES.len() - 1;
     let band = |low: usize| {
         let rows = states().filter_map(|(time, state)| {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use ahv_analysis::monte_carlo::{Flown, QUANTILES, Snapshot};
-use ahv_analysis::statistics::Estimate;
+use ahv_analysis::statistics::{Estimate, QuantileEstimate};
 use ahv_core::Vector;
 use serde::Serialize;
 
@@ -63,7 +63,7 @@ struct JsonSnapshot {
 struct JsonQuantile {
     share: f64,
     #[serde(flatten)]
-    value: Option<Estimate>,
+    estimate: QuantileEstimate,
 }
 
 /// Names of the states, each with its value.
@@ -119,8 +119,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
         let finite = |value: &f64| Some(*value).filter(|value| value.is_finite());
         let quantiles = states().map(|it| {
             let shares = QUANTILES.iter().zip(&it.quantiles);
-            let quantile =
-                |(&share, &value): (&f64, &Option<Estimate>)| JsonQuantile { share, value };
+            let quantile = |(&share, &estimate)| JsonQuantile { share, estimate };
             shares.map(quantile).collect()
         });
         JsonSnapshot {
@@ -174,7 +173,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
         };
         let mut text = format!(
             "{}: {}, {}\n{} of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second, threads {}\n\
-             at the end, mean and standard deviation with intervals of 95 %, 0.5 % and 99.5 % points",
+             at the end, mean and standard deviation with intervals of 95 %, 0.5 % and 99.5 % points with theirs",
             M::NAME,
             self.ready.place,
             self.ready.vehicle.described(),
@@ -212,9 +211,12 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                 ),
                 None => "none".to_owned(),
             };
-            let point = |estimate: Option<&Option<Estimate>>| match estimate.copied().flatten() {
-                Some(it) => shown(it.value),
-                None => "-".to_owned(),
+            let point = |estimate: Option<&QuantileEstimate>| {
+                let it = estimate.copied().unwrap_or_default();
+                let value = it.value.map_or_else(|| "-".to_owned(), shown);
+                let [low, high] =
+                    [it.low, it.high].map(|end| end.map_or_else(|| "open".to_owned(), shown));
+                format!("{value} [{low}, {high}]")
             };
             let _ = write!(
                 text,

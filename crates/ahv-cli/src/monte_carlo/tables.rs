@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ahv_analysis::monte_carlo::{Flown, QUANTILES};
-use ahv_analysis::statistics::Estimate;
+use ahv_analysis::statistics::QuantileEstimate;
 use ahv_core::Vector;
 
 use super::{Told, figure, trajectories};
@@ -16,12 +16,10 @@ use crate::output;
 /// Heading of the column that is the same in all rows: whether all members were flown.
 const COMPLETE: &str = "complete";
 
-/// Cells of an estimate; empty where there is none.
-fn cells(estimate: &Option<Estimate>) -> [String; 3] {
-    match estimate {
-        Some(it) => [it.value, it.low, it.high].map(cell),
-        None => [const { String::new() }; 3],
-    }
+/// Cells of an estimate; empty where there is none, or a side is open.
+fn cells(estimate: &QuantileEstimate) -> [String; 3] {
+    [estimate.value, estimate.low, estimate.high]
+        .map(|number| number.map_or_else(String::new, cell))
 }
 
 impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
@@ -69,10 +67,8 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                     (*name).to_owned(),
                     (*unit).to_owned(),
                 ];
-                let estimates = [&state.mean, &state.std]
-                    .into_iter()
-                    .chain(&state.quantiles);
-                row.extend(estimates.flat_map(cells));
+                let moments = [state.mean, state.std].map(QuantileEstimate::from);
+                row.extend(moments.iter().chain(&state.quantiles).flat_map(cells));
                 row.push(complete.clone());
                 file.row(&row)?;
             }
@@ -114,7 +110,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
         for snapshot in &self.outcome.snapshots {
             for (set, intervals) in ["validity box", "limits"].into_iter().enumerate() {
                 for (name, share) in self.left(snapshot, set).0 {
-                    let [value, low, high] = cells(&Some(share));
+                    let [value, low, high] = cells(&Some(share).into());
                     file.row(&[
                         &cell(time(snapshot.time)),
                         intervals,

@@ -1,0 +1,364 @@
+//! A flight and its linear closed loop: state and inputs together, with the root of their covariance.
+
+use ahv_core::{DifferentiableModel, StochasticModel, Vector};
+use ahv_integrate::LinearTransition;
+use nalgebra::{DMatrix, DVector};
+
+use super::{CovarianceError, check, column, lyapunov, noise_intensity};
+use crate::linearize::LinearSystem;
+use crate::poles::poles;
+
+/// States and inputs that a transition is made for.
+const MOST: usize = 16;
+/// Change in 1 s, relative to 1 or the value, from which a flight is not at rest.
+const REST: f64 = 1e-6;
+/// Least eigenvalue of a matrix of correlations that rounding explains.
+const ROUNDING: f64 = -1e-10;
+
+/// A state feedback through actuators without limits: u̇ = b (input − K (x − state − rate t) − u).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Regulation<X, U> {
+    /// State that it leads to at time 0.
+    pub state: X,
+    /// Rate at which that state moves, in its unit per s.
+    pub rate: X,
+    /// Input at that state.
+    pub input: U,
+    /// K, inputs by states.
+    pub gain: DMatrix<f64>,
+    /// b, bandwidths of the actuators in rad/s; an input of bandwidth 0 is held.
+    pub bandwidth: U,
+}
+
+/// A flight with held or regulated inputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flight<X, U> {
+    /// State at time 0.
+    pub start: X,
+    /// Input at time 0.
+    pub input: U,
+    /// Covariance of states and inputs at time 0, states first.
+    pub initial: DMatrix<f64>,
+    /// What moves the inputs; without it they are held.
+    pub feedback: Option<Regulation<X, U>>,
+    /// Longest step, in s.
+    pub dt: f64,
+}
+
+/// A state on a flight, with the covariance of the deviations from it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spreading<X> {
+    /// Time, in s.
+    pub time: f64,
+    /// The state without noise.
+    pub state: X,
+    /// Covariance of the states, in the units of the states over one another.
+    pub covariance: DMatrix<f64>,
+}
+
+impl<X> Spreading<X> {
+    /// Standard deviation of each state, in its own unit.
+    pub fn std(&self) -> Vec<f64> {
+        let variances = self.covariance.diagonal();
+        variances.iter().map(|variance| variance.sqrt()).collect()
+    }
+}
+
+/// State and input, as one column.
+type Joint = DVector<f64>;
+
+/// Rate, its derivatives and the intensity of the noise, of state and input together.
+struct Linear {
+    rate: Joint,
+    a: DMatrix<f64>,
+    intensity: DMatrix<f64>,
+}
+
+impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
+    /// A flight from a state that is known exactly, with held inputs.
+    pub fn new(start: X, input: U, dt: f64) -> Self {
+        let size = X::LEN + U::LEN;
+        Self {
+            start,
+            input,
+            initial: DMatrix::zeros(size, size),
+            feedback: None,
+            dt,
+        }
+    }
+
+    /// State without noise and covariance at `times`, in s.
+    ///
+    /// Over a step A and G are those in the middle of it: the state moves by the exponential midpoint rule, the covariance by
+    /// P ← Φ P Φᵀ + Q. Exact where A and G are constant, as at a trim, however fast a mode is; else of order 2 in the step.
+    /// A root of P is propagated, so that P is positive semidefinite.
+    ///
+    /// # Errors
+    ///
+    /// [`CovarianceError::Times`], [`CovarianceError::StepTooLong`], [`CovarianceError::Diverged`], [`CovarianceError::Indefinite`],
+    /// [`CovarianceError::TooLarge`].
+    pub fn covariance<M>(
+        &self,
+        model: &M,
+        times: &[f64],
+    ) -> Result<Vec<Spreading<X>>, CovarianceError>
+    where
+        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
+    {
+        let steps = self.steps(times)?;
+        let mut root = self.root()?;
+        let mut z = self.joint();
+        let mut trajectory = Vec::with_capacity(times.len());
+        let mut before = 0.0;
+        for (&time, (count, dt)) in times.iter().zip(steps) {
+            for step in 0..count {
+                let at = before + step as f64 * dt;
+                (z, root) = self.step(model, [at, dt], &z, &root, time)?;
+            }
+            before = time;
+            let covariance = &root * root.transpose();
+            let spreading = Spreading {
+                time,
+                state: part(&z, 0),
+                covariance: covariance.view((0, 0), (X::LEN, X::LEN)).into_owned(),
+            };
+            spreading.check()?;
+            trajectory.push(spreading);
+        }
+        Ok(trajectory)
+    }
+
+    /// The covariance of the states at which the linear closed loop about the start comes to rest. Held inputs do not spread.
+    ///
+    /// # Errors
+    ///
+    /// [`CovarianceError::NotAtRest`], [`CovarianceError::UndampedMode`] for a mode that does not decay, those of [`lyapunov`].
+    pub fn stationary<M>(&self, model: &M) -> Result<DMatrix<f64>, CovarianceError>
+    where
+        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
+    {
+        let z = self.joint();
+        let linear = self.linear(model, &z, 0.0);
+        let names: Vec<&'static str> = X::NAMES.iter().chain(U::NAMES).copied().collect();
+        for ((&name, &rate), &value) in names.iter().zip(linear.rate.iter()).zip(z.iter()) {
+            let rests = rate.abs() <= REST * f64::max(1.0, value.abs());
+            if !rests {
+                return Err(CovarianceError::NotAtRest { name, rate });
+            }
+        }
+        let moves = |&index: &usize| index < X::LEN || self.bandwidth(index - X::LEN) > 0.0;
+        let moved: Vec<usize> = (0..names.len()).filter(moves).collect();
+        let among = |matrix: &DMatrix<f64>| matrix.select_rows(&moved).select_columns(&moved);
+        let system = LinearSystem {
+            states: moved
+                .iter()
+                .filter_map(|&it| names.get(it).copied())
+                .collect(),
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            a: among(&linear.a),
+            b: DMatrix::zeros(moved.len(), 0),
+            c: DMatrix::zeros(0, moved.len()),
+            d: DMatrix::zeros(0, 0),
+        };
+        check("A", &system.a, moved.len())?;
+        let poles = poles(&system)?;
+        let rightmost = poles
+            .iter()
+            .max_by(|p, q| p.value.re.total_cmp(&q.value.re));
+        if let Some(pole) = rightmost.filter(|pole| pole.value.re >= 0.0) {
+            let mode = pole.mode.map(|mode| mode.to_string());
+            return Err(CovarianceError::UndampedMode {
+                mode: mode.unwrap_or_else(|| "actuator".to_owned()),
+                real: pole.value.re,
+                imaginary: pole.value.im,
+            });
+        }
+        let covariance = lyapunov(&system.a, &among(&linear.intensity))?;
+        Ok(covariance.view((0, 0), (X::LEN, X::LEN)).into_owned())
+    }
+
+    fn joint(&self) -> Joint {
+        let both = [column(&self.start), column(&self.input)];
+        Joint::from_iterator(X::LEN + U::LEN, both.iter().flatten().copied())
+    }
+
+    /// Bandwidth of an input's actuator; 0 where it is held.
+    fn bandwidth(&self, input: usize) -> f64 {
+        let feedback = self.feedback.as_ref();
+        let bandwidth = feedback.and_then(|feedback| feedback.bandwidth.get(input));
+        bandwidth.unwrap_or(0.0)
+    }
+
+    fn linear<M>(&self, model: &M, z: &Joint, time: f64) -> Linear
+    where
+        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
+    {
+        let (x, u): (X, U) = (part(z, 0), part(z, X::LEN));
+        let (n, size) = (X::LEN, X::LEN + U::LEN);
+        let (drift, by_state, by_input) = model.drift_and_jacobians(&x, &u);
+        let mut a = DMatrix::zeros(size, size);
+        for row in 0..n {
+            for column in 0..size {
+                let entry = if column < n {
+                    by_state.get(row).and_then(|it: X| it.get(column))
+                } else {
+                    by_input.get(row).and_then(|it: U| it.get(column - n))
+                };
+                a[(row, column)] = entry.unwrap_or(0.0);
+            }
+        }
+        let mut rate = Joint::zeros(size);
+        rate.rows_mut(0, n).copy_from(&column(&drift));
+        if let Some(feedback) = &self.feedback {
+            let moved = feedback.rate.map(|rate| rate * time);
+            let reference = feedback.state.zip_with(moved, |rest, moved| rest + moved);
+            let deviation = column(&x.zip_with(reference, |x, reference| x - reference));
+            let command = column(&feedback.input) - &feedback.gain * deviation;
+            for input in 0..U::LEN {
+                let (row, bandwidth) = (n + input, self.bandwidth(input));
+                rate[row] = bandwidth * (command[input] - z[row]);
+                a[(row, row)] = -bandwidth;
+                let gains = feedback.gain.row(input) * -bandwidth;
+                a.view_mut((row, 0), (1, n)).copy_from(&gains);
+            }
+        }
+        let mut intensity = DMatrix::zeros(size, size);
+        let noise = noise_intensity(model, &x, &u);
+        intensity.view_mut((0, 0), (n, n)).copy_from(&noise);
+        Linear { rate, a, intensity }
+    }
+
+    /// State and input, and the root of their covariance, after a step of `dt` from `at`, which ends at `time` at the latest.
+    fn step<M>(
+        &self,
+        model: &M,
+        [at, dt]: [f64; 2],
+        z: &Joint,
+        root: &DMatrix<f64>,
+        time: f64,
+    ) -> Result<(Joint, DMatrix<f64>), CovarianceError>
+    where
+        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
+    {
+        let size = z.len();
+        let start = self.linear(model, z, at);
+        let half = 0.5 * dt;
+        // Where a mode grows by a factor within half a step, an implicit step leads to the wrong side.
+        let implicit = |a: &DMatrix<f64>| {
+            let factors = (DMatrix::identity(size, size) - a * half).lu();
+            let sound = factors.determinant() > 0.0;
+            Some(factors)
+                .filter(|_| sound)
+                .ok_or(CovarianceError::StepTooLong { time, dt })
+        };
+        // Half a step by the implicit Euler method: no mode decays too fast for it.
+        let slope = implicit(&start.a)?.solve(&start.rate);
+        let middle = z + slope.ok_or(CovarianceError::StepTooLong { time, dt })? * half;
+        finite::<X, U>(time, &middle)?;
+        let linear = self.linear(model, &middle, at + half);
+        implicit(&linear.a)?;
+        let padded = |matrix: &DMatrix<f64>| -> [[f64; MOST]; MOST] {
+            let entry =
+                |row: usize, column: usize| matrix.get((row, column)).copied().unwrap_or(0.0);
+            std::array::from_fn(|row| std::array::from_fn(|column| entry(row, column)))
+        };
+        let transition =
+            LinearTransition::<f64, MOST>::new(padded(&linear.a), padded(&linear.intensity), dt)
+                .map_err(|_| CovarianceError::Times)?;
+        let trimmed = |matrix: &[[f64; MOST]; MOST]| {
+            DMatrix::from_fn(size, size, |row, column| matrix[row][column])
+        };
+        let constant = linear.rate + linear.a * (z - &middle);
+        let next = z + trimmed(transition.forced()) * constant;
+        finite::<X, U>(time, &next)?;
+        // [Φ L, L_Q] times its transpose is Φ P Φᵀ + Q; the triangle of its QR decomposition is a root of that.
+        let mut roots = DMatrix::zeros(2 * size, size);
+        let carried = trimmed(transition.transition()) * root;
+        let added = trimmed(transition.root());
+        for (first, part) in [(0, carried), (size, added)] {
+            roots
+                .view_mut((first, 0), (size, size))
+                .copy_from(&part.transpose());
+        }
+        Ok((next, roots.qr().unpack_r().transpose()))
+    }
+
+    /// A root of the initial covariance. Its correlations are factored, for units differ.
+    fn root(&self) -> Result<DMatrix<f64>, CovarianceError> {
+        let size = X::LEN + U::LEN;
+        if size > MOST {
+            return Err(CovarianceError::TooLarge {
+                found: size,
+                most: MOST,
+            });
+        }
+        check("the initial covariance", &self.initial, size)?;
+        let scale = self.initial.diagonal().map(
+            |variance| {
+                if variance > 0.0 { variance.sqrt() } else { 1.0 }
+            },
+        );
+        let correlation = DMatrix::from_fn(size, size, |row, column| {
+            self.initial[(row, column)] / (scale[row] * scale[column])
+        });
+        let eigen = correlation.symmetric_eigen();
+        let least = eigen.eigenvalues.min();
+        if least < ROUNDING {
+            return Err(CovarianceError::Indefinite { least });
+        }
+        let roots = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());
+        Ok(DMatrix::from_diagonal(&scale) * eigen.eigenvectors * DMatrix::from_diagonal(&roots))
+    }
+
+    /// Number and length of the steps to each time from the one before.
+    fn steps(&self, times: &[f64]) -> Result<Vec<(u64, f64)>, CovarianceError> {
+        let mut steps = Vec::with_capacity(times.len());
+        let mut before = 0.0;
+        for &time in times {
+            let count = ((time - before) / self.dt - 1e-9).ceil().max(0.0);
+            let sound = self.dt > 0.0 && time >= before && time.is_finite() && count < 1e9;
+            if !sound {
+                return Err(CovarianceError::Times);
+            }
+            steps.push((count as u64, (time - before) / count.max(1.0)));
+            before = time;
+        }
+        Ok(steps)
+    }
+}
+
+impl<X: Vector<f64>> Spreading<X> {
+    fn check(&self) -> Result<(), CovarianceError> {
+        let variance = |index: usize| self.covariance.get((index, index)).copied();
+        let variances = X::from_fn(|index| variance(index).unwrap_or(f64::NAN));
+        match variances.find(|value| !value.is_finite()) {
+            None => Ok(()),
+            Some((name, value)) => Err(CovarianceError::Diverged {
+                time: self.time,
+                what: "variance",
+                name,
+                value,
+            }),
+        }
+    }
+}
+
+/// The components of a vector that begin at `first`.
+fn part<V: Vector<f64>>(z: &Joint, first: usize) -> V {
+    V::from_fn(|index| z.get(first + index).copied().unwrap_or(f64::NAN))
+}
+
+fn finite<X: Vector<f64>, U: Vector<f64>>(time: f64, z: &Joint) -> Result<(), CovarianceError> {
+    let infinite = |value: f64| !value.is_finite();
+    let state = part::<X>(z, 0).find(infinite);
+    match state.or_else(|| part::<U>(z, X::LEN).find(infinite)) {
+        None => Ok(()),
+        Some((name, value)) => Err(CovarianceError::Diverged {
+            time,
+            what: "value",
+            name,
+            value,
+        }),
+    }
+}

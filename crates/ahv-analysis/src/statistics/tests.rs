@@ -1,0 +1,97 @@
+use super::{Estimate, QuantileEstimate, kurtosis, ranks, student_95};
+
+/// Against the sum of the binomial distribution, term by term.
+#[test]
+fn ranks_leave_at_most_a_tail_on_either_side() {
+    // Logarithms of factorials.
+    let mut factorials = vec![0.0];
+    for number in 1..=2049 {
+        factorials.push(factorials[number - 1] + (number as f64).ln());
+    }
+    for count in [1_u64, 2, 5, 39, 40, 100, 500, 2049] {
+        for share in [0.005, 0.05, 0.25, 0.5, 0.95, 0.995] {
+            // P(B < rank).
+            let factorial = |n: u64| factorials[n as usize];
+            let below = |rank: u64| -> f64 {
+                let term = |k: u64| {
+                    let choices = factorial(count) - factorial(k) - factorial(count - k);
+                    choices + k as f64 * f64::ln(share) + (count - k) as f64 * f64::ln(1.0 - share)
+                };
+                (0..rank).map(|k| term(k).exp()).sum()
+            };
+            let [low, high] = ranks(share, count);
+            let rank = low.unwrap_or(0);
+            assert!(
+                below(rank) <= 0.025 && below(rank + 1) > 0.025,
+                "{count} {share}: {low:?}"
+            );
+            // The quantile lies above the one of this rank where fewer than so many lie below it.
+            let above = |rank: u64| 1.0 - below(rank);
+            match high {
+                Some(rank) => assert!(above(rank) <= 0.025 + 1e-12 && above(rank - 1) > 0.025),
+                None => assert!(above(count) > 0.025, "{count} {share}"),
+            }
+        }
+    }
+    // A large number of members: as the normal distribution.
+    let [low, high] = ranks(0.5, 1_000_000_000).map(|rank| rank.expect("a rank") as f64);
+    let half = 1.959_964 * 0.25e9_f64.sqrt();
+    assert!(
+        (low - (5e8 - half)).abs() < 5.0 && (high - (5e8 + half)).abs() < 5.0,
+        "{low} {high}"
+    );
+}
+
+#[test]
+fn a_side_without_a_rank_is_open() {
+    let sample: Vec<f64> = (0..40).map(f64::from).collect();
+    let low = QuantileEstimate::of_sorted(&sample, 0.005);
+    assert_eq!((low.low, low.high), (None, Some(1.0)));
+    let high = QuantileEstimate::of_sorted(&sample, 0.995);
+    assert_eq!((high.low, high.high), (Some(38.0), None));
+    // 14 and 27 of 40: the tables of the sign test.
+    let median = QuantileEstimate::of_sorted(&sample, 0.5);
+    assert_eq!(
+        (median.value, median.low, median.high),
+        (Some(19.5), Some(13.0), Some(26.0))
+    );
+    assert_eq!(
+        QuantileEstimate::of_sorted(&[], 0.5),
+        QuantileEstimate::default()
+    );
+}
+
+/// Student's table.
+#[test]
+fn students_points_are_those_of_his_table() {
+    for (freedom, point) in [
+        (1.0, 12.706_205),
+        (8.0, 2.306_004),
+        (9.0, 2.262_157),
+        (30.0, 2.042_272),
+        (1000.0, 1.962_339),
+    ] {
+        assert!((student_95(freedom) - point).abs() < 2e-5, "{freedom}");
+    }
+}
+
+/// Of a law of kurtosis 9 the interval of many numbers is twice as wide as of a normal one, as √(κ − 1) has it.
+#[test]
+fn the_interval_of_a_deviation_follows_the_kurtosis() {
+    let width = |kurtosis| {
+        let it = Estimate::of_std(1.0, kurtosis, 1e6);
+        it.high - it.low
+    };
+    assert!((width(9.0) / width(3.0) - 2.0).abs() < 1e-4);
+    let normal = Estimate::of_normal_std(1.0, 1e6);
+    assert!((width(3.0) / (normal.high - normal.low) - 1.0).abs() < 1e-4);
+    for count in 2..40 {
+        let it = Estimate::of_std(1.0, 1.0, f64::from(count));
+        assert!(
+            it.is_finite() && it.low < 1.0 && it.high > 1.0,
+            "{count}: {it:?}"
+        );
+    }
+    // Two values: m4 = m2².
+    assert!((kurtosis(&[1.0, 1.0, 3.0, 3.0]) - 1.0).abs() < 1e-15);
+}
