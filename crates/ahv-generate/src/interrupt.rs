@@ -65,7 +65,7 @@ pub(crate) fn output(
 ) -> Result<Output, Failure> {
     check()?;
     // Files, not pipes: nobody has to read them while the program runs.
-    let start = || {
+    let mut start = || {
         let (out, err) = (tempfile::tempfile()?, tempfile::tempfile()?);
         command
             .stdin(Stdio::null())
@@ -73,7 +73,6 @@ pub(crate) fn output(
             .stderr(err.try_clone()?);
         Ok((command.spawn()?, out, err))
     };
-    let mut start = start;
     let (mut child, out, err) = start().map_err(&failed)?;
     let status = wait(&mut child, &failed)?;
     let (stdout, stderr) = (text(out).map_err(&failed)?, text(err).map_err(&failed)?);

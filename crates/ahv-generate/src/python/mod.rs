@@ -82,10 +82,10 @@ pub(crate) fn last_lines(output: &[u8]) -> String {
     const KEPT: usize = 12;
     let text = String::from_utf8_lossy(output);
     let traceback = text.contains(TRACEBACK);
-    let frame = |line: &str| line.starts_with(TRACEBACK) || line.starts_with(' ');
+    let frame = |line: &str| traceback && (line.starts_with(TRACEBACK) || line.starts_with(' '));
     let lines: Vec<&str> = text
         .lines()
-        .filter(|line| !line.trim().is_empty() && !(traceback && frame(line)))
+        .filter(|line| !line.trim().is_empty() && !frame(line))
         .collect();
     let first = lines.len().saturating_sub(KEPT);
     lines[first..]
