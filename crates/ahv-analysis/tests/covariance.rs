@@ -144,7 +144,7 @@ impl StochasticModel for Square {
 fn the_covariance_follows_a_curved_flight_with_order_2() {
     let (model, one) = (Square(0.3), One { x: 1.0 });
     let times = [0.0, 0.5, 0.505, 3.0];
-    let errors = [1e-2, 5e-3].map(|dt| {
+    let errors = [2e-2, 1e-2].map(|dt| {
         let spread = Flight::new(one, one, dt).covariance(&model, &times);
         let errors = spread
             .expect("a flight")
@@ -160,7 +160,7 @@ fn the_covariance_follows_a_curved_flight_with_order_2() {
     assert_eq!(errors[0][0], [0.0, 0.0]);
     for (coarse, fine) in errors[0].iter().zip(&errors[1]).skip(1) {
         for (coarse, fine) in coarse.iter().zip(fine) {
-            assert!(coarse.abs() < 1e-5, "{errors:?}");
+            assert!(coarse.abs() < 4e-5, "{errors:?}");
             let ratio = coarse / fine;
             assert!((3.5..4.5).contains(&ratio), "{ratio} of {errors:?}");
         }
@@ -279,7 +279,7 @@ const IDLE: One<f64> = One { x: 0.0 };
 fn coloured_noise_and_its_integral_have_their_closed_form_however_stiff() {
     for a in [0.5, 40.0, 2625.0, 1e5] {
         let model = Pair { a, c: 0.0, g: 3.0 };
-        for dt in [1e-3, 0.05, 1.0] {
+        for dt in [0.01, 0.05, 1.0] {
             let spread = Flight::new(REST, IDLE, dt).covariance(&model, &[0.05, 1.0]);
             for it in spread.expect("a flight") {
                 let t = it.time;
@@ -341,7 +341,7 @@ fn a_closed_loop_comes_to_rest_where_lyapunov_says() {
         ..open.clone()
     };
     let rest = closed.stationary(&model).expect("it is stable");
-    let late = closed.covariance(&model, &[60.0]).expect("a flight");
+    let late = closed.covariance(&model, &[30.0]).expect("a flight");
     assert_relative_eq!(
         late[0].covariance,
         rest,
@@ -518,7 +518,7 @@ fn stiff_coloured_noise_has_its_exact_deviation_at_any_step() {
 #[test]
 fn a_regulated_flight_has_a_stationary_covariance() {
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let open = level(&model, 0.02);
+    let open = level(&model, 0.05);
     assert!(matches!(
         open.stationary(&model),
         Err(CovarianceError::UndampedMode { mode, .. }) if mode == "short period"
