@@ -313,3 +313,27 @@ fn filtered([value, rate]: [f64; 2], input: f64, bandwidth: f64) -> [f64; 2] {
 fn within(value: f64, bounds: Bounds) -> f64 {
     value.clamp(bounds.min, bounds.max)
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, Vector2};
+
+    use super::{PERIOD, filtered};
+
+    /// ÿ = −2b ẏ − b² (y − input): about the input, by the exponential of its matrix.
+    #[test]
+    fn a_command_filter_takes_exact_steps() {
+        for bandwidth in [0.3, 3.0, 20.0, 200.0] {
+            let (input, start): (f64, [f64; 2]) = (0.7, [0.2, -1.5]);
+            let rates = [0.0, 1.0, -bandwidth * bandwidth, -2.0 * bandwidth];
+            let step = DMatrix::from_row_slice(2, 2, &(rates.map(|rate| rate * PERIOD))).exp();
+            let error = step * Vector2::new(start[0] - input, start[1]);
+            let [value, rate] = filtered(start, input, bandwidth);
+            assert!((value - (input + error[0])).abs() < 1e-12, "{bandwidth}");
+            assert!(
+                (rate - error[1]).abs() < 1e-12 * bandwidth.max(1.0),
+                "{bandwidth}"
+            );
+        }
+    }
+}
