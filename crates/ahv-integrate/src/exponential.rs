@@ -258,6 +258,16 @@ mod tests {
 
     use super::{FlexibleMode, phi_functions};
 
+    /// By Taylor's series for a small part, and squaring.
+    fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let part = matrix / 64.0;
+        let one = DMatrix::identity(matrix.nrows(), matrix.ncols());
+        let series = (1..24)
+            .rev()
+            .fold(one.clone(), |sum, k| &one + &part * sum / f64::from(k));
+        (0..6).fold(series, |root, _| &root * &root)
+    }
+
     /// The exponential of [A, 1, 0, 0; 0, 0, 1, 0; 0, 0, 0, 1; 0, 0, 0, 0] has e^A, φ₁, φ₂ and φ₃ in its first row of blocks.
     #[test]
     fn phi_functions_are_blocks_of_a_matrix_exponential() {
@@ -281,7 +291,7 @@ mod tests {
                 blocks
                     .view_mut((4, 6), (2, 2))
                     .copy_from(&Matrix2::identity());
-                let exponential = blocks.exp();
+                let exponential = exponential(&blocks);
                 for (order, found) in phi_functions(&mode, time).into_iter().enumerate() {
                     for (row, entries) in found.into_iter().enumerate() {
                         for (column, entry) in entries.into_iter().enumerate() {
