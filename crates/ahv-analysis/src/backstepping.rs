@@ -313,3 +313,23 @@ fn filtered([value, rate]: [f64; 2], input: f64, bandwidth: f64) -> [f64; 2] {
 fn within(value: f64, bounds: Bounds) -> f64 {
     value.clamp(bounds.min, bounds.max)
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix2, Vector2};
+
+    use super::{PERIOD, filtered};
+
+    /// ÿ = −2b ẏ − b² (y − input) about the input: e^{At} = e^{−bt} (1 + (A + b) t), for A + b has the square 0.
+    #[test]
+    fn a_command_filter_takes_exact_steps() {
+        for b in [0.3_f64, 3.0, 20.0, 200.0] {
+            let (input, start) = (0.7, Vector2::new(0.2 - 0.7, -1.5));
+            let shifted = Matrix2::new(b, 1.0, -b * b, -b);
+            let error = (start + shifted * start * PERIOD) * (-b * PERIOD).exp();
+            let [value, rate] = filtered([0.2, -1.5], input, b);
+            assert!((value - (input + error[0])).abs() < 1e-12, "{b}");
+            assert!((rate - error[1]).abs() < 1e-12 * b.max(1.0), "{b}");
+        }
+    }
+}

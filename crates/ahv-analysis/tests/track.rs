@@ -7,7 +7,7 @@ mod closed_loop;
 use ahv_analysis::backstepping::{Backstepping, DESIGN, Design};
 use ahv_analysis::monte_carlo::Control;
 use ahv_analysis::track::{
-    ACTUATORS, Controller, Flight, Increments, LinearTracker, LoopState, Manoeuvre, PERIOD,
+    ACTUATORS, Controller, Flight, Increments, LinearTracker, LoopState, Manoeuvre, PERIOD, Sample,
     Statistics, Trial, silent,
 };
 use ahv_core::{DifferentiableModel, Vector};
@@ -75,6 +75,37 @@ fn without_noise_the_errors_vanish() {
     assert_abs_diff_eq!(velocity, 0.0, epsilon = 1.0);
     assert_abs_diff_eq!(altitude, 0.0, epsilon = 10.0);
     assert_abs_diff_eq!(gamma.to_degrees(), 0.0, epsilon = 1e-2);
+}
+
+/// Errors count every period, 25 between two records.
+#[test]
+fn the_errors_of_a_flight_are_those_of_its_records() {
+    let trial = calm(NOMINAL);
+    let flight = &trial
+        .fly(&trial.backstepping(), &Control::default())
+        .expect("a trim")[0];
+    let of_samples = |index: usize| {
+        flight.samples.iter().map(
+            move |Sample {
+                      state, reference, ..
+                  }| {
+                let errors = [
+                    state.velocity - reference.velocity,
+                    state.altitude - reference.altitude,
+                    state.gamma - reference.gamma(),
+                ];
+                errors[index].abs()
+            },
+        )
+    };
+    for (index, size) in flight.errors.iter().enumerate() {
+        let largest = of_samples(index).fold(0.0, f64::max);
+        assert!(largest > 0.0 && size.max >= largest);
+        assert_relative_eq!(size.max, largest, max_relative = 0.05);
+        let count = flight.samples.len() as f64;
+        let squares: f64 = of_samples(index).map(|error| error * error).sum();
+        assert_relative_eq!(size.rms, (squares / count).sqrt(), max_relative = 0.02);
+    }
 }
 
 #[test]
@@ -336,68 +367,6 @@ fn the_sampled_regulator_is_as_the_linear_prediction() {
     assert_abs_diff_eq!(flown[1], linear[1], epsilon = 5e-3 * scale[1]);
     assert_abs_diff_eq!(flown[2], linear[2], epsilon = 5e-3 * scale[3]);
     assert_abs_diff_eq!(flown[3], linear[3], epsilon = 5e-3 * scale[3]);
-}
-
-#[test]
-fn the_lyapunov_function_decays_along_the_manoeuvre() {
-    let trial = calm(NOMINAL);
-    let controller = Backstepping::new(DESIGN, &NOMINAL);
-    for sample in &trial.fly(&controller, &Control::default()).expect("a trim")[0].samples {
-        let x = sdcom::State {
-            velocity: sample.state.velocity,
-            altitude: sample.state.altitude,
-            gamma: sample.state.gamma,
-            alpha: sample.state.alpha,
-            pitch_rate: sample.state.pitch_rate,
-            ..sdcom::State::splat(0.0)
-        };
-        let u = sample.input.to_array().into();
-        assert!(controller.margin(&x, &u) > 0.02, "{}", sample.time);
-    }
-}
-
-#[test]
-fn decays_grow_with_the_noise_as_the_ito_term_says() {
-    let (x, u) = {
-        let trial = calm(NOMINAL);
-        let model = sdcom::Model::new(&NOMINAL);
-        let at = ahv_analysis::trim::trim(
-            &model,
-            &ahv_analysis::trim::SteadyFlight::new(
-                trial.manoeuvre.velocity.from,
-                trial.manoeuvre.altitude.from,
-            ),
-        )
-        .expect("a trim");
-        (at.state, at.input)
-    };
-    let decays =
-        |parameters: Parameters<f64>| Backstepping::new(DESIGN, &parameters).decays(&x, &u);
-    let loops = [
-        DESIGN.velocity,
-        DESIGN.altitude,
-        DESIGN.gamma,
-        DESIGN.alpha,
-        DESIGN.pitch_rate,
-    ];
-    let calm = decays(silent(NOMINAL));
-    for (decay, design) in calm.into_iter().zip(loops) {
-        assert_eq!(decay, design.decay);
-    }
-    // dh has the column V w_gamma: 3/4 |G|^4 / (c r^4) by hand.
-    let by_hand = |w: f64| 0.75 * (7702.0808 * w).powi(4) / (0.12 * 25.0_f64.powi(4));
-    let [_, altitude, ..] = decays(NOMINAL);
-    assert_relative_eq!(altitude - 0.12, by_hand(7.8e-4), max_relative = 1e-12);
-    let noisier = Parameters {
-        w_gamma: 2.0 * NOMINAL.w_gamma,
-        ..NOMINAL
-    };
-    let [_, doubled, ..] = decays(noisier);
-    assert_relative_eq!(
-        doubled - 0.12,
-        16.0 * (altitude - 0.12),
-        max_relative = 1e-12
-    );
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::dag::{Call, Dag, Id, Kind, Node};
 use crate::ir::{Expr, Model};
 use crate::passes::{Pass, Passes};
 
@@ -56,6 +57,31 @@ pub(crate) fn value_of_expr(expr: &Expr, at: &Point) -> f64 {
                 other => panic!("{other}"),
             }
         }
+    }
+}
+
+/// What a node of the graph is worth at a point.
+pub(crate) fn value_of_node(dag: &Dag, id: Id, at: &Point) -> f64 {
+    let value = |id: &Id| value_of_node(dag, *id, at);
+    match dag.node(id) {
+        Node::Number(value) => *value,
+        Node::Leaf(kind, name) => {
+            let prefix = match kind {
+                Kind::State => "x",
+                Kind::Input => "u",
+                Kind::Noise => "w",
+                Kind::Parameter => "p",
+                Kind::Argument => "t",
+            };
+            at[&format!("{prefix}.{name}")]
+        }
+        Node::Sum(terms) => terms.iter().map(|(c, t)| c * value(t)).sum(),
+        Node::Product(c, factors) => c * factors.iter().map(value).product::<f64>(),
+        Node::Power(base, exponent) => value(base).powi(*exponent),
+        Node::Call(Call::Sin, a) => value(a).sin(),
+        Node::Call(Call::Cos, a) => value(a).cos(),
+        Node::Call(Call::Exp, a) => value(a).exp(),
+        Node::Call(Call::Sqrt, a) => value(a).sqrt(),
     }
 }
 

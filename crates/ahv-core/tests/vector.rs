@@ -1,7 +1,7 @@
 //! Named vectors and their conversions, on a vector made as the generated code makes them.
 #![forbid(unsafe_code)]
 
-use ahv_core::{Bounds, Real, Vector, first_outside};
+use ahv_core::{Bounds, Pattern, Real, Vector, at, first_outside};
 use nalgebra::{SMatrix, SVector};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +108,12 @@ fn the_first_component_outside_its_bounds_is_named() {
     };
     let outside = first_outside(&X, &bounds).expect("alpha is outside");
     assert_eq!((outside.name, outside.value), ("alpha", 2.0));
-    assert!(first_outside(&State::splat(1.0), &bounds).is_none());
+    assert_eq!(outside.bounds, bounds.alpha);
+    // The ends belong to the interval.
+    for end in [0.0, 1.0] {
+        assert!(first_outside(&State::splat(end), &bounds).is_none());
+    }
+    assert!(first_outside(&State::splat(-0.1), &bounds).is_some());
     assert!(first_outside(&State::splat(f64::NAN), &bounds).is_some());
 }
 
@@ -124,4 +129,37 @@ fn elementary_functions_have_fixed_bits() {
     assert_eq!(Real::recip(4.0_f32), 0.25);
     assert_eq!(Real::abs(-3.0_f32), 3.0);
     assert!(!Real::is_finite(f32::NAN) && Real::is_finite(1.0_f32));
+}
+
+/// What the values of a compressed array stand for: the entries at their places, zero elsewhere, and mirror images.
+#[test]
+fn a_pattern_puts_values_into_their_places() {
+    type Matrix = State<State<f64>>;
+    let matrix = Pattern::new(
+        [3, 3],
+        &[
+            at!(State.velocity, State.alpha),
+            at!(State.eta, State.velocity),
+            at!(State.eta, State.eta),
+        ],
+    );
+    assert_eq!((matrix.len(), matrix.is_empty()), (3, false));
+    let dense: Matrix = matrix.dense(&[4.0, 5.0, 6.0]);
+    let expected = [[0.0, 4.0, 0.0], [0.0; 3], [5.0, 0.0, 6.0]];
+    assert_eq!(dense.to_matrix(), expected);
+    let none = Pattern::new([3, 3], &[]);
+    assert_eq!((none.len(), none.is_empty()), (0, true));
+    assert_eq!(
+        none.dense::<f64, State<f64>, Matrix>(&[]).to_matrix(),
+        [[0.0; 3]; 3]
+    );
+
+    let of_matrices = |array: State<Matrix>| array.map_into(|matrix| matrix.to_matrix()).to_array();
+    let array = Pattern::new([3, 3, 3], &[[0, 1, 0], [0, 2, 2], [2, 0, 0]]);
+    let values = [7.0, 8.0, 9.0];
+    let mut expected = [[[0.0; 3]; 3]; 3];
+    (expected[0][1][0], expected[0][2][2], expected[2][0][0]) = (7.0, 8.0, 9.0);
+    assert_eq!(of_matrices(array.dense(&values)), expected);
+    expected[0][0][1] = 7.0;
+    assert_eq!(of_matrices(array.symmetric(&values)), expected);
 }

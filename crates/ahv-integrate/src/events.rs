@@ -293,3 +293,28 @@ fn not_bracketed<M: Model>(event: &dyn Event<M>, time: f64, value: f64) -> Failu
         value,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Crossing::{Either, Falling, Limit, Rising};
+
+    /// An event at the start of a step was found at the end of the step before.
+    #[test]
+    fn a_passage_begins_off_zero_and_may_end_at_it() {
+        for (before, after, rises, falls) in [
+            (-1.0, 1.0, true, false),
+            (-1.0, 0.0, true, false),
+            (1.0, -1.0, false, true),
+            (1.0, 0.0, false, true),
+            (0.0, 1.0, false, false),
+            (0.0, -1.0, false, false),
+            (0.0, 0.0, false, false),
+            (1.0, 2.0, false, false),
+            (-1.0, -2.0, false, false),
+        ] {
+            let passed = [Rising, Falling, Limit, Either].map(|way| way.passed(before, after));
+            let expected = [rises, falls, falls, rises || falls];
+            assert_eq!(passed, expected, "from {before} to {after}");
+        }
+    }
+}

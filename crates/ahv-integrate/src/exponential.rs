@@ -251,3 +251,62 @@ impl<const N: usize> Exponential<N> {
         rest
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, Matrix2, Matrix4};
+
+    use super::{FlexibleMode, phi_functions};
+
+    /// By Taylor's series for a small part, and squaring.
+    fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let part = matrix / 64.0;
+        let one = DMatrix::identity(matrix.nrows(), matrix.ncols());
+        let series = (1..24)
+            .rev()
+            .fold(one.clone(), |sum, k| &one + &part * sum / f64::from(k));
+        (0..6).fold(series, |root, _| &root * &root)
+    }
+
+    /// The exponential of [A, 1, 0, 0; 0, 0, 1, 0; 0, 0, 0, 1; 0, 0, 0, 0] has e^A, φ₁, φ₂ and φ₃ in its first row of blocks.
+    #[test]
+    fn phi_functions_are_blocks_of_a_matrix_exponential() {
+        let omega = 3.0;
+        for zeta in [0.02, 0.7, 1.0, 1.8] {
+            // From the series, over where it gives way to the recursion, to several periods.
+            for turn in [1e-3, 0.1, 0.3, 0.5, 0.9, 1.1, 4.0, 12.0] {
+                let time = turn / omega;
+                let mode = FlexibleMode {
+                    position: 0,
+                    rate: 1,
+                    omega,
+                    zeta,
+                };
+                let rates = Matrix2::new(0.0, 1.0, -omega * omega, -2.0 * zeta * omega);
+                let mut blocks = DMatrix::zeros(8, 8);
+                blocks.view_mut((0, 0), (2, 2)).copy_from(&(rates * time));
+                blocks
+                    .view_mut((0, 2), (4, 4))
+                    .copy_from(&Matrix4::identity());
+                blocks
+                    .view_mut((4, 6), (2, 2))
+                    .copy_from(&Matrix2::identity());
+                let exponential = exponential(&blocks);
+                for (order, found) in phi_functions(&mode, time).into_iter().enumerate() {
+                    for (row, entries) in found.into_iter().enumerate() {
+                        for (column, entry) in entries.into_iter().enumerate() {
+                            let exact: f64 = exponential[(row, 2 * order + column)];
+                            // In units of η and η̇/ω.
+                            let unit = [1.0, omega][row] / [1.0, omega][column];
+                            let error = (entry - exact).abs() / unit;
+                            assert!(
+                                error < 1e-11,
+                                "ζ {zeta}, ωt {turn}: φ{order}[{row}][{column}] is {entry}, not {exact}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

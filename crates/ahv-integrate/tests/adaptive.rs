@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::cell::Cell;
+
 use ahv_core::{Model, Vector};
 use ahv_integrate::{
     Adaptive, ComponentLimit, Constant, Crossing, Dense, DormandPrince54, Ending, Event, Located,
@@ -248,6 +250,41 @@ fn two_passages_in_one_long_step_are_both_found() {
     );
     assert_relative_eq!(log.0[0].1, 0.4, epsilon = 1e-12);
     assert_relative_eq!(log.0[1].1, 1.6, epsilon = 1e-12);
+}
+
+/// Regula falsi finds the zero of a line at once and that of a curve in a few rounds, where bisection takes fifty.
+#[test]
+fn an_event_takes_few_evaluations() {
+    for (slope, time, most) in [(0.0, 0.32, 12), (-10.0, 0.4, 20)] {
+        let evaluations = Cell::new(0);
+        let above = When::new("height", Crossing::Rising, |_, x: &Rigid<f64>| {
+            evaluations.set(evaluations.get() + 1);
+            x.height - 3.2
+        });
+        let events: [&dyn Event<Thrown>; 1] = [&above];
+        let input = Constant(Rigid {
+            height: 0.0,
+            speed: slope,
+        });
+        let problem = Problem::new(&Thrown, &input).events(&events);
+        let mut progress = Progress::new(
+            0.0,
+            Rigid {
+                height: 0.0,
+                speed: 10.0,
+            },
+        );
+        progress.step = Some(2.0);
+        let absolute = Rigid {
+            height: 1e-9,
+            speed: 1e-9,
+        };
+        Adaptive::new(DormandPrince54, 1e-9, absolute)
+            .run(&problem, &mut progress, 2.0, &mut ())
+            .expect("a parabola");
+        assert_relative_eq!(progress.time, time, epsilon = 1e-12);
+        assert!(evaluations.get() <= most, "{}", evaluations.get());
+    }
 }
 
 /// A dive with the limits that a flight has.

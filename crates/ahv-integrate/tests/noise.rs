@@ -3,6 +3,10 @@
 
 mod common;
 
+use std::array::from_fn;
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
 use ahv_core::Vector;
 use ahv_integrate::{
     BrownianPath, KeyedNormals, NormalLanes, NormalSource, NormalStream, RandNormals,
@@ -100,7 +104,7 @@ fn keyed_numbers_do_not_depend_on_order() {
 #[test]
 fn lanes_are_the_streams_of_their_members() {
     fn width<const N: usize>() {
-        let members: [u64; N] = std::array::from_fn(|lane| (lane as u64) << (5 * lane));
+        let members: [u64; N] = from_fn(|lane| (lane as u64) << (5 * lane));
         let mut single = members.map(|member| NormalLanes::<f32, 1>::new(9, [member], 4));
         let mut double = members.map(|member| NormalStream::new(9, member, 4));
         let mut lanes = NormalLanes::<f64, N>::new(9, members, 4);
@@ -143,7 +147,7 @@ fn a_step_of_a_source_does_not_depend_on_the_steps_before_it() {
 
 #[test]
 fn seeds_members_channels_and_steps_differ() {
-    let mut seen = std::collections::BTreeSet::new();
+    let mut seen = BTreeSet::new();
     for (seed, member) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let mut source = WienerSource::<CHANNELS>::new(seed, member);
         for step in 0..50 {
@@ -191,26 +195,10 @@ fn moments(steps: &[WienerIntegrals<Two<f64>>]) -> [f64; 4] {
 }
 
 #[test]
-fn every_level_of_a_path_has_the_law_of_a_wiener_process() {
-    let mut path = BrownianPath::new(SOURCE, 16.0);
-    let level = 12;
-    let h = path.dt(level);
-    assert_eq!(h, 1.0 / 256.0);
-    let steps: Vec<WienerIntegrals<Two<f64>>> = (0..1 << level)
-        .map(|index| path.integrals(level, index).expect("a step of the path"))
-        .collect();
-    let [dw, both, dz, neighbours] = moments(&steps);
-    // A standard error of 4096 products is 1/45 of a variance.
-    assert_relative_eq!(dw, h, max_relative = 0.07);
-    assert_relative_eq!(both, h * h / 2.0, max_relative = 0.07);
-    assert_relative_eq!(dz, h.powi(3) / 3.0, max_relative = 0.07);
-    assert_abs_diff_eq!(neighbours, 0.0, epsilon = 0.05 * h);
-}
-
-#[test]
 fn finer_steps_add_up_to_coarser_ones() {
     let mut path = BrownianPath::new(SOURCE, 3.0);
     for level in 0..6 {
+        assert_eq!(path.dt(level), 3.0 / f64::from(1 << level));
         for index in 0..1 << level {
             let whole: WienerIntegrals<Two<f64>> = path.integrals(level, index).expect("a step");
             let halves = [0, 1].map(|half| path.integrals(level + 1, 2 * index + half));
@@ -225,9 +213,156 @@ fn finer_steps_add_up_to_coarser_ones() {
             }
         }
     }
-    assert_eq!(path.integrals::<f64, Two<f64>>(3, 8), None);
-    assert_eq!(path.integrals::<f64, Two<f64>>(63, 0), None);
+    for (level, index) in [(0, 1), (3, 8), (3, u64::MAX), (63, 0), (64, 0), (200, 0)] {
+        assert_eq!(path.integrals::<f64, Two<f64>>(level, index), None);
+    }
     assert!(path.integrals::<f64, Two<f64>>(62, (1 << 62) - 1).is_some());
+}
+
+/// Covariances of numbers that `linear` makes of `N` independent standard normal ones.
+fn covariances<const N: usize, const M: usize>(
+    linear: impl Fn([f64; N]) -> [f64; M],
+) -> [[f64; M]; M] {
+    let unit = |k: usize| from_fn(|i| if i == k { 1.0 } else { 0.0 });
+    let responses: [[f64; M]; N] = from_fn(|k| linear(unit(k)));
+    from_fn(|a| {
+        from_fn(|b| {
+            responses
+                .iter()
+                .map(|response| response[a] * response[b])
+                .sum()
+        })
+    })
+}
+
+/// Covariances of ΔW and ΔZ over steps of these lengths one after the other.
+fn law<const M: usize>(steps: &[f64]) -> [[f64; M]; M] {
+    let of_pair = |h: f64| [[h, h * h / 2.0], [h * h / 2.0, h * h * h / 3.0]];
+    from_fn(|a| {
+        from_fn(|b| {
+            if a / 2 == b / 2 {
+                of_pair(steps[a / 2])[a % 2][b % 2]
+            } else {
+                0.0
+            }
+        })
+    })
+}
+
+#[track_caller]
+fn assert_covariances<const M: usize>(found: [[f64; M]; M], expected: [[f64; M]; M]) {
+    for (a, b) in (0..M).flat_map(|a| (0..M).map(move |b| (a, b))) {
+        let scale = (expected[a][a] * expected[b][b]).sqrt();
+        assert_abs_diff_eq!(found[a][b], expected[a][b], epsilon = 1e-14 * scale);
+    }
+}
+
+fn both(value: f64) -> Two<f64> {
+    Two {
+        w_1: value,
+        w_2: value,
+    }
+}
+
+fn pair(steps: [WienerIntegrals<Two<f64>>; 2]) -> [f64; 4] {
+    let [left, right] = steps;
+    [left.dw.w_1, left.dz.w_2, right.dw.w_2, right.dz.w_1]
+}
+
+/// All are linear in normal numbers, so that covariances are the whole law.
+#[test]
+fn integrals_over_one_step_two_steps_and_both_together_have_the_law_of_a_wiener_process() {
+    let [first, second] = [0.5, 3.0];
+    let steps = |[a, b, c, d]: [f64; 4]| {
+        [
+            WienerIntegrals::from_normals(first, both(a), both(b)),
+            WienerIntegrals::from_normals(second, both(c), both(d)),
+        ]
+    };
+    assert_covariances(covariances(|z| pair(steps(z))), law(&[first, second]));
+    let together = |z| {
+        let [left, right] = steps(z);
+        let whole = left.then(right, second);
+        [whole.dw.w_1, whole.dz.w_1]
+    };
+    assert_covariances(covariances(together), law(&[first + second]));
+}
+
+/// The halves of any step are two independent steps that make up the step: the law of the process given the step.
+#[test]
+fn a_bisected_step_is_two_independent_steps() {
+    for dt in [0.01, 1.0, 6.0] {
+        let whole = |a, b| WienerIntegrals::from_normals(dt, both(a), both(b));
+        let halves = |[a, b, c, d]: [f64; 4]| {
+            let (left, right) = whole(a, b).bisect(dt, both(c), both(d));
+            let again = left.then(right, dt / 2.0);
+            assert_abs_diff_eq!(
+                again.dw.w_1,
+                whole(a, b).dw.w_1,
+                epsilon = 1e-14 * dt.sqrt()
+            );
+            assert_abs_diff_eq!(
+                again.dz.w_1,
+                whole(a, b).dz.w_1,
+                epsilon = 1e-14 * dt.powf(1.5)
+            );
+            [left, right]
+        };
+        assert_covariances(covariances(|z| pair(halves(z))), law(&[dt / 2.0; 2]));
+        // The plain bridge, of ΔW alone.
+        let plain = |[a, b]: [f64; 2]| {
+            let (left, right) = bisect(both(dt.sqrt() * a), dt, both(b));
+            [left.w_1, right.w_2]
+        };
+        let expected = [[dt / 2.0, 0.0], [0.0, dt / 2.0]];
+        assert_covariances(covariances(plain), expected);
+    }
+}
+
+/// A source whose number at one place is 1, everywhere else 0; it notes what it is asked for.
+struct Impulse<'a> {
+    at: (u64, usize),
+    asked: &'a RefCell<BTreeSet<(u64, usize)>>,
+}
+
+impl NormalSource for Impulse<'_> {
+    fn normal(&mut self, step: u64, channel: usize) -> f64 {
+        self.asked.borrow_mut().insert((step, channel));
+        if self.at == (step, channel) { 1.0 } else { 0.0 }
+    }
+}
+
+/// Two steps, or two channels, that share a normal number are correlated; one that a number is missing from has another
+/// variance.
+#[test]
+fn the_steps_of_every_level_are_independent_and_so_are_the_channels() {
+    for level in 0..=4 {
+        let asked = RefCell::new(BTreeSet::new());
+        // ΔW and ΔZ of each step, of the first channel and then of the second.
+        let response = |at: (u64, usize)| {
+            let source = Impulse { at, asked: &asked };
+            let mut path = BrownianPath::new(source, 3.0);
+            let steps = (0..1 << level).map(|index| path.integrals(level, index));
+            let steps: Vec<WienerIntegrals<Two<f64>>> = steps.map(|w| w.expect("a step")).collect();
+            let first = steps.iter().flat_map(|step| [step.dw.w_1, step.dz.w_1]);
+            let second = steps.iter().flat_map(|step| [step.dw.w_2, step.dz.w_2]);
+            first.chain(second).collect::<Vec<f64>>()
+        };
+        response((0, 0));
+        let places = asked.borrow().clone();
+        let responses: Vec<Vec<f64>> = places.into_iter().map(response).collect();
+        let dt = 3.0 / f64::from(1 << level);
+        let expected: [[f64; 64]; 64] = law(&[dt; 32]);
+        let count = 4 << level;
+        for (a, b) in (0..count).flat_map(|a| (0..count).map(move |b| (a, b))) {
+            let found: f64 = responses
+                .iter()
+                .map(|response| response[a] * response[b])
+                .sum();
+            let scale = (expected[a][a] * expected[b][b]).sqrt();
+            assert_abs_diff_eq!(found, expected[a][b], epsilon = 1e-13 * scale);
+        }
+    }
 }
 
 #[test]

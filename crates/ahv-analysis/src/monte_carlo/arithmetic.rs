@@ -243,3 +243,15 @@ where
         self.model.decay(state).as_ref().map(narrow)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Mode;
+
+    /// Command lines and files of earlier versions hold them.
+    #[test]
+    fn modes_keep_their_names() {
+        let names = Mode::ALL.map(Mode::name);
+        assert_eq!(names, ["exact", "fma", "f32-noise", "f32-drift"]);
+    }
+}

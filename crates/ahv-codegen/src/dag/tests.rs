@@ -1,34 +1,10 @@
 //! The normal form keeps values, and has the shape that the emitter relies on.
 
-use super::{Call, Dag, Id, Kind, Node};
+use super::{Dag, Id, Node};
 use crate::passes::Passes;
 use crate::testing::{
-    Draw, LEAVES, NAMES, Point, choices_of_passes, expr, model, quantity, value_of_expr,
+    Draw, LEAVES, NAMES, choices_of_passes, expr, model, quantity, value_of_expr, value_of_node,
 };
-
-fn value_of_node(dag: &Dag, id: Id, at: &Point) -> f64 {
-    let value = |id: &Id| value_of_node(dag, *id, at);
-    match dag.node(id) {
-        Node::Number(value) => *value,
-        Node::Leaf(kind, name) => {
-            let prefix = match kind {
-                Kind::State => "x",
-                Kind::Input => "u",
-                Kind::Noise => "w",
-                Kind::Parameter => "p",
-                Kind::Argument => "t",
-            };
-            at[&format!("{prefix}.{name}")]
-        }
-        Node::Sum(terms) => terms.iter().map(|(c, t)| c * value(t)).sum(),
-        Node::Product(c, factors) => c * factors.iter().map(value).product::<f64>(),
-        Node::Power(base, exponent) => value(base).powi(*exponent),
-        Node::Call(Call::Sin, a) => value(a).sin(),
-        Node::Call(Call::Cos, a) => value(a).cos(),
-        Node::Call(Call::Exp, a) => value(a).exp(),
-        Node::Call(Call::Sqrt, a) => value(a).sqrt(),
-    }
-}
 
 #[test]
 fn the_graph_keeps_values_whatever_passes_are_taken() {
