@@ -84,6 +84,18 @@ mod tests {
         }
     }
 
+    /// The scheme and the drift share one prepared value, also where equal expressions are several values.
+    #[test]
+    fn the_rate_is_the_value_that_the_drift_takes() {
+        let model = model(&[("drift", r#"["neg", ["/", "x.a", "p.e"]]"#)]);
+        for passes in choices_of_passes() {
+            let mut dag = Dag::new(&model, &passes).unwrap();
+            let roots = vec![dag.roots(&model.functions[0]).unwrap()];
+            let (_, rate) = rates(&model, &mut dag, &roots)[0];
+            assert!(dag.operands(roots[0][0]).contains(&rate), "{passes:?}");
+        }
+    }
+
     /// Each of these, stepped as coloured noise, would be a wrong simulation.
     #[test]
     fn a_state_that_does_not_decay_by_itself_is_no_coloured_noise() {

@@ -198,7 +198,7 @@ fn the_first_step_of_a_decay_is_that_of_the_book() {
 
 /// The Euler step looks at the input a guess later: a ramp that begins at the start bends, one that ends there does not.
 #[test]
-fn the_first_step_sees_the_input_ahead() {
+fn the_first_step_looks_ahead() {
     let ramp = |sign: f64| {
         Feedback(move |time: f64, _: &One<f64>| One {
             x: 1000.0 * (sign * (time - 3.0)).max(0.0),
@@ -206,6 +206,11 @@ fn the_first_step_sees_the_input_ahead() {
     };
     let step = |sign| first(|_, u| 1.0 + u, ramp(sign), [3.0, 1.0], [1e-6, 1e-30], 5);
     // d₁ = 1/r, d₂ = 1000/r.
+    assert_close(step(1.0), exact_power(0.01e-6 / 1000.0, 0.2));
+    assert_close(step(-1.0), exact_power(0.01e-6, 0.2));
+    // And at the state ahead: a drift that bends above the start.
+    let bends = |sign: f64| move |x: f64, _| 1.0 + 1000.0 * (sign * (x - 1.0)).max(0.0);
+    let step = |sign| first(bends(sign), NONE, [3.0, 1.0], [1e-6, 1e-30], 5);
     assert_close(step(1.0), exact_power(0.01e-6 / 1000.0, 0.2));
     assert_close(step(-1.0), exact_power(0.01e-6, 0.2));
 }
