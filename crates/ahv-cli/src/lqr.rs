@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
 use ahv_analysis::trim::{SteadyFlight, Trim};
-use ahv_core::{Model, Vector};
+use ahv_core::Vector;
 use clap::Args;
 use nalgebra::DMatrix;
 
