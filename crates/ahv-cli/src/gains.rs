@@ -165,6 +165,13 @@ impl<M: FlightModel> Vehicle<M> {
     }
 }
 
+/// Names without their order, which an object in JSON has not.
+fn sorted<'a>(names: &[&'a str]) -> Vec<&'a str> {
+    let mut names = names.to_vec();
+    names.sort_unstable();
+    names
+}
+
 /// The inputs that a trim does not seek.
 fn held<U: Vector<f64>>(input: &U) -> Vec<(&'static str, f64)> {
     let mut pairs = Pairs::of(input).0;
@@ -251,7 +258,7 @@ impl Gains {
             ("input_weight", self.input_weight.names(), own.as_slice()),
             ("units", self.units.names(), all.as_slice()),
         ] {
-            if found != expected {
+            if sorted(&found) != sorted(expected) {
                 return Err(format!(
                     "its `{key}` has the names {}; right are {}",
                     found.join(", "),
@@ -260,10 +267,12 @@ impl Gains {
             }
         }
         let right = Pairs::units_of_both::<M::State, M::Input>(vehicle.units).0;
-        let mut units = self.units.0.iter().zip(right);
-        match units.find(|((_, found), (_, right))| found != right) {
-            Some(((name, found), (_, right))) => Err(format!(
-                "its unit of {name} is `{found}`; right is `{right}`"
+        let mut units = self.units.0.iter();
+        let other = units.find(|(name, unit)| right.iter().any(|it| it.0 == name && it.1 != unit));
+        match other {
+            Some((name, unit)) => Err(format!(
+                "its unit of {name} is `{unit}`; the flights have the units of {}",
+                vehicle.units.name()
             )),
             None => Ok(()),
         }

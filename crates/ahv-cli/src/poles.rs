@@ -240,21 +240,21 @@ impl<M: FlightModel> Roots<'_, M> {
         });
         let zeros = self.zeros.finite.iter().map(|zero| {
             let name = decoupling(zero).map(|it| format!("{it} decoupling"));
-            line(zero.value, name.unwrap_or_default())
+            "\n".to_owned() + &line(zero.value, name.unwrap_or_default())
         });
         let head = format!(
             "{:>14} {:>13} {:>9} {:>11}",
             "real [1/s]", "imaginary", "damping", "[rad/s]"
         );
         format!(
-            "{}: {}\n{}\npoles\n{head}  mode (participation)\n{}\nzeros from {} to {}\n{head}\n{}\n{}",
+            "{}: {}\n{}\npoles\n{head}  mode (participation)\n{}\nzeros from {} to {}\n{head}{}\n{}",
             M::NAME,
             self.place,
             self.vehicle.described(),
             poles.collect::<Vec<_>>().join("\n"),
             self.inputs.join(", "),
             self.outputs.join(", "),
-            zeros.collect::<Vec<_>>().join("\n"),
+            zeros.collect::<String>(),
             self.count()
         )
     }

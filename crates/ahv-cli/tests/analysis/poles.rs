@@ -48,7 +48,7 @@ fn the_sdcom_says_how_many_zeros_it_has() {
     assert_eq!(roots["zeros"].as_array().map(Vec::len), Some(6));
     let told = text(&["poles", "--model", "sdcom"]);
     for part in [
-        "6 finite zeros: 8 states less 2 outputs, for C B is regular; 3 of them are poles that inputs or outputs miss",
+        "6 finite zeros: 8 states less the orders of the infinite zeros (1, 1); 3 of them are poles that inputs or outputs miss",
         "input decoupling",
         "coloured noise 3",
         "short period",
