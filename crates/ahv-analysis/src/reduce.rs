@@ -358,8 +358,13 @@ impl ReducedMode {
         let ratio = (end / short).max(1.0).powf(1.0 / f64::from(SAMPLES));
         let late = (1..=SAMPLES).map(|index| short * ratio.powf(f64::from(index)));
         let early = (0..=SAMPLES).map(|index| step * f64::from(index));
-        let samples = early.chain(late);
-        let samples: Vec<(f64, f64)> = samples
+        // At first D_η is σ t^³⁄²/√3 and D_χ is b √t: about when they meet.
+        let meeting = 3.0_f64.sqrt() * self.intensity() / self.mode.sigma;
+        let rise = (1..=SAMPLES).map(|index| 2.0 * meeting * f64::from(index) / f64::from(SAMPLES));
+        let mut times: Vec<f64> = early.chain(late).chain(rise).collect();
+        times.sort_by(f64::total_cmp);
+        let samples: Vec<(f64, f64)> = times
+            .into_iter()
             .map(|time| (time, self.std_error_at(time)))
             .collect();
         // Nothing moves at 0 s.

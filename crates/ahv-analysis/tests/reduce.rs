@@ -325,3 +325,26 @@ fn intervals_and_distances_are_the_tabulated_ones() {
         max_relative = 1e-4
     );
 }
+
+#[test]
+fn the_rise_of_a_lightly_damped_mode_is_found_however_short_it_is() {
+    for zeta in [1e-6, 1e-3, 2.5e-3] {
+        let mode = Mode {
+            omega: 20.0,
+            zeta,
+            sigma: 10.0,
+        };
+        let reduced = ReducedMode::new(mode, Reduction::Printed).expect("a mode");
+        let rise = reduced.largest_std_errors().rise;
+        // Where b √t − σ t^³⁄²/√3 is greatest; what both leave out is of the order of ω t.
+        let time = zeta / (mode.omega * 3.0_f64.sqrt());
+        let value = 2.0 / 3.0 * reduced.intensity() * time.sqrt();
+        assert!(rise.chi_leads);
+        assert_relative_eq!(rise.value, value, max_relative = 3.0 * zeta);
+        assert_relative_eq!(
+            rise.time.expect("a time"),
+            time,
+            max_relative = 1e-4 + 3.0 * zeta
+        );
+    }
+}

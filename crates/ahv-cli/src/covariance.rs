@@ -27,6 +27,7 @@ use crate::number::{Shown, cell, time};
 use crate::output::{self, Pairs};
 use crate::place::Place;
 use crate::progress::{Progress, Work};
+use crate::signals::{Stoppable, interrupted};
 use crate::simulate::grid::positive;
 use crate::vehicle::{FlightModel, ModelName};
 
@@ -119,6 +120,8 @@ struct Outcome<'a, M: FlightModel> {
     place: String,
     scheme: Scheme,
     linear: Vec<Spreading<M::State>>,
+    /// Members that were flown.
+    members: u64,
     sampled: Vec<Snapshot>,
     stationary: Option<DMatrix<f64>>,
 }
@@ -160,8 +163,8 @@ where
     }
     let progress = Progress::start(Work {
         command: "covariance",
-        unit: "",
-        total: None,
+        unit: "member-steps",
+        total: Some(arguments.members.saturating_mul(experiment.steps())),
     });
     let [x_std, u_std] = [
         Pairs::of(&experiment.state[1]),
@@ -180,19 +183,26 @@ where
     // Not multiples of a part: 14 of 20 parts of 1 s are 0.7 s.
     let time = |index| arguments.t_end * f64::from(index) / f64::from(SAMPLES);
     let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
+    let linear = flight.covariance(&vehicle.model, &times).map_err(failed)?;
+    let stationary = arguments
+        .stationary
+        .then(|| flight.stationary(&vehicle.model).map_err(failed))
+        .transpose()?;
+    let stoppable = Stoppable::new(progress.control());
+    let sampled = sample::<M, F>(&experiment, arguments.members, progress.control());
+    drop(stoppable);
+    drop(progress);
+    let (members, sampled) = sampled?;
     let outcome = Outcome {
-        linear: flight.covariance(&vehicle.model, &times).map_err(failed)?,
-        stationary: arguments
-            .stationary
-            .then(|| flight.stationary(&vehicle.model).map_err(failed))
-            .transpose()?,
-        sampled: sample::<M, F>(&experiment, arguments.members)?,
+        linear,
+        stationary,
+        members,
+        sampled,
         place: vehicle.at(&steady),
         scheme,
         vehicle: &vehicle,
         arguments,
     };
-    drop(progress);
     // Whatever fails, the rest is reported; the picture comes last.
     let written = folder.map_or(Ok(()), |folder| outcome.write(folder));
     let printed = if arguments.json {
@@ -203,28 +213,42 @@ where
     let drawn = folder.map_or(Ok(()), |folder| {
         output::picture(&folder.join("covariance.svg"), figure::draw(&outcome))
     });
-    written.and(printed).and(drawn)
+    written.and(printed).and(drawn)?;
+    if outcome.is_complete() {
+        return Ok(());
+    }
+    Err(Failure::Interrupted(format!(
+        "interrupted: {members} of {} flights were flown, and are reported",
+        arguments.members
+    )))
 }
 
-/// Flies the ensemble.
+/// Flies the ensemble: how many members, and their snapshots.
 fn sample<M: Pair<F>, F: Flown>(
     experiment: &Experiment<F>,
     members: u64,
-) -> Result<Vec<Snapshot>, Failure> {
+    control: &Control,
+) -> Result<(u64, Vec<Snapshot>), Failure> {
     let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let outcome = experiment
-        .run(members, threads, &Control::default())
+        .run(members, threads, control)
         .map_err(|error| Failure::Numeric(format!("{}: {error}", M::NAME)))?;
+    if outcome.members < members.min(FEWEST) {
+        return Err(Failure::Interrupted(format!(
+            "interrupted before {FEWEST} flights ended"
+        )));
+    }
     match outcome.snapshots.iter().find(|it| it.members < FEWEST) {
-        None => Ok(outcome.snapshots),
+        None => Ok((outcome.members, outcome.snapshots)),
         Some(Snapshot {
             time,
             members: left,
             ..
         }) => Err(Failure::Numeric(format!(
-            "{}: at {time} s {left} of {members} flights are left, too few for a standard deviation: the others are no longer \
+            "{}: at {time} s {left} of {} flights are left, too few for a standard deviation: the others are no longer \
              finite",
-            M::NAME
+            M::NAME,
+            outcome.members
         ))),
     }
 }
@@ -235,6 +259,8 @@ struct Json<'a> {
     heading: Heading<'a>,
     units: Pairs<&'static str>,
     members: u64,
+    /// Whether all members were flown.
+    complete: bool,
     seed: u64,
     dt: f64,
     scheme: &'static str,
@@ -309,7 +335,7 @@ impl<M: FlightModel> Outcome<'_, M> {
         self.pairs().flat_map(|(linear, sampled)| {
             let stds = linear.std().into_iter().zip(stds(sampled));
             let named = M::State::NAMES.iter().zip(stds);
-            let time = linear.time;
+            let time = time(linear.time);
             named.filter_map(move |(&state, (linear, sampled))| {
                 Some(JsonRatio {
                     state,
@@ -325,6 +351,24 @@ impl<M: FlightModel> Outcome<'_, M> {
     fn share_inside(&self) -> f64 {
         let inside: Vec<bool> = self.ratios().map(|it| it.ratio.holds(1.0)).collect();
         inside.iter().filter(|&&it| it).count() as f64 / inside.len().max(1) as f64
+    }
+
+    /// The mark of a part of the flights.
+    fn mark(&self) -> String {
+        interrupted(self.members, self.arguments.members, "flights")
+    }
+
+    fn is_complete(&self) -> bool {
+        self.members == self.arguments.members
+    }
+
+    /// How many flights the ensemble has.
+    fn flights(&self) -> String {
+        if self.is_complete() {
+            format!("{} flights", self.members)
+        } else {
+            self.mark()
+        }
     }
 
     /// The ratio that is farthest from 1.
@@ -365,7 +409,8 @@ impl<M: FlightModel> Outcome<'_, M> {
         Json {
             heading: self.vehicle.heading(),
             units: Pairs::units::<M::State>(self.vehicle.units),
-            members: self.arguments.members,
+            members: self.members,
+            complete: self.is_complete(),
             seed: self.arguments.seed,
             dt: self.arguments.dt,
             scheme: self.scheme.name(),
@@ -380,12 +425,12 @@ impl<M: FlightModel> Outcome<'_, M> {
 
     fn text(&self) -> String {
         let mut text = format!(
-            "{}: {}, {}\nstandard deviations to first order, and of {} flights ({}, seed {}) with intervals of 95 %, and the \
+            "{}: {}, {}\nstandard deviations to first order, and of {} ({}, seed {}) with intervals of 95 %, and the \
              ratio of the two",
             M::NAME,
             self.place,
             self.vehicle.described(),
-            self.arguments.members,
+            self.flights(),
             self.scheme.name(),
             self.arguments.seed
         );
@@ -410,7 +455,7 @@ impl<M: FlightModel> Outcome<'_, M> {
                     shown(flown.high)
                 );
                 if let Some(ratio) = ratio(std, Some(flown)) {
-                    let _ = write!(text, "  ratio {:.3}", ratio.value);
+                    let _ = write!(text, "  ratio {:.3}", Shown(ratio.value));
                 }
             }
         }
@@ -425,11 +470,15 @@ impl<M: FlightModel> Outcome<'_, M> {
             let Estimate { value, low, high } = worst.ratio;
             let _ = write!(
                 text,
-                "\nlinear over flown standard deviation: farthest from 1 is {value:.3} [{low:.3}, {high:.3}], {} at {} s",
-                worst.state, worst.time
+                "\nlinear over flown standard deviation: farthest from 1 is {:.3} [{:.3}, {:.3}], {} at {} s",
+                Shown(value),
+                Shown(low),
+                Shown(high),
+                worst.state,
+                Shown(worst.time)
             );
         }
-        let lost = self.arguments.members - self.sampled.last().map_or(0, |it| it.members);
+        let lost = self.members - self.sampled.last().map_or(0, |it| it.members);
         let _ = write!(
             text,
             "\n{:.1} % of the standard deviations lie in their interval; {lost} flights broke down",
@@ -454,14 +503,15 @@ impl<M: FlightModel> Outcome<'_, M> {
             stds.into_iter().chain(ratios)
         });
         let first = ["time [s]", "members"].map(str::to_owned).into_iter();
-        file.row(&first.chain(columns).collect::<Vec<_>>())?;
+        let last = ["complete".to_owned()];
+        file.row(&first.chain(columns).chain(last).collect::<Vec<_>>())?;
         let cells = |it: Option<Estimate>| {
             let numbers = [
                 it.map(|it| it.value),
                 it.map(|it| it.low),
                 it.map(|it| it.high),
             ];
-            numbers.map(|number| number.map_or_else(String::new, |number| number.to_string()))
+            numbers.map(|number| number.map_or_else(String::new, cell))
         };
         for (linear, sampled) in self.pairs() {
             let stds = linear.std().into_iter().zip(stds(sampled));
@@ -470,7 +520,14 @@ impl<M: FlightModel> Outcome<'_, M> {
                 std::iter::once(cell(std)).chain(rest)
             });
             let first = [cell(time(linear.time)), sampled.members.to_string()];
-            file.row(&first.into_iter().chain(stds).collect::<Vec<_>>())?;
+            let last = [self.is_complete().to_string()];
+            file.row(
+                &first
+                    .into_iter()
+                    .chain(stds)
+                    .chain(last)
+                    .collect::<Vec<_>>(),
+            )?;
         }
         file.finish()
     }

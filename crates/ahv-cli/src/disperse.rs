@@ -17,7 +17,7 @@ use crate::failure::{Failure, print};
 use crate::output;
 use crate::place::Place;
 use crate::progress::{Progress, Work};
-use crate::signals::Stoppable;
+use crate::signals::{Stoppable, interrupted};
 use crate::vehicle::{FlightModel, for_model};
 
 /// Draws parameters within their uncertainty and reports how trim, poles and zeros spread.
@@ -193,6 +193,11 @@ impl<M: FlightModel> Outcome<'_, M> {
     /// Whether all members were drawn that were asked for.
     fn is_complete(&self) -> bool {
         self.members.len() as u64 == self.arguments.members
+    }
+
+    /// The mark of the pictures of a part.
+    fn mark(&self) -> String {
+        interrupted(self.members.len() as u64, self.arguments.members, "members")
     }
 
     /// Draws the pictures.

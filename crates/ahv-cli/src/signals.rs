@@ -71,6 +71,15 @@ pub(crate) fn exit_code() -> u8 {
     }
 }
 
+/// The mark of an outcome that a signal cut short, as "interrupted: 3 of 8 members"; empty if it is complete.
+pub(crate) fn interrupted(done: u64, asked: u64, unit: &str) -> String {
+    if done == asked {
+        String::new()
+    } else {
+        format!("interrupted: {done} of {asked} {unit}")
+    }
+}
+
 /// While it lives, the first signal stops the work of a control and leaves the process alone.
 pub(crate) struct Stoppable;
 

@@ -16,7 +16,7 @@ use crate::failure::{Failure, print};
 use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
-use crate::signals::Stoppable;
+use crate::signals::{Stoppable, interrupted};
 
 /// Most flights.
 const MOST_RUNS: u64 = 100_000;
@@ -101,14 +101,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(stoppable);
     drop(progress);
     let flown: usize = outcomes.iter().map(|outcome| outcome.flights.len()).sum();
-    let complete = flown as u64 == asked;
+    let mark = interrupted(flown as u64, asked, "flights");
+    let complete = mark.is_empty();
     if flown == 0 {
         return Err(Failure::Interrupted(
             "interrupted before the first flight ended".to_owned(),
         ));
     }
     // Whatever fails, the rest is reported; the picture comes last.
-    let written = write_tables(&arguments.out, &outcomes);
+    let written = write_tables(&arguments.out, &outcomes, complete);
     let printed = if arguments.json {
         output::print_json(&Json::new(&trial, &outcomes, complete))
     } else {
@@ -122,7 +123,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             text(&trial, &outcomes, &arguments.out)
         ))
     };
-    let drawn = output::picture(&arguments.out.join("tracking.svg"), figure::draw(&outcomes));
+    let drawn = output::picture(
+        &arguments.out.join("tracking.svg"),
+        figure::draw(&outcomes, mark),
+    );
     written.and(printed).and(drawn)?;
     if complete {
         return Ok(());
@@ -160,8 +164,8 @@ fn numeric(error: TrackError) -> Failure {
     Failure::Numeric(error.to_string())
 }
 
-fn write_tables(folder: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
-    tables::statistics(&folder.join("statistics.csv"), outcomes)?;
+fn write_tables(folder: &Path, outcomes: &[Outcome], complete: bool) -> Result<(), Failure> {
+    tables::statistics(&folder.join("statistics.csv"), outcomes, complete)?;
     for outcome in outcomes {
         if let Some(flight) = outcome.flights.first() {
             let path = folder.join(format!("{}.csv", outcome.controller));

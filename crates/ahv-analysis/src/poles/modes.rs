@@ -107,7 +107,7 @@ pub(super) fn named(
         }
         group.free -= size;
     }
-    tell_height(states, participation, &mut poles);
+    tell_height(states, &mut poles);
     poles
 }
 
@@ -130,17 +130,39 @@ fn groups(states: &[&str]) -> Vec<Group> {
     groups
 }
 
-/// Of the three slow poles the real one beside a pair is the height mode; of three real ones that in which the altitude
-/// participates most.
-fn tell_height(states: &[&str], participation: &DMatrix<f64>, poles: &mut [Pole]) {
-    let Some(altitude) = states.iter().position(|&state| state == "altitude") else {
+/// Of the three slow poles the real one beside a pair is the height mode; of three real ones that nearest to 0, for the air
+/// thins slowly with altitude.
+fn tell_height(states: &[&str], poles: &mut [Pole]) {
+    if !states.contains(&"altitude") {
         return;
-    };
-    let real = poles.iter().enumerate();
-    let real = real.filter(|(_, pole)| pole.mode == Some(Mode::Phugoid) && pole.value.im == 0.0);
-    let height = real
-        .max_by(|a, b| participation[(altitude, a.0)].total_cmp(&participation[(altitude, b.0)]));
-    if let Some(pole) = height.map(|(index, _)| index) {
-        poles[pole].mode = Some(Mode::Height);
+    }
+    let real = poles
+        .iter_mut()
+        .filter(|pole| pole.mode == Some(Mode::Phugoid) && pole.value.im == 0.0);
+    let height = real.min_by(|a, b| a.value.re.abs().total_cmp(&b.value.re.abs()));
+    if let Some(pole) = height {
+        pole.mode = Some(Mode::Height);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With some parameters the phugoid is a slow divergence and a slow decay, in which the altitude participates more than
+    /// in the height mode.
+    #[test]
+    fn the_height_mode_is_the_slowest_of_three_real_poles() {
+        let values = [7.1e-5, 0.013_75, -0.014_37].map(Complex::from);
+        let shares = [0.2, 0.3, 0.3, 0.3, 0.1, 0.1, 0.5, 0.6, 0.6];
+        let participation = DMatrix::from_row_slice(3, 3, &shares);
+        let poles = named(
+            &["velocity", "gamma", "altitude"],
+            &values,
+            Some(&participation),
+        );
+        let modes: Vec<_> = poles.iter().map(|pole| pole.mode).collect();
+        let [height, phugoid] = [Some(Mode::Height), Some(Mode::Phugoid)];
+        assert_eq!(modes, [height, phugoid, phugoid]);
     }
 }

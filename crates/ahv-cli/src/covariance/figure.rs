@@ -13,7 +13,7 @@ const COLUMNS: usize = 3;
 /// Standard deviations over time.
 pub(super) fn draw<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
     let panels = (0..M::State::LEN).filter_map(|index| panel(outcome, index));
-    Figure::new("", COLUMNS, panels.collect()).svg()
+    Figure::new(outcome.mark(), COLUMNS, panels.collect()).svg()
 }
 
 fn panel<M: FlightModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel> {
@@ -34,7 +34,7 @@ fn panel<M: FlightModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel
         y: Axis::linear(format!("standard deviation [{unit}]")),
         layers: vec![
             Layer::new(
-                format!("{} flights, 95 %", outcome.arguments.members),
+                format!("{}, 95 %", outcome.flights()),
                 Colour::SkyBlue,
                 Mark::Band(flown.collect()),
             ),

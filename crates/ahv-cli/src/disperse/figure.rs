@@ -33,7 +33,7 @@ pub(super) fn trim<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, P
         let (x, y) = (place("alpha")?, place(name)?);
         Some(scatter(outcome, x, y))
     });
-    Figure::new("", 3, panels.collect()).svg()
+    Figure::new(outcome.mark(), 3, panels.collect()).svg()
 }
 
 fn scatter<M: FlightModel>(outcome: &Outcome<'_, M>, x: usize, y: usize) -> Panel {
@@ -85,7 +85,7 @@ pub(super) fn roots<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, 
         cloud("zeros", (ZEROS, Shape::Circle), zeros, own_zeros),
         histograms(outcome),
     ];
-    Figure::new("", 3, panels).svg()
+    Figure::new(outcome.mark(), 3, panels).svg()
 }
 
 fn cloud(
@@ -190,7 +190,7 @@ pub(super) fn sensitivities<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<
     if panels.is_empty() {
         return Err("no parameter that varies has an effect on these quantities".to_owned());
     }
-    Figure::new("", 3, panels)
+    Figure::new(outcome.mark(), 3, panels)
         .svg()
         .map_err(|error| error.to_string())
 }

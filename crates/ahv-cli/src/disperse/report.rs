@@ -348,8 +348,10 @@ impl<M: FlightModel> Outcome<'_, M> {
             &first
                 .chain(parameters)
                 .chain(quantities)
+                .chain(["complete".to_owned()])
                 .collect::<Vec<_>>(),
         )?;
+        let complete = self.is_complete().to_string();
         for member in &self.members {
             let outcome = match &member.solution {
                 Ok(_) => "trim".to_owned(),
@@ -360,7 +362,8 @@ impl<M: FlightModel> Outcome<'_, M> {
             let numbers = parameters.chain(member.values.iter().copied());
             let cells = numbers.map(|it| it.map_or_else(String::new, cell));
             let first = [member.number.to_string(), outcome].into_iter();
-            file.row(&first.chain(cells).collect::<Vec<_>>())?;
+            let last = [complete.clone()];
+            file.row(&first.chain(cells).chain(last).collect::<Vec<_>>())?;
         }
         file.finish()
     }

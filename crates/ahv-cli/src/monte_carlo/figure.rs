@@ -7,6 +7,7 @@ use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
 use super::Told;
 use crate::flights::Pair;
 use crate::output::readable;
+use crate::signals::interrupted;
 
 /// Panels in a row: fan and distribution of two states.
 const COLUMNS: usize = 4;
@@ -28,14 +29,7 @@ pub(super) fn draw<F: Flown, M: Pair<F>>(told: &Told<'_, F, M>) -> Result<String
             distribution(told, index, name, &unit, factor),
         ]
     });
-    let title = if told.is_complete() {
-        String::new()
-    } else {
-        format!(
-            "interrupted: {} of {} members",
-            told.outcome.members, told.outcome.asked
-        )
-    };
+    let title = interrupted(told.outcome.members, told.outcome.asked, "members");
     Figure::new(title, COLUMNS, panels.collect()).svg()
 }
 

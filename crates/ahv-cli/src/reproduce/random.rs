@@ -411,6 +411,11 @@ pub(super) fn reductions(random: &Random, findings: &mut Findings) -> Result<Sec
             keepers.push(method.name());
         }
     }
+    let names = METHODS.map(|method| method.name());
+    let greatest = |reduced: &ReducedMode| reduced.largest_std_errors().greatest.value;
+    let of_mode = |mode: usize| all.iter().filter_map(move |it| it.get(mode));
+    let modes = (0..section_5_1().len()).map(|mode| of_mode(mode).map(greatest).collect());
+    paragraphs.push(sentences::least_errors(&names, &modes.collect::<Vec<_>>()));
     let errors = all.iter().take(1).flatten();
     let errors: Vec<_> = errors.map(ReducedMode::largest_std_errors).collect();
     paragraphs.push(sentences::differ(&errors));
@@ -419,7 +424,7 @@ pub(super) fn reductions(random: &Random, findings: &mut Findings) -> Result<Sec
     findings.push(sentences::variances(&ratios, &keepers));
     Ok(Section {
         id: "reductions",
-        title: "Better reductions",
+        title: "Three reductions",
         paragraphs,
         tables: vec![Table {
             file: "reductions.csv",

@@ -333,6 +333,21 @@ pub(super) fn differ(modes: &[StdErrors]) -> Sentence {
     ))
 }
 
+/// The method of the least greatest |eᴰ| of exact white noise, by mode; errors stand in the order of the methods.
+pub(super) fn least_errors(methods: &[&str], modes: &[Vec<f64>]) -> Sentence {
+    let least = |errors: &Vec<f64>| {
+        let pairs = methods.iter().zip(errors);
+        let least = pairs.min_by(|a, b| a.1.total_cmp(b.1));
+        least.map_or("", |(method, _)| *method)
+    };
+    let modes = (1..).zip(modes);
+    let modes = modes.map(|(mode, errors): (u32, _)| format!("{} in mode {mode}", least(errors)));
+    Sentence(format!(
+        "Of the three, the greatest |eᴰ| of exact white noise is least with {}.",
+        list(&modes.collect::<Vec<_>>())
+    ))
+}
+
 /// The variances that (23) leaves, by mode, and the methods that keep them.
 pub(super) fn variances(ratios: &[f64], keepers: &[&str]) -> Finding {
     let agrees = ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREES);

@@ -195,6 +195,12 @@ fn reductions() {
         ),
         "{text}"
     );
+    let text = least_errors(&["a", "b"], &[vec![0.1, 0.2], vec![0.3, 0.2]]);
+    assert!(
+        text.text()
+            .ends_with("is least with a in mode 1 and b in mode 2."),
+        "{text}"
+    );
     both(
         [
             variances(&[0.99, 1.0], &["printed"]),

@@ -57,7 +57,10 @@ pub(super) fn section(vehicles: &[Vehicle], findings: &mut Findings) -> Section 
         Cell::number(TABLE_2.delta_e_deg),
     ];
     first.extend(TABLE_2.eta.map(Cell::number));
-    let mut rows = vec![Row::from(first)];
+    let mut cantilever = vec![Cell::words("printed (η of COM)")];
+    cantilever.extend((0..3).map(|_| Cell::words("")));
+    cantilever.extend(TABLE_2.eta_cantilever.map(Cell::number));
+    let mut rows = Vec::from([first, cantilever].map(Row::from));
     let mut nearest: Option<(f64, String)> = None;
     for vehicle in vehicles {
         let mut row = vec![Cell::words(name(vehicle))];

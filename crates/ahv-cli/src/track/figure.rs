@@ -68,9 +68,9 @@ const QUANTITIES: [Quantity; 9] = [
 ];
 
 /// Medians and bands from 5 to 95 % of the flights, with the commands.
-pub(super) fn draw(outcomes: &[Outcome]) -> Result<String, PlotError> {
+pub(super) fn draw(outcomes: &[Outcome], title: String) -> Result<String, PlotError> {
     let panels = QUANTITIES.map(|quantity| panel(quantity, outcomes));
-    Figure::new("", 3, panels.to_vec()).svg()
+    Figure::new(title, 3, panels.to_vec()).svg()
 }
 
 fn panel((title, label, value, command): Quantity, outcomes: &[Outcome]) -> Panel {

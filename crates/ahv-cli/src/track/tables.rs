@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::number::{cell, time};
 
 /// Headings of the statistics.
-const STATISTICS: [&str; 11] = [
+const STATISTICS: [&str; 12] = [
     "controller",
     "figure",
     "unit",
@@ -23,10 +23,12 @@ const STATISTICS: [&str; 11] = [
     "p95",
     "least",
     "largest",
+    "complete",
 ];
 
-/// A row for each figure of each controller; of shares of flights only value and interval.
-pub(super) fn statistics(path: &Path, outcomes: &[Outcome]) -> Result<(), Failure> {
+/// A row for each figure of each controller; of shares of flights only value and interval. The last column is whether all
+/// flights were flown.
+pub(super) fn statistics(path: &Path, outcomes: &[Outcome], complete: bool) -> Result<(), Failure> {
     let mut file = CsvFile::create(path)?;
     file.row(&STATISTICS)?;
     for Outcome {
@@ -38,7 +40,8 @@ pub(super) fn statistics(path: &Path, outcomes: &[Outcome]) -> Result<(), Failur
         let mut row = |name: &str, unit: &str, numbers: &[Option<f64>]| {
             let texts = [*controller, name, unit].map(str::to_owned).into_iter();
             let cells = numbers.iter().map(|it| it.map_or_else(String::new, cell));
-            file.row(&texts.chain(cells).collect::<Vec<_>>())
+            let last = [complete.to_string()];
+            file.row(&texts.chain(cells).chain(last).collect::<Vec<_>>())
         };
         for (name, count) in [
             ("lost", &statistics.lost),
