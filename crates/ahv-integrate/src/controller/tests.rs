@@ -236,8 +236,8 @@ fn a_state_or_a_slope_near_zero_says_nothing_about_the_scale() {
 #[test]
 fn a_first_step_is_positive_and_finite_whatever_overflows() {
     // Slope, state, and both, in units of the tolerances; a drift that ends at the start.
-    type Law = fn(f64, f64) -> f64;
-    let wild: [(&str, Law, f64); 5] = [
+    type Drift = fn(f64, f64) -> f64;
+    let wild: [(&str, Drift, f64); 5] = [
         ("slope", |_, _| 1e200, 1.0),
         ("state", |_, _| 1.0, 1e200),
         ("both", |x, _| x, 1e200),
