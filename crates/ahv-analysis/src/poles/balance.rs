@@ -16,13 +16,12 @@ pub(super) fn balance(matrix: &DMatrix<f64>) -> DVector<f64> {
     for _ in 0..MAX_ROUNDS {
         let mut changed = false;
         for i in 0..n {
-            // The diagonal stays as it is, and does not count.
-            let off = |norm: f64| {
-                (norm * norm - balanced[(i, i)] * balanced[(i, i)])
-                    .max(0.0)
-                    .sqrt()
-            };
-            let (column, row) = (off(balanced.column(i).norm()), off(balanced.row(i).norm()));
+            // The diagonal stays as it is, and does not count. It is left out, not subtracted: rounding must not take the
+            // place of a row of zeros.
+            let others = || (0..n).filter(|&j| j != i);
+            let column: f64 = others().map(|j| balanced[(j, i)].powi(2)).sum();
+            let row: f64 = others().map(|j| balanced[(i, j)].powi(2)).sum();
+            let (column, row) = (column.sqrt(), row.sqrt());
             if column == 0.0 || row == 0.0 {
                 continue;
             }

@@ -6,7 +6,7 @@
 //! system until D is square and regular, also counts: a rank of D that grows at step k is an infinite zero of order k,
 //! an output that vanishes there a left Kronecker index k, and in the dual system a right one.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// dx/dt = a x + b u, y = c x + d u.
 #[derive(Clone)]
@@ -94,32 +94,24 @@ impl Quadruple {
 
     /// Rotates the outputs so that the rows of d from its rank on are 0; returns the rank.
     fn compress_outputs(&mut self, tolerance: f64) -> usize {
-        let mut rank = 0;
-        if !self.d.is_empty() {
-            let factors = self.d.clone().col_piv_qr();
-            rank = leading(&factors.r(), tolerance);
-            factors.q_tr_mul(&mut self.d);
-            factors.q_tr_mul(&mut self.c);
-        }
-        self.d.rows_range_mut(rank..).fill(0.0);
-        rank
+        let rotation = Rotation::compressing(self.d.clone(), tolerance);
+        rotation.apply(&mut self.d);
+        rotation.apply(&mut self.c);
+        self.d.rows_range_mut(rotation.rank()..).fill(0.0);
+        rotation.rank()
     }
 
     /// Rotates the states so that the outputs from number `direct` on see the first ones alone; returns how many.
     fn compress_states(&mut self, direct: usize, tolerance: f64) -> usize {
-        let seen = self.c.rows_range(direct..).transpose();
-        if seen.is_empty() {
-            return 0;
-        }
-        let factors = seen.col_piv_qr();
-        factors.q_tr_mul(&mut self.a);
-        factors.q_tr_mul(&mut self.b);
+        let rotation = Rotation::compressing(self.c.rows_range(direct..).transpose(), tolerance);
+        rotation.apply(&mut self.a);
+        rotation.apply(&mut self.b);
         for matrix in [&mut self.a, &mut self.c] {
             let mut transposed = matrix.transpose();
-            factors.q_tr_mul(&mut transposed);
+            rotation.apply(&mut transposed);
             *matrix = transposed.transpose();
         }
-        leading(&factors.r(), tolerance)
+        rotation.rank()
     }
 
     /// The system without its first `seen` states, whose derivatives become outputs beside the first `direct` ones.
@@ -147,8 +139,53 @@ impl Quadruple {
     }
 }
 
-/// How many entries of the diagonal of a pivoted triangular factor exceed `tolerance`: they descend.
-fn leading(factor: &DMatrix<f64>, tolerance: f64) -> usize {
-    let diagonal = (0..factor.nrows().min(factor.ncols())).map(|index| factor[(index, index)]);
-    diagonal.take_while(|entry| entry.abs() > tolerance).count()
+/// Householder reflections I − τ v vᵀ, each of the rows from its own number on.
+///
+/// There are as many as the rank: what counts as 0 must not turn anything. A rotation by the direction of rounding mixes
+/// states that nothing connects, and small pivots enlarge that from step to step.
+struct Rotation(Vec<(DVector<f64>, f64)>);
+
+impl Rotation {
+    /// The one that makes the rows of `matrix` from its rank on 0, by QR with column pivoting up to `tolerance`.
+    fn compressing(mut matrix: DMatrix<f64>, tolerance: f64) -> Self {
+        let mut reflections = Vec::new();
+        for step in 0..matrix.nrows().min(matrix.ncols()) {
+            let rest = matrix.view_range(step.., step..);
+            let norms: Vec<f64> = rest.column_iter().map(|column| column.norm()).collect();
+            let largest = (0..norms.len()).max_by(|&i, &j| norms[i].total_cmp(&norms[j]));
+            let Some(pivot) = largest.filter(|&pivot| norms[pivot] > tolerance) else {
+                break;
+            };
+            let mut axis = rest.column(pivot).into_owned();
+            let beta = -norms[pivot].copysign(axis[0]);
+            let factor = (beta - axis[0]) / beta;
+            axis[0] -= beta;
+            axis /= axis[0];
+            matrix.swap_columns(step, step + pivot);
+            let reflection = (axis, factor);
+            reflect(&mut matrix, step, &reflection);
+            reflections.push(reflection);
+        }
+        Self(reflections)
+    }
+
+    fn rank(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Rotates the rows of `matrix`.
+    fn apply(&self, matrix: &mut DMatrix<f64>) {
+        for (step, reflection) in self.0.iter().enumerate() {
+            reflect(matrix, step, reflection);
+        }
+    }
+}
+
+/// Reflects the rows of `matrix` from number `step` on.
+fn reflect(matrix: &mut DMatrix<f64>, step: usize, (axis, factor): &(DVector<f64>, f64)) {
+    let mut rows = matrix.rows_range_mut(step..);
+    for mut column in rows.column_iter_mut() {
+        let along = axis.dot(&column);
+        column.axpy(-factor * along, axis, 1.0);
+    }
 }
