@@ -260,7 +260,7 @@ where
     let beyond = [first, last].into_iter().find(|it| it.converged);
     let mut blocking = system.blocking(&nearest);
     for violated in beyond.iter().flat_map(|it| system.violated(&it.point)) {
-        if !blocking.contains(&violated) {
+        if blocking.iter().all(|it| it.input != violated.input) {
             blocking.push(violated);
         }
     }

@@ -168,7 +168,10 @@ fn gains<M: FlightModel>(
 
 /// The gains for a person.
 fn text(gains: &Gains, place: &str, trim: &str) -> String {
-    let mut text = format!("{}: regulator at {place}\n{trim}\ngain:", gains.model);
+    let mut text = format!(
+        "{}: regulator at {place}\n{trim}\ngain, in the units of the model, angles in rad:",
+        gains.model
+    );
     // Writing into a String cannot fail.
     for (input, row) in gains.inputs.iter().zip(&gains.gain) {
         let _ = write!(text, "\n  {input}");

@@ -1,12 +1,14 @@
 //! Where the vehicle flies: flags of every command that starts at a trim of the user's choice.
 
 use ahv_analysis::trim::{SOUGHT_INPUTS, SteadyFlight, Trim, TrimError, trim};
+use ahv_core::first_outside;
 use clap::Args;
 
 use crate::assignment::{Assignments, show, show_beside};
 use crate::condition::Vehicle;
-use crate::failure::Failure;
+use crate::failure::{Failure, complain};
 use crate::names;
+use crate::output::describe_outside;
 use crate::units::Units;
 use crate::vehicle::FlightModel;
 
@@ -89,7 +91,7 @@ fn outside_domain<M: FlightModel>(error: &TrimError, units: Units) -> Failure {
 }
 
 impl<M: FlightModel> Vehicle<M> {
-    /// The trim of a steady flight.
+    /// The trim of a steady flight; a warning says if it is outside the validity box.
     ///
     /// # Errors
     ///
@@ -98,10 +100,16 @@ impl<M: FlightModel> Vehicle<M> {
         &self,
         flight: &SteadyFlight<M::Input>,
     ) -> Result<Trim<M::State, M::Input>, Failure> {
-        trim(&self.model, flight).map_err(|error| {
+        let trim = trim(&self.model, flight).map_err(|error| {
             let why = self.no_trim(&error);
             Failure::Numeric(format!("{}: {why} ({})", M::NAME, self.at(flight)))
-        })
+        })?;
+        if let Some(outside) = first_outside(&trim.state, &self.state_bounds) {
+            let unit = self.units.label::<M::State>(outside.name);
+            let outside = describe_outside(&outside, unit);
+            complain(&format!("warning: {}: {outside}", M::NAME));
+        }
+        Ok(trim)
     }
 
     /// Where a steady flight is, for a person.
