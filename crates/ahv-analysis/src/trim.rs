@@ -72,8 +72,7 @@ impl<U: Vector<f64>> SteadyFlight<U> {
         if !self.altitude.is_finite() {
             return fault("altitude", self.altitude, "a finite number");
         }
-        // The double next to π/2 is not vertical, but an angle in deg that is rounds to it.
-        if !(self.gamma.abs() < FRAC_PI_2) {
+        if self.gamma.is_nan() || self.gamma.abs() >= FRAC_PI_2 {
             return fault("gamma", self.gamma, "between -90 deg and 90 deg");
         }
         Ok(())
