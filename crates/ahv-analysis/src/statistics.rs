@@ -153,10 +153,17 @@ impl QuantileEstimate {
     pub fn of_sorted(sorted: &[f64], share: f64) -> Self {
         let [low, high] = ranks(share, sorted.len() as u64);
         let at = |rank: Option<u64>| sorted.get(usize::try_from(rank? - 1).ok()?).copied();
+        let (low, high) = (at(low), at(high));
+        // Of a handful of numbers the straight line between neighbours may lie beyond a safe rank.
+        let within = |value: f64| {
+            value
+                .max(low.unwrap_or(f64::NEG_INFINITY))
+                .min(high.unwrap_or(f64::INFINITY))
+        };
         Self {
-            value: quantile(sorted, share),
-            low: at(low),
-            high: at(high),
+            value: quantile(sorted, share).map(within),
+            low,
+            high,
         }
     }
 

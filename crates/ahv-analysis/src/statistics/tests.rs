@@ -95,3 +95,14 @@ fn the_interval_of_a_deviation_follows_the_kurtosis() {
     // Two values: m4 = m2².
     assert!((kurtosis(&[1.0, 1.0, 3.0, 3.0]) - 1.0).abs() < 1e-15);
 }
+
+#[test]
+fn a_quantile_lies_in_its_interval_however_few_the_numbers() {
+    for count in 1..40_u32 {
+        let sorted: Vec<f64> = (0..count).map(f64::from).collect();
+        for share in [0.005, 0.05, 0.5, 0.95, 0.995] {
+            let estimate = QuantileEstimate::of_sorted(&sorted, share);
+            assert!(estimate.value.is_some_and(|value| estimate.holds(value)));
+        }
+    }
+}
