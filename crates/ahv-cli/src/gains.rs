@@ -1,7 +1,6 @@
 //! A file of gains, as `ahv lqr --out` writes it and `--feedback` reads it.
 
 use std::fmt;
-use std::fs;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
@@ -13,6 +12,7 @@ use sha2::{Digest, Sha256};
 
 use crate::condition::Vehicle;
 use crate::output::Pairs;
+use crate::table::text_of;
 use crate::vehicle::FlightModel;
 
 /// The only law that there is; t counts from the start of a flight.
@@ -190,7 +190,7 @@ impl Gains {
         vehicle: &Vehicle<M>,
         flight: &SteadyFlight<M::Input>,
     ) -> Result<Self, String> {
-        let text = fs::read_to_string(path).map_err(|error| error.to_string())?;
+        let text = text_of(path).map_err(|error| error.to_string())?;
         let gains = serde_json::from_str(&text).map_err(|error| error.to_string());
         let checked = gains.and_then(|gains: Self| gains.check(vehicle).map(|()| gains));
         checked.map_err(|what| {
@@ -263,6 +263,17 @@ impl Gains {
                     "its `{key}` has the names {}; right are {}",
                     found.join(", "),
                     expected.join(", ")
+                ));
+            }
+        }
+        // The trim that the gains are about is of this condition: these states are given, not sought.
+        let condition = [self.velocity, self.altitude, self.gamma_deg.to_radians()];
+        let given = ["velocity", "altitude", "gamma"].into_iter().zip(condition);
+        for (name, value) in given {
+            let own = self.state.0.iter().find(|(own, _)| own == name);
+            if own.is_some_and(|&(_, own)| (own - value).abs() > SAME * value.abs().max(1.0)) {
+                return Err(format!(
+                    "its `state` is not of its flight condition: {name}"
                 ));
             }
         }

@@ -76,8 +76,15 @@ impl Output {
     ///
     /// [`Failure::Request`] if no file can be made there.
     pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
-        let existing = fs::metadata(path).ok();
+        let existing = fs::symlink_metadata(path).ok();
         if let Some(metadata) = &existing {
+            // /dev/stdout is one too, and leads to a file that the shell writes.
+            if metadata.is_symlink() {
+                return Err(cannot_write(
+                    path,
+                    "it is a link; name the file that it leads to",
+                ));
+            }
             // Renaming would replace a device such as /dev/null, or get past a write protection.
             if !metadata.is_file() {
                 return Err(cannot_write(path, "it exists and is not a regular file"));
@@ -86,12 +93,10 @@ impl Output {
                 return Err(cannot_write(path, "it is write-protected"));
             }
         }
-        // A link stays a link: its target is replaced.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        if target.file_name().is_none() {
+        if path.file_name().is_none() {
             return Err(cannot_write(path, "it names no file"));
         }
-        let folder = match target.parent() {
+        let folder = match path.parent() {
             Some(parent) if parent != Path::new("") => parent,
             _ => Path::new("."),
         };
@@ -105,7 +110,7 @@ impl Output {
         let (file, listed) =
             temporary(folder, &builder).map_err(|error| cannot_write(path, &plain(&error)))?;
         Ok(Self {
-            path: target,
+            path: path.to_owned(),
             file,
             _listed: listed,
         })
@@ -184,7 +189,8 @@ pub(crate) fn picture(path: &Path, svg: Result<String, impl Display>) -> Result<
         Ok(svg) => write(path, svg),
         Err(why) => {
             // One of an earlier run does not belong to the numbers beside it.
-            let removed = fs::remove_file(path).is_ok();
+            let earlier = fs::symlink_metadata(path).is_ok_and(|it| it.is_file());
+            let removed = earlier && fs::remove_file(path).is_ok();
             let earlier = if removed {
                 "; the earlier one is removed"
             } else {

@@ -196,7 +196,7 @@ mod tests {
             "Table 1",
             "Fig. 2",
             "Fig. 5",
-            "Better reductions",
+            "Three reductions",
             "Table 2",
             "Table 3",
             "Fig. 6",

@@ -1,4 +1,4 @@
-//! SIGINT (Ctrl-C) and SIGTERM.
+//! SIGINT (Ctrl-C), SIGTERM, and SIGHUP of a terminal that is closed.
 //!
 //! Work that can report a part of its outcome is stopped by the first signal; all else ends at once, and everything ends at
 //! once by the second. Either way no temporary file is left, and the exit code is 128 and the number of the signal.
@@ -14,6 +14,12 @@ use signal_hook::flag;
 
 use crate::failure::{Failure, complain};
 use crate::output;
+
+/// Signals that end the work in order.
+#[cfg(unix)]
+const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+#[cfg(not(unix))]
+const SIGNALS: [i32; 2] = [SIGINT, SIGTERM];
 
 /// Time between two looks for a signal.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
@@ -32,7 +38,7 @@ static STOPPABLE: Mutex<Option<Arc<Control>>> = Mutex::new(None);
 /// [`Failure::Request`] if the system does not allow it.
 pub(crate) fn listen() -> Result<(), Failure> {
     let pending = Arc::new(AtomicUsize::new(0));
-    for signal in [SIGINT, SIGTERM] {
+    for signal in SIGNALS {
         flag::register_usize(signal, Arc::clone(&pending), signal as usize)
             .map_err(|error| Failure::Request(format!("cannot listen to signals: {error}")))?;
     }

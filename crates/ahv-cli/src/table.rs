@@ -127,7 +127,7 @@ impl Table {
 }
 
 /// The text of a regular file: a pipe would wait for a writer, a device has no end.
-fn text_of(path: &Path) -> io::Result<String> {
+pub(crate) fn text_of(path: &Path) -> io::Result<String> {
     let kind = fs::metadata(path)?.file_type();
     if kind.is_file() || kind.is_dir() {
         fs::read_to_string(path)

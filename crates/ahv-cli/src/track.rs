@@ -179,6 +179,8 @@ fn write_tables(folder: &Path, outcomes: &[Outcome], complete: bool) -> Result<(
 #[derive(Serialize)]
 struct Json<'a> {
     runs: u64,
+    /// Flights of all controllers.
+    flown: usize,
     complete: bool,
     seed: u64,
     duration: f64,
@@ -202,6 +204,7 @@ impl<'a> Json<'a> {
         });
         Self {
             runs: trial.runs,
+            flown: outcomes.iter().map(|outcome| outcome.flights.len()).sum(),
             complete,
             seed: trial.seed,
             duration: trial.duration,

@@ -145,7 +145,7 @@ fn files_of_gains_are_read_strictly() {
     assert_eq!(fly(&file, &[]).0, Some(0));
     let no_velocity = "missing field `velocity`";
     type Change = fn(&mut Value);
-    let cases: [(Change, &str); 15] = [
+    let cases: [(Change, &str); 16] = [
         (|it| it["states"][2] = Value::Null, "invalid type: null"),
         (|it| it["states"][2] = "alpha".into(), "for the states"),
         (
@@ -181,6 +181,10 @@ fn files_of_gains_are_read_strictly() {
             "its unit of gamma is `deg`",
         ),
         (
+            |it| it["state"]["gamma"] = 0.1.into(),
+            "its `state` is not of its flight condition: gamma",
+        ),
+        (
             |it| it["state"]["speed"] = 1.into(),
             "its `state` has the names",
         ),
@@ -210,6 +214,18 @@ fn files_of_gains_are_read_strictly() {
     refused("`alpha` stands there twice");
     write(&text.replacen("\"residual\":", "\"residual\":1e999, \"no\":", 1));
     refused("number out of range");
+    #[cfg(unix)]
+    {
+        fs::remove_file(&file).expect("it is there");
+        let made = std::process::Command::new("mkfifo").arg(&file).status();
+        assert!(made.expect("mkfifo runs").success());
+        let (code, said) = fly(&file, &[]);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(
+            said.contains("it is a pipe, a socket or a device"),
+            "{said}"
+        );
+    }
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn montecarlo_reports_the_members_that_were_flown() {
 
 #[test]
 fn nothing_is_left_of_a_simulation() {
-    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+    for (signal, code) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
         let (place, _) = folder();
         let out = place.path().join("flight.csv");
         let out = out.to_str().expect("text");
@@ -177,6 +177,35 @@ fn disperse_reports_the_members_that_were_drawn() {
             .iter()
             .all(|name| !name.ends_with(".tmp"))
     );
+}
+
+#[test]
+fn covariance_reports_the_flights_that_were_flown() {
+    let (place, out) = folder();
+    let child = start(&[
+        "covariance",
+        "--model",
+        "sdcom",
+        "--t-end",
+        "1",
+        "--dt",
+        "0.001",
+        "--members",
+        "1000000",
+        "--json",
+        "--out",
+        &out,
+    ]);
+    sleep(Duration::from_secs(2));
+    let output = end(child, "-INT");
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    let outcome = json(&output);
+    assert_eq!(outcome["complete"], false);
+    let members = outcome["members"].as_u64().expect("a number");
+    assert!(members > 0 && members < 1_000_000);
+    let read = |name: &str| fs::read_to_string(place.path().join(name)).expect("a file");
+    assert!(read("covariance.csv").trim_end().ends_with(",false"));
+    assert!(read("covariance.svg").contains("interrupted: "));
 }
 
 /// What has no part to report ends at once.

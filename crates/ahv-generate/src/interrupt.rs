@@ -1,4 +1,4 @@
-//! SIGINT and SIGTERM: the work ends before its next step, and takes its temporary files with it.
+//! SIGINT, SIGTERM, and SIGHUP of a terminal that is closed: the work ends before its next step, and takes its temporary files with it.
 
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _};
@@ -13,6 +13,12 @@ use signal_hook::flag;
 
 use crate::failure::Failure;
 
+/// Signals that end the work in order.
+#[cfg(unix)]
+const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+#[cfg(not(unix))]
+const SIGNALS: [i32; 2] = [SIGINT, SIGTERM];
+
 /// How often a waiting process looks for a signal and for the end of its child.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
@@ -22,7 +28,7 @@ const GRACE: Duration = Duration::from_millis(200);
 /// The number of the signal that arrived; 0 before. None where no process asked for it.
 static SIGNAL: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
-/// From now on SIGINT and SIGTERM end the work in order, and a second one ends it at once.
+/// From now on these signals end the work in order, and a second one ends it at once.
 pub(crate) fn listen() -> io::Result<()> {
     if SIGNAL.get().is_some() {
         return Ok(());
@@ -31,7 +37,7 @@ pub(crate) fn listen() -> io::Result<()> {
         Arc::new(AtomicUsize::new(0)),
         Arc::new(AtomicBool::new(false)),
     );
-    for number in [SIGINT, SIGTERM] {
+    for number in SIGNALS {
         // In this order: the first signal must not find the flag that it sets.
         flag::register_conditional_default(number, Arc::clone(&again))?;
         flag::register(number, Arc::clone(&again))?;

@@ -107,7 +107,7 @@ pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, F
     let project = Project::locate(args, surroundings);
     let (tree, _, seconds) = derive_and_emit(args, surroundings, &project)?;
     let differences = compare::differences(&project.out, &tree)?;
-    write::apply(&project, &tree, &differences)?;
+    write::apply(&project, &differences)?;
     Ok(Generated::new(&project, differences, seconds))
 }
 

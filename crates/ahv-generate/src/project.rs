@@ -39,7 +39,16 @@ impl Project {
     /// A path as messages and JSON name it: from the project's root, with `/`.
     #[must_use]
     pub fn shown(&self, path: &Path) -> String {
-        slashed(path.strip_prefix(&self.root).unwrap_or(path))
+        // A name may hold characters that act on a terminal.
+        let text = slashed(path.strip_prefix(&self.root).unwrap_or(path));
+        let shown = |letter: char| {
+            if letter.is_control() {
+                letter.escape_default().to_string()
+            } else {
+                letter.to_string()
+            }
+        };
+        text.chars().map(shown).collect()
     }
 
     /// The same for a file of the generated package.

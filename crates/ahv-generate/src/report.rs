@@ -161,7 +161,7 @@ impl Checked {
         command: String,
     ) -> Self {
         let places = (project.shown(&project.out), project.shown(&project.tables));
-        let all = format!("the tables in {}", places.1);
+        let all = format!("a table in {}", places.1);
         let table = |it: &Difference| {
             owners
                 .of(&it.path)

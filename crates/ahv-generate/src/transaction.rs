@@ -173,12 +173,6 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// Whether a temporary file of a transaction may have this name.
-pub(crate) fn is_temporary(name: &str) -> bool {
-    name.strip_prefix(TEMPORARY)
-        .is_some_and(|rest| rest.len() == 6 && rest.chars().all(|c| c.is_ascii_alphanumeric()))
-}
-
 impl NewFolders {
     fn make(&mut self, folder: &Path) -> Result<(), Failure> {
         if folder.is_dir() {

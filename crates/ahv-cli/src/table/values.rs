@@ -84,6 +84,14 @@ impl Table {
         reading.sections(&[], self.document.as_table())?;
         reading.check_complete::<M>()?;
         let own = self.word(&["table", "set"])?;
+        let letters = |letter: char| {
+            letter.is_ascii_lowercase() || letter.is_ascii_digit() || "._-".contains(letter)
+        };
+        if !own.starts_with(|letter: char| letter.is_ascii_lowercase()) || !own.chars().all(letters)
+        {
+            let message = "`set` must name the table's own parameter set, in lower-case letters, digits, `.`, `_`, `-`";
+            return Err(self.fault(&["table", "set"], message));
+        }
         let set = set.unwrap_or(own);
         if set != own {
             reading.sections(&["sets", set], self.further_set(set, own)?)?;

@@ -379,6 +379,17 @@ fn a_pipe_is_no_table() {
     );
 }
 
+#[test]
+fn the_name_of_a_set_has_plain_letters() {
+    let from = "set = \"section5.1\"";
+    let edited = Edited::new("com.toml", from, "set = \"</text>\\u001b[31m\"");
+    fail(
+        &["trim", "--model", "com", "--table", &edited.path()],
+        2,
+        &["`set` must name the table's own parameter set"],
+    );
+}
+
 /// The text of a unit neither ends the program nor fills the screen.
 #[test]
 fn a_unit_of_many_brackets_is_refused() {

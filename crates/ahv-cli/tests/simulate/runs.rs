@@ -145,15 +145,26 @@ fn a_file_in_the_working_folder_needs_no_path() {
 
 #[cfg(unix)]
 #[test]
-fn links_and_permissions_are_kept() {
+fn permissions_are_kept_and_links_are_not_followed() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let mut bench = Bench::new();
-    let target = std::mem::replace(&mut bench.out, bench.folder.path().join("link.csv"));
+    let target = bench.out.clone();
     fs::write(&target, "old").expect("the folder is writable");
     fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).expect("it is ours");
-    symlink(&target, &bench.out).expect("the folder is writable");
+    for link in ["link.csv", "dangling.csv"] {
+        bench.out = bench.folder.path().join(link);
+        let lost = bench.folder.path().join("lost.csv");
+        let leads_to = if link == "link.csv" { &target } else { &lost };
+        symlink(leads_to, &bench.out).expect("the folder is writable");
+        let output = bench.run(&DCOM);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{stderr}");
+        assert!(stderr.contains("it is a link"), "{stderr}");
+        assert!(bench.out.is_symlink() && !lost.exists());
+    }
+    assert_eq!(fs::read_to_string(&target).expect("it is there"), "old");
+    bench.out = target.clone();
     bench.succeed(&DCOM);
-    assert!(bench.out.is_symlink());
     assert!(
         fs::read_to_string(&target)
             .expect("it is there")

@@ -59,7 +59,8 @@ impl Generator {
 fn isolated(python: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(python);
     for (name, _) in env::vars_os() {
-        if name.to_string_lossy().starts_with("PYTHON") {
+        let text = name.to_string_lossy();
+        if text.starts_with("PYTHON") || text == "__PYVENV_LAUNCHER__" {
             command.env_remove(name);
         }
     }

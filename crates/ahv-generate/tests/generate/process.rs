@@ -32,7 +32,7 @@ fn eventually(what: &str, done: impl Fn() -> bool) {
 /// The program ends with what it started, and leaves nothing of what it wrote.
 #[test]
 fn a_signal_ends_the_work_and_what_is_temporary() {
-    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         let mut scratch = Scratch::small();
         let started = scratch.path("started");
         let derive = format!(

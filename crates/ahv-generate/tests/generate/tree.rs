@@ -225,19 +225,21 @@ fn an_ir_of_another_schema_version_is_refused() {
 }
 
 #[test]
-fn what_a_killed_run_leaves_is_removed() {
+fn a_hidden_file_is_never_removed() {
     let scratch = Scratch::new();
     let before = scratch.snapshot("generated");
     let hour_ago = SystemTime::now() - Duration::from_secs(3600);
-    for name in ["generated/.ahv-Ab3dEf", "generated/src/.ahv-notes"] {
-        scratch.write(name, "");
+    // As a run that was killed leaves them: a name is no proof of who wrote a file.
+    for name in ["generated/.ahv-Ab3dEf", "generated/src/.ahv-mynote"] {
+        scratch.write(name, "notes");
         let file = fs::File::options().write(true).open(scratch.path(name));
         file.expect("open").set_modified(hour_ago).expect("set");
     }
     scratch.write("generator/tables/.#dcom.toml", "a lock");
     scratch.generate(&[]).expect("generated");
-    // Not a name that a run gives.
-    fs::remove_file(scratch.path("generated/src/.ahv-notes")).expect("still there");
+    for name in ["generated/.ahv-Ab3dEf", "generated/src/.ahv-mynote"] {
+        fs::remove_file(scratch.path(name)).expect("still there");
+    }
     assert!(before == scratch.snapshot("generated"));
 }
 
