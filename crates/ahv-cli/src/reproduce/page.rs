@@ -138,6 +138,8 @@ impl Table {
         write(head)?;
         for Row { cells, why } in &self.rows {
             let mut row: Vec<&str> = cells.iter().map(Cell::text).collect();
+            // A model without a trim has no numbers.
+            row.resize(self.head.len(), "");
             row.extend(explained.then(|| why.as_ref().map_or("", Sentence::text)));
             write(row)?;
         }
