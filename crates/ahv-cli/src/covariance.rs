@@ -1,33 +1,28 @@
 //! `ahv covariance`: how noise spreads the states of a flight, to first order and by flying.
 
 mod figure;
+mod report;
 
-use std::fmt::Write;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use ahv_analysis::covariance::{CovarianceError, Flight, Spreading};
 use ahv_analysis::monte_carlo::{
     Control, Dcom, Experiment, Flown, Mode, Scheme, Sdcom, SdcomGust, SdcomPrinted, Snapshot,
 };
-use ahv_analysis::statistics::Estimate;
-use ahv_core::{StochasticModel, Vector};
+use ahv_core::StochasticModel;
 use ahv_models::{dcom, sdcom, sdcom_gust, sdcom_printed};
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
-use serde::Serialize;
 
-use crate::assignment::show;
-use crate::condition::{Condition, Heading, Vehicle};
-use crate::csv_file::CsvFile;
+use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
 use crate::flights::feedback::FeedbackArguments;
 use crate::flights::{Pair, deviations};
-use crate::number::{Shown, cell, time};
 use crate::output::{self, Pairs};
 use crate::place::Place;
 use crate::progress::{Progress, Work};
-use crate::signals::{Stoppable, interrupted};
+use crate::signals::Stoppable;
 use crate::simulate::grid::positive;
 use crate::vehicle::{FlightModel, ModelName};
 
@@ -35,8 +30,6 @@ use crate::vehicle::{FlightModel, ModelName};
 const FEWEST: u64 = 2;
 /// Times at which the spread is told, in equal parts of the flight.
 const SAMPLES: u32 = 20;
-/// Of these, every so many is printed.
-const STRIDE: usize = 5;
 
 /// Propagates the covariance of the states along a flight from the trim, and flies the same many times.
 ///
@@ -250,285 +243,5 @@ fn sample<M: Pair<F>, F: Flown>(
             M::NAME,
             outcome.members
         ))),
-    }
-}
-
-#[derive(Serialize)]
-struct Json<'a> {
-    #[serde(flatten)]
-    heading: Heading<'a>,
-    units: Pairs<&'static str>,
-    members: u64,
-    /// Whether all members were flown.
-    complete: bool,
-    seed: u64,
-    dt: f64,
-    scheme: &'static str,
-    feedback: bool,
-    share_inside: f64,
-    worst_ratio: Option<JsonRatio>,
-    stationary_std: Option<Pairs<f64>>,
-    stationary_covariance: Option<Vec<Vec<f64>>>,
-    times: Vec<JsonTime>,
-}
-
-#[derive(Serialize)]
-struct JsonTime {
-    time: f64,
-    members: u64,
-    linear_std: Pairs<f64>,
-    sampled_std: Pairs<Option<Estimate>>,
-    /// Linear over sampled standard deviation.
-    ratio: Pairs<Option<Estimate>>,
-    linear_covariance: Vec<Vec<f64>>,
-    linear_mean: Pairs<f64>,
-    sampled_mean: Pairs<Option<Estimate>>,
-}
-
-/// A ratio of linear to sampled standard deviation.
-#[derive(Serialize)]
-struct JsonRatio {
-    state: &'static str,
-    time: f64,
-    #[serde(flatten)]
-    ratio: Estimate,
-}
-
-/// Linear over sampled standard deviation with its interval of 95 %; `None` where nothing spreads.
-fn ratio(linear: f64, sampled: Option<Estimate>) -> Option<Estimate> {
-    let Estimate { value, low, high } = sampled?;
-    let ratio = Estimate {
-        value: linear / value,
-        low: linear / high,
-        high: linear / low,
-    };
-    Some(ratio).filter(|ratio| ratio.low > 0.0 && ratio.is_finite())
-}
-
-fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    let row = |row: usize| matrix.row(row).iter().copied().collect();
-    (0..matrix.nrows()).map(row).collect()
-}
-
-fn stds(snapshot: &Snapshot) -> Vec<Option<Estimate>> {
-    snapshot.states.iter().map(|state| state.std).collect()
-}
-
-/// Names of the states, each with its value.
-fn named<X: Vector<f64>, V: Clone>(values: &[V]) -> Pairs<V> {
-    Pairs(
-        X::NAMES
-            .iter()
-            .copied()
-            .zip(values.iter().cloned())
-            .collect(),
-    )
-}
-
-impl<M: FlightModel> Outcome<'_, M> {
-    fn pairs(&self) -> impl Iterator<Item = (&Spreading<M::State>, &Snapshot)> {
-        self.linear.iter().zip(&self.sampled)
-    }
-
-    /// Ratios of linear to sampled standard deviation, over states and times.
-    fn ratios(&self) -> impl Iterator<Item = JsonRatio> {
-        self.pairs().flat_map(|(linear, sampled)| {
-            let stds = linear.std().into_iter().zip(stds(sampled));
-            let named = M::State::NAMES.iter().zip(stds);
-            let time = time(linear.time);
-            named.filter_map(move |(&state, (linear, sampled))| {
-                Some(JsonRatio {
-                    state,
-                    time,
-                    ratio: ratio(linear, sampled)?,
-                })
-            })
-        })
-    }
-
-    /// Share of the standard deviations, over states and times, that lie in the interval of the ensemble; what does not
-    /// spread does not count.
-    fn share_inside(&self) -> f64 {
-        let inside: Vec<bool> = self.ratios().map(|it| it.ratio.holds(1.0)).collect();
-        inside.iter().filter(|&&it| it).count() as f64 / inside.len().max(1) as f64
-    }
-
-    /// The mark of a part of the flights.
-    fn mark(&self) -> String {
-        interrupted(self.members, self.arguments.members, "flights")
-    }
-
-    fn is_complete(&self) -> bool {
-        self.members == self.arguments.members
-    }
-
-    /// How many flights the ensemble has.
-    fn flights(&self) -> String {
-        if self.is_complete() {
-            format!("{} flights", self.members)
-        } else {
-            self.mark()
-        }
-    }
-
-    /// The ratio that is farthest from 1.
-    fn worst(&self) -> Option<JsonRatio> {
-        let distance = |it: &JsonRatio| it.ratio.value.ln().abs();
-        self.ratios()
-            .max_by(|a, b| distance(a).total_cmp(&distance(b)))
-    }
-
-    fn stationary_std(&self) -> Option<Vec<f64>> {
-        let variances = self.stationary.as_ref()?.diagonal();
-        Some(
-            variances
-                .iter()
-                .map(|variance| variance.max(0.0).sqrt())
-                .collect(),
-        )
-    }
-
-    fn json(&self) -> Json<'_> {
-        let at = |(linear, sampled): (&Spreading<M::State>, &Snapshot)| {
-            let stds = stds(sampled);
-            let ratios = linear.std().into_iter().zip(&stds);
-            let ratios: Vec<_> = ratios.map(|(linear, &std)| ratio(linear, std)).collect();
-            let means: Vec<_> = sampled.states.iter().map(|state| state.mean).collect();
-            JsonTime {
-                time: time(linear.time),
-                members: sampled.members,
-                linear_std: named::<M::State, _>(&linear.std()),
-                sampled_std: named::<M::State, _>(&stds),
-                ratio: named::<M::State, _>(&ratios),
-                linear_covariance: rows(&linear.covariance),
-                linear_mean: Pairs::of(&linear.state),
-                sampled_mean: named::<M::State, _>(&means),
-            }
-        };
-        let stationary = self.stationary_std();
-        Json {
-            heading: self.vehicle.heading(),
-            units: Pairs::units::<M::State>(self.vehicle.units),
-            members: self.members,
-            complete: self.is_complete(),
-            seed: self.arguments.seed,
-            dt: self.arguments.dt,
-            scheme: self.scheme.name(),
-            feedback: self.arguments.feedback.is_given(),
-            share_inside: self.share_inside(),
-            worst_ratio: self.worst(),
-            stationary_std: stationary.map(|std| named::<M::State, _>(&std)),
-            stationary_covariance: self.stationary.as_ref().map(rows),
-            times: self.pairs().map(at).collect(),
-        }
-    }
-
-    fn text(&self) -> String {
-        let mut text = format!(
-            "{}: {}, {}\nstandard deviations to first order, and of {} ({}, seed {}) with intervals of 95 %, and the \
-             ratio of the two",
-            M::NAME,
-            self.place,
-            self.vehicle.described(),
-            self.flights(),
-            self.scheme.name(),
-            self.arguments.seed
-        );
-        let units = self.vehicle.units.labels::<M::State>();
-        // Writing into a String cannot fail.
-        for (index, (name, unit)) in M::State::NAMES.iter().zip(units).enumerate() {
-            let shown = |value: f64| show(value, unit);
-            for (linear, sampled) in self.pairs().skip(STRIDE - 1).step_by(STRIDE) {
-                let (Some(std), Some(Some(flown))) = (
-                    linear.std().get(index).copied(),
-                    stds(sampled).get(index).copied(),
-                ) else {
-                    continue;
-                };
-                let _ = write!(
-                    text,
-                    "\n  {name:<12} at {:<5} s: {:<16} flown {} [{}, {}]",
-                    Shown(time(linear.time)),
-                    shown(std),
-                    shown(flown.value),
-                    shown(flown.low),
-                    shown(flown.high)
-                );
-                if let Some(ratio) = ratio(std, Some(flown)) {
-                    let _ = write!(text, "  ratio {:.3}", Shown(ratio.value));
-                }
-            }
-        }
-        for ((name, unit), std) in M::State::NAMES
-            .iter()
-            .zip(units)
-            .zip(self.stationary_std().into_iter().flatten())
-        {
-            let _ = write!(text, "\n  {name:<12} stationary: {}", show(std, unit));
-        }
-        if let Some(worst) = self.worst() {
-            let Estimate { value, low, high } = worst.ratio;
-            let _ = write!(
-                text,
-                "\nlinear over flown standard deviation: farthest from 1 is {:.3} [{:.3}, {:.3}], {} at {} s",
-                Shown(value),
-                Shown(low),
-                Shown(high),
-                worst.state,
-                Shown(worst.time)
-            );
-        }
-        let lost = self.members - self.sampled.last().map_or(0, |it| it.members);
-        let _ = write!(
-            text,
-            "\n{:.1} % of the standard deviations lie in their interval; {lost} flights broke down",
-            Shown(100.0 * self.share_inside())
-        );
-        text
-    }
-
-    /// Writes the table.
-    fn write(&self, folder: &Path) -> Result<(), Failure> {
-        let mut file = CsvFile::create(&folder.join("covariance.csv"))?;
-        let units = self.vehicle.units.labels::<M::State>();
-        let columns = M::State::NAMES.iter().zip(units).flat_map(|(name, unit)| {
-            let kinds = [
-                "linear_std",
-                "sampled_std",
-                "sampled_std_low",
-                "sampled_std_high",
-            ];
-            let stds = kinds.map(|kind| format!("{name}_{kind} [{unit}]"));
-            let ratios = ["", "_low", "_high"].map(|end| format!("{name}_ratio{end} [1]"));
-            stds.into_iter().chain(ratios)
-        });
-        let first = ["time [s]", "members"].map(str::to_owned).into_iter();
-        let last = ["complete".to_owned()];
-        file.row(&first.chain(columns).chain(last).collect::<Vec<_>>())?;
-        let cells = |it: Option<Estimate>| {
-            let numbers = [
-                it.map(|it| it.value),
-                it.map(|it| it.low),
-                it.map(|it| it.high),
-            ];
-            numbers.map(|number| number.map_or_else(String::new, cell))
-        };
-        for (linear, sampled) in self.pairs() {
-            let stds = linear.std().into_iter().zip(stds(sampled));
-            let stds = stds.flat_map(|(std, flown)| {
-                let rest = cells(flown).into_iter().chain(cells(ratio(std, flown)));
-                std::iter::once(cell(std)).chain(rest)
-            });
-            let first = [cell(time(linear.time)), sampled.members.to_string()];
-            let last = [self.is_complete().to_string()];
-            file.row(
-                &first
-                    .into_iter()
-                    .chain(stds)
-                    .chain(last)
-                    .collect::<Vec<_>>(),
-            )?;
-        }
-        file.finish()
     }
 }

@@ -3,8 +3,6 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use crate::signals;
-
 /// Why a command failed, in words for the person at the terminal.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -17,12 +15,12 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// Says on stderr what went wrong and gives the exit code.
-    pub(crate) fn report(&self) -> ExitCode {
+    /// Says on stderr what went wrong and gives the exit code, `interrupted` for work that a signal ended.
+    pub(crate) fn report(&self, interrupted: u8) -> ExitCode {
         let (message, code) = match self {
             Self::Request(message) => (message, 2),
             Self::Numeric(message) => (message, 3),
-            Self::Interrupted(message) => (message, signals::exit_code()),
+            Self::Interrupted(message) => (message, interrupted),
         };
         complain(&format!("error: {message}"));
         ExitCode::from(code)

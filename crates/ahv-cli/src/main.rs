@@ -78,7 +78,7 @@ fn main() -> ExitCode {
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Model(command) => match signals::listen().and_then(|()| command.run()) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(failure) => failure.report(),
+            Err(failure) => failure.report(signals::exit_code()),
         },
     }
 }

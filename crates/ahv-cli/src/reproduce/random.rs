@@ -13,10 +13,11 @@ use ahv_analysis::reproduce::{METHODS, Random};
 use ahv_analysis::statistics::Estimate;
 
 use super::figures;
-use super::page::{Cell, Picture, Row, Section, Table, number};
+use super::page::{Cell, Picture, Row, Section, Table};
 use super::sentences::{self, Sentence, interval, p_value};
 use super::{Findings, drawn};
 use crate::failure::Failure;
+use crate::number::significant;
 
 fn name(case: &Case) -> String {
     let noise = match case.reading {
@@ -123,7 +124,7 @@ pub(super) fn table1(random: &Random, findings: &mut Findings) -> Result<Section
         file: "table1.csv",
         caption: format!(
             "Table 1 beside the maxima over {} s: median [5 %, 95 %], difference, p-value and verdict",
-            number(size.steps as f64 * size.dt)
+            significant(size.steps as f64 * size.dt)
         ),
         head: vec![
             "entry",

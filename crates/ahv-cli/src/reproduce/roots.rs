@@ -7,9 +7,10 @@ use ahv_core::Provenance;
 use ahv_models::{com, dcom};
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError, Shape};
 
-use super::page::{Cell, Picture, Row, Section, Table, number};
+use super::page::{Cell, Picture, Row, Section, Table};
 use super::{Findings, drawn, sentences, trims};
 use crate::failure::Failure;
+use crate::number::significant;
 
 /// What Fig. 6 shows about the origin, in rad/s: the slow modes, and the slowest roots.
 const NEAR: [(f64, &str); 2] = [(SLOW, "slow modes"), (0.0015, "next to the origin")];
@@ -27,9 +28,9 @@ fn text([re, im]: Root) -> String {
     let nothing = NOTHING * (1.0 + re.hypot(im));
     let re = if re.abs() < nothing { 0.0 } else { re };
     if im.abs() < nothing {
-        number(re)
+        significant(re)
     } else {
-        format!("{} ± {}i", number(re), number(im))
+        format!("{} ± {}i", significant(re), significant(im))
     }
 }
 

@@ -12,7 +12,7 @@ use ahv_analysis::reproduce::pairing::{LIMIT, SLOW};
 use ahv_analysis::statistics::Estimate;
 use ahv_core::{Provenance, Status};
 
-use super::page::number;
+use crate::number::significant;
 use crate::reduce::{bargain, greatest};
 
 /// Largest error, as a share of η, with which η̂ counts as following it.
@@ -55,7 +55,7 @@ const fn finding(agrees: bool, text: String) -> Finding {
 
 /// An estimate with its interval.
 pub(super) fn interval(estimate: &Estimate) -> String {
-    let [value, low, high] = [estimate.value, estimate.low, estimate.high].map(number);
+    let [value, low, high] = [estimate.value, estimate.low, estimate.high].map(significant);
     format!("{value} [{low}, {high}]")
 }
 
@@ -82,7 +82,7 @@ fn list(items: &[String]) -> String {
 }
 
 fn percent(share: f64) -> String {
-    format!("{} %", number(100.0 * share))
+    format!("{} %", significant(100.0 * share))
 }
 
 fn count(verdicts: &[Verdict]) -> String {
@@ -100,7 +100,7 @@ pub(super) fn subject(size: &Size) -> Sentence {
          Vehicle\", each beside what this project computes. Steps of {} s over {} s, seed {}. Units are foot, slug, second; η is \
          in (ft·slug)^½. Only the numbers that the paper prints are compared, not its pictures.",
         size.dt,
-        number(size.steps as f64 * size.dt),
+        significant(size.steps as f64 * size.dt),
         size.seed
     ))
 }
@@ -202,7 +202,7 @@ pub(super) fn entry(facts: &Entry<'_>) -> Sentence {
         fewer: (runs, fewer, fewer_p),
     } = facts;
     let exact = exact.map_or_else(String::new, |exact| {
-        let [at, between] = exact.map(number);
+        let [at, between] = exact.map(significant);
         format!(" Infinitely many runs with held noise give {at} at the samples and {between} between them.")
     });
     let change = if common.value < held.value {
@@ -228,7 +228,7 @@ pub(super) fn snapshot(sigma: f64, time: f64, runs: u64) -> Sentence {
         "Distributions at {} s over {runs} runs under white noise of intensity {sigma}². η and χ have a noise each, as the test of \
          Kolmogorov and Smirnov requires. The text of the paper prints no numbers for these figures: ours stand beside the closed \
          forms.",
-        number(time)
+        significant(time)
     ))
 }
 
@@ -236,20 +236,20 @@ pub(super) fn snapshot(sigma: f64, time: f64, runs: u64) -> Sentence {
 pub(super) fn normality(kurtosis: &[f64], runs: u64, time: f64) -> Finding {
     let bound = THREE_MODES * (24.0 / runs as f64).sqrt();
     let normal = kurtosis.iter().all(|kurtosis| kurtosis.abs() < bound);
-    let values: Vec<String> = kurtosis.iter().map(|&it| number(it)).collect();
+    let values: Vec<String> = kurtosis.iter().map(|&it| significant(it)).collect();
     finding(
         normal,
         format!(
             "Figs. 3 and 4: the excess kurtosis of η at {} s is {}, {} ±{}, where 95 % of normal samples as large lie in all \
              three modes.",
-            number(time),
+            significant(time),
             list(&values),
             if normal {
                 "all within"
             } else {
                 "not all within"
             },
-            number(bound)
+            significant(bound)
         ),
     )
 }
@@ -260,7 +260,7 @@ pub(super) fn distributions(modes: &[(bool, f64)], runs: u64) -> Vec<Finding> {
         let modes = (1..).zip(modes).filter(|(_, mode)| mode.0 == differs);
         modes
             .map(|(number_of, mode): (u32, _)| {
-                format!("mode {number_of} ({} of the variance)", number(mode.1))
+                format!("mode {number_of} ({} of the variance)", significant(mode.1))
             })
             .collect()
     };
@@ -351,7 +351,7 @@ pub(super) fn least_errors(methods: &[&str], modes: &[Vec<f64>]) -> Sentence {
 /// The variances that (23) leaves, by mode, and the methods that keep them.
 pub(super) fn variances(ratios: &[f64], keepers: &[&str]) -> Finding {
     let agrees = ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREES);
-    let values: Vec<String> = ratios.iter().map(|&it| number(it)).collect();
+    let values: Vec<String> = ratios.iter().map(|&it| significant(it)).collect();
     let keepers: Vec<String> = keepers.iter().map(|&it| it.to_owned()).collect();
     finding(
         agrees,
@@ -472,10 +472,10 @@ pub(super) fn short_period(set: &str, ours: [f64; 2], printed: [f64; 2], trim: f
         off < AGREES,
         format!(
             "Table 3, DCOM: the short period of set {set} is {} and {}, printed are {} and {} (within {}); {but} {} away from Table 2.",
-            number(ours[0]),
-            number(ours[1]),
-            number(printed[0]),
-            number(printed[1]),
+            significant(ours[0]),
+            significant(ours[1]),
+            significant(printed[0]),
+            significant(printed[1]),
             percent(off),
             percent(trim)
         ),
@@ -521,7 +521,7 @@ pub(super) fn modal_data(set: &str, origin: Provenance, off: f64) -> Finding {
 
 /// Where ω of the COM comes from, and whether it is the imaginary parts that Table 3 prints for the coupled vehicle.
 pub(super) fn clamped(origin: Provenance, omegas: &[f64], coupled: bool) -> Finding {
-    let values: Vec<String> = omegas.iter().map(|&it| number(it)).collect();
+    let values: Vec<String> = omegas.iter().map(|&it| significant(it)).collect();
     let end = if coupled {
         "They are the imaginary parts that Table 3 prints, frequencies of the coupled vehicle, used here as clamped ones: the \
          coupling comes twice, and the flexible roots of the COM are no test"

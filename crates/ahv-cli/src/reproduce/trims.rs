@@ -4,8 +4,9 @@ use ahv_analysis::reproduce::printed::TABLE_2;
 use ahv_analysis::reproduce::vehicle::{TrimPoint, Vehicle};
 use ahv_models::dcom;
 
-use super::page::{Cell, Row, Section, Table, number};
+use super::page::{Cell, Row, Section, Table};
 use super::{Findings, sentences};
+use crate::number::significant;
 
 /// Distance of a trim from the printed one: the largest relative difference of α, φ, δe.
 pub(super) fn distance(trim: &TrimPoint) -> f64 {
@@ -36,8 +37,8 @@ fn beside(ours: f64, printed: f64) -> Cell {
     let sign = if ours >= printed { "+" } else { "" };
     Cell::Number(format!(
         "{} ({sign}{})",
-        number(ours),
-        number(ours - printed)
+        significant(ours),
+        significant(ours - printed)
     ))
 }
 
