@@ -46,6 +46,15 @@ enum DiagnosticPart {
 impl Tables {
     /// Reads every `*.toml` in the folder of tables, hidden ones excepted.
     pub(crate) fn load(project: &Project) -> Result<Self, Failure> {
+        let [tables, out] = [&project.tables, &project.out].map(|path| path.canonicalize().ok());
+        if tables.is_some() && tables == out {
+            // Its Cargo.toml would be read as a table the next time.
+            let folder = project.shown(&project.out);
+            let message = format!(
+                "{folder} holds the tables: the generated package needs a folder of its own"
+            );
+            return Err(Failure::new(message).with_help("name another folder with --out"));
+        }
         let paths = table_files(project)?;
         let (mut sources, mut parsed, mut faults) = (Vec::new(), Vec::new(), Vec::new());
         for path in paths {

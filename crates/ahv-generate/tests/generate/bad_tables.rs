@@ -80,6 +80,16 @@ fn a_file_that_cannot_be_read() {
     );
 }
 
+#[test]
+fn the_package_does_not_go_among_the_tables() {
+    let scratch = Scratch::new();
+    let before = scratch.snapshot("generator/tables");
+    let refused = scratch.generate(&["--out", "generator/tables"]).err();
+    let message = refused.expect("refused").to_string();
+    assert!(message.contains("needs a folder of its own"), "{message}");
+    assert!(before == scratch.snapshot("generator/tables"));
+}
+
 /// A pipe has no end until somebody writes to it: whoever reads it waits.
 #[test]
 fn a_pipe_is_no_table() {
