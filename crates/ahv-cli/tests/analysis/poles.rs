@@ -122,3 +122,25 @@ fn single_pairs_have_the_zeros_that_exist() {
     let tall = json(&["poles", "--model", "dcom", "--inputs", "phi"]);
     assert_eq!(tall["normal_rank"], 1);
 }
+
+/// No input reaches the coloured noise: what an output of one of them leaves are the decays of the others.
+#[test]
+fn an_output_that_no_input_reaches_keeps_the_zeros_of_the_rest() {
+    let decays = [13.820_59, 28.671_06, 47.410_15];
+    for model in ["sdcom", "sdcom_printed"] {
+        for (inputs, output) in [("phi", ""), ("delta_e", ""), ("phi,delta_e", "alpha,")] {
+            for seen in 0..3 {
+                let outputs = format!("{output}chi_{}", seen + 1);
+                let flags = ["--inputs", inputs, "--outputs", &outputs];
+                let roots = json(&[&["poles", "--model", model][..], &flags].concat());
+                let zeros = roots["zeros"].as_array().expect("zeros").iter();
+                let found: Vec<f64> = zeros.map(|zero| -number(&zero[0])).collect();
+                let mut others = decays.to_vec();
+                others.remove(seen);
+                let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-6;
+                let right = found.len() == 2 && found.iter().zip(&others).all(near);
+                assert!(right, "{model} {inputs} {outputs}: {found:?}");
+            }
+        }
+    }
+}
