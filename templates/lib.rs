@@ -11,3 +11,15 @@
 #[rustfmt::skip]
 pub mod {{ module.name }};
 {%- endfor %}
+
+/// The models of this package.
+#[derive(Clone, Copy, Debug)]
+pub struct Models;
+
+impl ahv_core::ModelList for Models {
+    fn visit(visitor: &mut impl ahv_core::ModelVisitor) {
+{%- for module in modules %}
+        visitor.visit::<{{ module.name }}::Model<f64>>();
+{%- endfor %}
+    }
+}

@@ -13,6 +13,7 @@ pub use choices::*;
 pub use nominal::*;
 pub use parameters::{Parameters, Validity};
 pub use provenance::*;
+pub use table::*;
 {%- endif %}
 pub use prepared::{Prepared, prepare};
 
@@ -185,7 +186,18 @@ impl<R: Real> ahv_core::AdditiveNoise for Model<R> {}
 
 impl<R: Real> ahv_core::CommutativeNoise for Model<R> {}
 {%- endif %}
-{%- if !coloured.is_empty() %}
+{%- else %}
+
+/// There is no noise.
+pub type Noise<T> = ahv_core::NoNoise<T>;
+
+ahv_core::impl_no_noise!(Model, State, Input);
+{%- endif %}
+
+{%- if coloured.is_empty() %}
+
+impl<R: Real> ahv_core::ColouredNoise for Model<R> {}
+{%- else %}
 
 impl<R: Real> ahv_core::ColouredNoise for Model<R> {
     #[inline(always)]
@@ -197,5 +209,4 @@ impl<R: Real> ahv_core::ColouredNoise for Model<R> {
         decays.get(state).flatten()
     }
 }
-{%- endif %}
 {%- endif %}

@@ -1,7 +1,8 @@
 //! The numbers of the table.
 
+use super::provenance::*;
 use super::{Parameters, Validity};
-use ahv_core::Bounds;
+use ahv_core::{Bounds, ParameterSet, Provenance};
 
 /// The unit system: `ft-slug-s-rad` or `si`.
 pub const UNIT_SYSTEM: &str = "{{ system }}";
@@ -24,10 +25,10 @@ pub const {{ set.constant }}: Parameters<f64> = Parameters {
 {%- endfor %}
 
 /// Sets of parameters by name.
-pub const SETS: [(&str, Parameters<f64>); {{ sets.len() + 1 }}] = [
-    ("{{ own_set }}", NOMINAL),
+pub const SETS: [ParameterSet<Parameters<f64>, Parameters<Provenance>>; {{ sets.len() + 1 }}] = [
+    ParameterSet::new("{{ own_set }}", NOMINAL, PROVENANCE),
 {%- for set in sets %}
-    ("{{ set.name }}", {{ set.constant }}),
+    ParameterSet::new("{{ set.name }}", {{ set.constant }}, {{ set.constant }}_PROVENANCE),
 {%- endfor %}
 ];
 

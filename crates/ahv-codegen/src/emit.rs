@@ -329,6 +329,7 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -
     let templates: Vec<&str> = [
         include_str!("../templates/manifest.toml"),
         include_str!("../templates/choices.rs"),
+        include_str!("../templates/description.rs"),
         include_str!("../templates/functions.rs"),
         include_str!("../templates/lib.rs"),
         include_str!("../templates/model.rs"),
@@ -336,6 +337,7 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -
         include_str!("../templates/parameters.rs"),
         include_str!("../templates/prepared.rs"),
         include_str!("../templates/provenance.rs"),
+        include_str!("../templates/table.rs"),
     ]
     .into_iter()
     .chain(docs::TEMPLATES)

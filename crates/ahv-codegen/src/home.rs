@@ -4,7 +4,8 @@ use askama::Template;
 
 use crate::EmitError;
 use crate::emit::render;
-use crate::ir::{Choice, Document, Parameter, Status, Variable, capitalised};
+use crate::filters;
+use crate::ir::{Basis, Choice, Document, Parameter, Status, Variable, capitalised};
 use crate::values::Values;
 use crate::wording::vector_impl;
 
@@ -24,6 +25,32 @@ struct NominalTemplate<'a> {
     values: Vec<(String, String)>,
     sets: Vec<SetText>,
     bounds: Vec<(String, String, String)>,
+}
+
+#[derive(Template)]
+#[template(path = "table.rs")]
+struct TableTemplate<'a> {
+    name: &'a str,
+    models: Vec<String>,
+    document: &'a Document,
+}
+
+impl TableTemplate<'_> {
+    /// States and inputs of the table's models that an entry of the validity box bounds, as a list.
+    fn bounded(&self, entry: &str) -> Vec<String> {
+        let mut found = Vec::new();
+        let vectors = self.document.models.iter().flat_map(|model| {
+            [Basis::State, Basis::Input]
+                .into_iter()
+                .filter_map(|basis| model.bases.get(&basis))
+        });
+        for variable in vectors.flatten() {
+            if variable.validity.as_deref() == Some(entry) && !found.contains(&variable.name) {
+                found.push(variable.name.clone());
+            }
+        }
+        found
+    }
 }
 
 struct SetText {
@@ -79,10 +106,16 @@ pub(crate) fn files(
         validity: &document.validity,
         implementation: vector_impl("Parameters", fields, &document.units)?,
     };
+    let table = TableTemplate {
+        name: &document.provenance.table,
+        models: document.models.iter().map(|m| m.name.clone()).collect(),
+        document,
+    };
     let mut files = vec![
         ("parameters", render(&parameters)?),
         ("nominal", render(&nominal(document, values))?),
         ("provenance", render(&provenance(document))?),
+        ("table", render(&table)?),
     ];
     if !document.choices.is_empty() {
         let choices = document.choices.iter().map(choice).collect();
@@ -92,12 +125,13 @@ pub(crate) fn files(
 }
 
 /// What the other models of a table take from its home.
-pub(crate) fn names(document: &Document) -> Vec<String> {
+pub(crate) fn shared(document: &Document) -> Vec<String> {
     let mut names: Vec<String> = [
         "NOMINAL",
         "PROVENANCE",
         "Parameters",
         "SETS",
+        "TABLE",
         "UNIT_SYSTEM",
         "VALIDITY",
         "Validity",
@@ -121,7 +155,6 @@ pub(crate) fn names(document: &Document) -> Vec<String> {
 }
 
 fn nominal<'a>(document: &'a Document, values: &Values) -> NominalTemplate<'a> {
-    let number = |value: f64| format!("{value:?}");
     let names = document.parameters.iter().map(|p| p.name.clone());
     let sets = document.sets.iter().zip(&values.sets).skip(1);
     let bounds = document.validity.iter().zip(&values.bounds);
@@ -129,7 +162,7 @@ fn nominal<'a>(document: &'a Document, values: &Values) -> NominalTemplate<'a> {
         system: document.units.system.name(),
         own_set: document.sets.first().map_or("", |set| &set.name),
         values: names
-            .zip(values.nominal.iter().map(|&v| number(v)))
+            .zip(values.nominal.iter().map(|v| format!("{v:?}")))
             .collect(),
         sets: sets
             .map(|(set, replaced)| SetText {
@@ -137,12 +170,12 @@ fn nominal<'a>(document: &'a Document, values: &Values) -> NominalTemplate<'a> {
                 constant: constant(&set.name),
                 values: replaced
                     .iter()
-                    .map(|(name, v)| (name.clone(), number(*v)))
+                    .map(|(name, v)| (name.clone(), format!("{v:?}")))
                     .collect(),
             })
             .collect(),
         bounds: bounds
-            .map(|(v, &(min, max))| (v.name.clone(), number(min), number(max)))
+            .map(|(v, &(min, max))| (v.name.clone(), format!("{min:?}"), format!("{max:?}")))
             .collect(),
     }
 }

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use crate::EmitError;
 
 /// The schema that this crate reads.
-pub const SCHEMA_VERSION: u64 = 2;
+pub const SCHEMA_VERSION: u64 = 3;
 
 /// The models of one table.
 #[derive(Debug, Deserialize)]
@@ -28,6 +28,8 @@ pub struct Document {
     pub parameters: Vec<Parameter>,
     /// Entries of the validity box.
     pub validity: Vec<Variable>,
+    /// What the numbers of the table must obey.
+    pub rules: Vec<Rule>,
     /// The models.
     pub models: Vec<Model>,
 }
@@ -163,6 +165,32 @@ pub struct Parameter {
     pub uncertainty: f64,
 }
 
+/// A polynomial of parameters that must have a sign, as `ahv_core::Rule`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rule {
+    /// What kind of rule it is.
+    pub name: String,
+    /// Its terms: a factor and the names of the parameters.
+    pub terms: Vec<(f64, Vec<String>)>,
+    /// The sign.
+    pub must: Sign,
+    /// The rule as a sentence.
+    pub reason: String,
+}
+
+/// A sign that a number must have, by the names of `ahv_core::Sign`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Sign {
+    /// Above 0.
+    Positive,
+    /// 0 or above.
+    NotNegative,
+    /// Anything but 0.
+    NotZero,
+}
+
 /// How far a value can be trusted, by the names of `ahv_core::Status`.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
@@ -191,6 +219,8 @@ pub enum Basis {
     Argument,
     /// Inputs.
     Input,
+    /// Quantities that people look at.
+    Output,
     /// Flexible modes.
     Mode,
     /// Wiener processes.
@@ -244,6 +274,90 @@ pub struct Model {
     /// What kind of noise drives the model, where one does.
     #[serde(default)]
     pub noise: Option<NoiseStructure>,
+    /// What who uses the model should know first.
+    pub note: Option<String>,
+    /// What a steady state is.
+    pub trim: Trim,
+    /// Modes of motion.
+    pub modes: Vec<ModeOfMotion>,
+    /// Inputs and outputs for zeros and gains.
+    pub defaults: Defaults,
+    /// Deviations of states and inputs that cost 1 in a regulator.
+    pub deviations: BTreeMap<String, f64>,
+}
+
+/// What a steady state is, as `ahv_core::TrimProblem`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Trim {
+    /// States that are given.
+    pub given: Vec<Given>,
+    /// States and inputs that are sought.
+    pub sought: Vec<Sought>,
+    /// Rows of the drift that vanish.
+    pub equations: Vec<Equation>,
+    /// States that move all the same.
+    pub moving: Vec<String>,
+}
+
+/// A state that is given.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Given {
+    /// The state.
+    pub name: String,
+    /// Its value where none is asked for.
+    pub default: f64,
+    /// It must be above this.
+    pub above: Option<f64>,
+    /// It must be below this.
+    pub below: Option<f64>,
+}
+
+/// A state or input that is sought.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sought {
+    /// The state or input.
+    pub name: String,
+    /// Where the search starts.
+    pub start: f64,
+    /// A change that counts as 1.
+    pub scale: f64,
+}
+
+/// A row of the drift that vanishes.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Equation {
+    /// The row.
+    pub name: String,
+    /// How much it weighs where not all rows can vanish.
+    pub weight: f64,
+    /// Another row and a given state by which it is measured.
+    pub like: Option<(String, String)>,
+}
+
+/// A mode of motion.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModeOfMotion {
+    /// Its name.
+    pub name: String,
+    /// The states that take part.
+    pub states: Vec<String>,
+    /// Name of the slowest of an odd number of real poles.
+    pub slowest: Option<String>,
+}
+
+/// Inputs and outputs for zeros and gains, where none are asked for.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Defaults {
+    /// Inputs.
+    pub inputs: Vec<String>,
+    /// Outputs.
+    pub outputs: Vec<String>,
 }
 
 /// The columns of the diffusion, as the derivation found them by symbolic computation.
@@ -384,6 +498,27 @@ impl Document {
             });
         }
         serde_json::from_str(text).map_err(unreadable)
+    }
+}
+
+impl Model {
+    /// Multiplies the numbers of trim and deviations with the factor of their state or input.
+    pub(crate) fn scale_description(&mut self, factor: impl Fn(&str) -> f64) {
+        for given in &mut self.trim.given {
+            let factor = factor(&given.name);
+            let bounds = [&mut given.above, &mut given.below];
+            for value in bounds.into_iter().flatten().chain([&mut given.default]) {
+                *value *= factor;
+            }
+        }
+        for sought in &mut self.trim.sought {
+            let factor = factor(&sought.name);
+            sought.start *= factor;
+            sought.scale *= factor;
+        }
+        for (name, deviation) in &mut self.deviations {
+            *deviation *= factor(name);
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod docs;
 mod effect;
 mod emit;
 mod evaluate;
+mod filters;
 mod format;
 mod home;
 pub mod ir;

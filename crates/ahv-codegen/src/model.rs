@@ -8,6 +8,7 @@ use crate::body::{Scope, Statement};
 use crate::dag::{Dag, Id, Kind, Node};
 use crate::decay;
 use crate::emit::render;
+use crate::filters;
 use crate::home;
 use crate::ir::{self, Basis, Variable, capitalised, described};
 use crate::items::{FunctionText, Item, scatter};
@@ -62,6 +63,36 @@ impl ModelTemplate<'_> {
         };
         let noise = self.model.noise.as_ref();
         j.name == k.name || noise.is_some_and(|noise| noise.commuting.iter().any(pair))
+    }
+}
+
+#[derive(Template)]
+#[template(path = "description.rs")]
+struct DescriptionTemplate<'a> {
+    model: &'a ir::Model,
+    label: String,
+}
+
+impl DescriptionTemplate<'_> {
+    /// Deviations that cost 1, in the order of states and inputs.
+    fn deviations(&self) -> Vec<(&str, f64)> {
+        let model = self.model;
+        let vectors = [Basis::State, Basis::Input].map(|basis| model.bases.get(&basis));
+        let variables = vectors.into_iter().flatten().flatten();
+        let found = variables.filter_map(|v| Some((&*v.name, *model.deviations.get(&v.name)?)));
+        found.collect()
+    }
+
+    fn bound(&self, bound: &Option<f64>, open: &str) -> String {
+        bound.map_or_else(|| open.to_owned(), |bound| format!("{bound:?}"))
+    }
+
+    fn like(&self, equation: &ir::Equation) -> String {
+        let like = equation.like.as_ref();
+        like.map_or_else(
+            || "None".to_owned(),
+            |(row, state)| format!("Some(({row:?}, {state:?}))"),
+        )
     }
 }
 
@@ -178,6 +209,11 @@ impl<'a> ModelEmitter<'a> {
             files.insert(group.to_owned(), self.functions(group)?);
         }
         files.insert("prepared".to_owned(), self.prepare()?);
+        let description = DescriptionTemplate {
+            model: self.model,
+            label: self.label(),
+        };
+        files.insert("description".to_owned(), render(&description)?);
         files.insert("mod".to_owned(), self.module(groups)?);
         Ok(files)
     }
@@ -193,9 +229,9 @@ impl<'a> ModelEmitter<'a> {
     fn module(&self, mut groups: Vec<&'a str>) -> Result<String, EmitError> {
         groups.sort_unstable();
         let mut modules = groups.clone();
-        modules.push("prepared");
+        modules.extend(["description", "prepared"]);
         if self.home == self.model.name {
-            modules.extend(["nominal", "parameters", "provenance"]);
+            modules.extend(["nominal", "parameters", "provenance", "table"]);
             if !self.document.choices.is_empty() {
                 modules.push("choices");
             }
@@ -223,6 +259,12 @@ impl<'a> ModelEmitter<'a> {
                 bounds: None,
             });
         }
+        vectors.push(Vector {
+            name: "Outputs",
+            doc: "Quantities that people look at",
+            fields: self.basis(Basis::Output),
+            bounds: None,
+        });
         let mut lists = Vec::new();
         for vector in &vectors {
             let fields = vector.fields.iter().map(|v| (&v.name, &v.unit));
@@ -234,7 +276,7 @@ impl<'a> ModelEmitter<'a> {
             home: self.home,
             shared_parameters: self.home != self.model.name,
             has_choices: !self.document.choices.is_empty(),
-            shared: home::names(self.document),
+            shared: home::shared(self.document),
             modules,
             groups,
             vectors: vectors.into_iter().zip(lists).collect(),

@@ -41,6 +41,7 @@ impl<'a> Shape<'a> {
                 Basis::State => "State",
                 Basis::Input => "Input",
                 Basis::Noise => "Noise",
+                Basis::Output => "Outputs",
                 Basis::Parameter => "Parameters",
                 Basis::Mode => "",
                 Basis::Argument => return Err(no_form(model, output)),

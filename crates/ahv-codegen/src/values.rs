@@ -72,8 +72,10 @@ impl Values {
         }
         for model in &mut document.models {
             for variable in model.bases.values_mut().flatten() {
-                from.convert(&mut variable.unit)?;
+                let factor = from.convert(&mut variable.unit)?;
+                scales.insert(variable.name.clone(), factor);
             }
+            model.scale_description(|name| scales.get(name).copied().unwrap_or(1.0));
             for quantity in &mut model.quantities {
                 from.convert(&mut quantity.unit)?;
             }

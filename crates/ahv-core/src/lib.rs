@@ -8,6 +8,8 @@
 //! * [`Outlined`]: a model whose functions are called where others are inlined.
 //! * [`ItoCorrected`], [`DifferentiableNoise`], [`AdditiveNoise`], [`CommutativeNoise`], [`ColouredNoise`]: what schemes
 //!   for stochastic equations ask for.
+//! * [`GeneratedModel`]: what a generated model and its [`Table`] say of themselves, for commands and analyses that never saw
+//!   the model; [`ModelList`]: the models of a package.
 //! * [`Bounds`]: an interval of validity.
 //! * [`Pattern`]: where the entries of a compressed matrix stand.
 //! * [`NoiseClass`]: how a column of the diffusion depends on the state.
@@ -23,6 +25,7 @@ mod bounds;
 mod elementary;
 #[cfg(feature = "std")]
 mod fused;
+mod generated;
 mod lanes;
 mod model;
 mod nalgebra;
@@ -32,20 +35,26 @@ mod pattern;
 mod provenance;
 mod real;
 mod straight;
+mod table;
 mod vector;
 
 pub use bounds::{Bounds, Outside, first_outside};
 #[cfg(feature = "std")]
 pub use fused::{Fused, MulAdd};
+pub use generated::{
+    Component, Equation, GeneratedModel, Given, ModeOfMotion, ModelList, ModelVisitor, Sought,
+    TrimProblem,
+};
 pub use lanes::{Lane, Lanes};
 pub use model::{
     AdditiveNoise, ColouredNoise, CommutativeNoise, DifferentiableModel, DifferentiableNoise,
     ItoCorrected, Model, StochasticModel,
 };
-pub use noise::NoiseClass;
+pub use noise::{NoNoise, NoiseClass};
 pub use outlined::Outlined;
 pub use pattern::Pattern;
 pub use provenance::{Provenance, Status};
 pub use real::Real;
 pub use straight::Straight;
+pub use table::{Choice, ChoiceOption, Entry, Interval, ParameterSet, Rule, Sign, Table, Term};
 pub use vector::Vector;

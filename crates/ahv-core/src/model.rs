@@ -111,9 +111,13 @@ pub trait AdditiveNoise: StochasticModel {}
 )]
 pub trait CommutativeNoise: DifferentiableNoise {}
 
-/// A model some of whose states are Ornstein–Uhlenbeck processes by themselves: dχ = −a χ dt + b·dW with a rate a
+/// A model of which it is known which states are Ornstein–Uhlenbeck processes by themselves: dχ = −a χ dt + b·dW with a rate a
 /// and a row b of G that depend on parameters alone.
 pub trait ColouredNoise: StochasticModel {
     /// The rate a of state number `state`, in 1/s; `None` where the state is no such process, whatever the parameters.
-    fn decay(&self, state: usize) -> Option<Self::Scalar>;
+    #[inline(always)]
+    fn decay(&self, state: usize) -> Option<Self::Scalar> {
+        let _ = state;
+        None
+    }
 }

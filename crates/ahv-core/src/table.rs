@@ -1,0 +1,241 @@
+//! What a table of coefficients says beside its numbers: which entries it has, in which units, and what they must obey.
+
+use crate::{Bounds, Provenance, Vector};
+
+/// A table, as the models that it makes were generated from it. What holds for it holds for every table that takes its
+/// place at run time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Table {
+    /// Its name.
+    pub name: &'static str,
+    /// The models that it lists, in order.
+    pub models: &'static [&'static str],
+    /// Its unit system: `ft-slug-s-rad` or `si`.
+    pub unit_system: &'static str,
+    /// Its entries, one for each parameter, in their order.
+    pub entries: &'static [Entry],
+    /// What can be chosen by name.
+    pub choices: &'static [Choice],
+    /// The entries of its validity box.
+    pub validity: &'static [Interval],
+    /// What its numbers must obey.
+    pub rules: &'static [Rule],
+}
+
+/// Where a parameter stands in a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Section.
+    pub section: &'static str,
+    /// Key: a name, or a monomial. For a parameter of the section `choices` the choice that sets it.
+    pub key: &'static str,
+    /// What it is.
+    pub doc: &'static str,
+}
+
+impl Entry {
+    /// From its fields.
+    pub const fn new(section: &'static str, key: &'static str, doc: &'static str) -> Self {
+        Self { section, key, doc }
+    }
+}
+
+/// Something that is chosen by name, and sets parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// Its key in `[choices]`, and its flag on command lines.
+    pub name: &'static str,
+    /// What is chosen.
+    pub doc: &'static str,
+    /// What there is to choose from.
+    pub options: &'static [ChoiceOption],
+}
+
+impl Choice {
+    /// From its fields.
+    pub const fn new(
+        name: &'static str,
+        doc: &'static str,
+        options: &'static [ChoiceOption],
+    ) -> Self {
+        Self { name, doc, options }
+    }
+
+    /// The option of this name.
+    pub fn option(&self, name: &str) -> Option<&'static ChoiceOption> {
+        self.options.iter().find(|option| option.name == name)
+    }
+}
+
+/// One way to choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChoiceOption {
+    /// Its name.
+    pub name: &'static str,
+    /// What it means.
+    pub doc: &'static str,
+    /// The parameters that it sets, by name, with their values.
+    pub values: &'static [(&'static str, f64)],
+}
+
+impl ChoiceOption {
+    /// From its fields.
+    pub const fn new(
+        name: &'static str,
+        doc: &'static str,
+        values: &'static [(&'static str, f64)],
+    ) -> Self {
+        Self { name, doc, values }
+    }
+
+    /// The parameters with this option.
+    pub fn apply<P: Vector<f64>>(&self, mut parameters: P) -> P {
+        for (name, value) in self.values {
+            if let Some(index) = P::index_of(name) {
+                // An index of a name is in range.
+                let _ = parameters.set(index, *value);
+            }
+        }
+        parameters
+    }
+}
+
+/// An entry of the validity box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Its key in `[validity]`.
+    pub name: &'static str,
+    /// Unit, angles in rad.
+    pub unit: &'static str,
+    /// The interval of the table that the models were generated from, in that unit.
+    pub bounds: Bounds,
+    /// The states and inputs of the table's models that it bounds.
+    pub variables: &'static [&'static str],
+}
+
+impl Interval {
+    /// From its fields.
+    pub const fn new(
+        name: &'static str,
+        unit: &'static str,
+        bounds: Bounds,
+        variables: &'static [&'static str],
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            bounds,
+            variables,
+        }
+    }
+}
+
+/// What the numbers of a table must obey: a polynomial of parameters that has a sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule {
+    /// What kind of rule it is, e.g. `positive`.
+    pub name: &'static str,
+    /// The rule as a sentence.
+    pub reason: &'static str,
+    /// Which sign the polynomial must have.
+    pub must: Sign,
+    /// Terms of the polynomial. A fault is one of the first parameter of the first term.
+    pub terms: &'static [Term],
+}
+
+impl Rule {
+    /// From its fields.
+    pub const fn new(
+        name: &'static str,
+        reason: &'static str,
+        must: Sign,
+        terms: &'static [Term],
+    ) -> Self {
+        Self {
+            name,
+            reason,
+            must,
+            terms,
+        }
+    }
+
+    /// Whether these parameters obey it. A value that is not a number obeys nothing.
+    pub fn holds<P: Vector<f64>>(&self, parameters: &P) -> bool {
+        let value: f64 = self.terms.iter().map(|term| term.value(parameters)).sum();
+        match self.must {
+            Sign::Positive => value > 0.0,
+            Sign::NotNegative => value >= 0.0,
+            Sign::NotZero => value.abs() > 0.0,
+        }
+    }
+}
+
+/// A sign that a number must have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// Above 0.
+    Positive,
+    /// 0 or above.
+    NotNegative,
+    /// Anything but 0.
+    NotZero,
+}
+
+/// A factor times parameters; a power repeats its parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    /// The factor.
+    pub factor: f64,
+    /// Names of the parameters.
+    pub parameters: &'static [&'static str],
+}
+
+impl Term {
+    /// From its fields.
+    pub const fn new(factor: f64, parameters: &'static [&'static str]) -> Self {
+        Self { factor, parameters }
+    }
+
+    fn value<P: Vector<f64>>(&self, parameters: &P) -> f64 {
+        let values = self.parameters.iter().map(|name| {
+            let value = P::index_of(name).and_then(|index| parameters.get(index));
+            value.unwrap_or(f64::NAN)
+        });
+        values.fold(self.factor, |product, value| product * value)
+    }
+}
+
+/// A set of parameters with a name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterSet<P, Q> {
+    /// Its name.
+    pub name: &'static str,
+    /// The parameters.
+    pub parameters: P,
+    /// Where each comes from: a vector of [`Provenance`].
+    pub provenance: Q,
+}
+
+impl<P, Q> ParameterSet<P, Q> {
+    /// From its fields.
+    pub const fn new(name: &'static str, parameters: P, provenance: Q) -> Self {
+        Self {
+            name,
+            parameters,
+            provenance,
+        }
+    }
+}
+
+impl<P, Q: Vector<Provenance>> ParameterSet<P, Q> {
+    /// Relative uncertainties of the parameters.
+    pub fn uncertainty(&self) -> P
+    where
+        P: Vector<f64>,
+    {
+        P::from_fn(|index| {
+            let entry = self.provenance.get(index);
+            entry.map_or(0.0, |entry| entry.uncertainty)
+        })
+    }
+}

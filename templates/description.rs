@@ -1,0 +1,75 @@
+//! What {{ label }} says of itself.
+
+use super::*;
+use ahv_core::{Equation, GeneratedModel, Given, ModeOfMotion, ParameterSet, Provenance, Real, Sought, Table, TrimProblem};
+
+impl GeneratedModel for Model<f64> {
+    const NAME: &'static str = "{{ model.name }}";
+    const TITLE: &'static str = {{ model.title|text }};
+    const NOTE: Option<&'static str> = {{ model.note|optional }};
+    const TABLE: &'static Table = &TABLE;
+    const SETS: &'static [ParameterSet<Self::Parameters, Self::ParametersOf<Provenance>>] = &SETS;
+    const STATE_BOUNDS: Self::StateOf<ahv_core::Bounds> = STATE_BOUNDS;
+    const INPUT_BOUNDS: Self::InputOf<ahv_core::Bounds> = INPUT_BOUNDS;
+    const TRIM: TrimProblem = TrimProblem {
+        given: &[
+{%- for it in model.trim.given %}
+            Given::new("{{ it.name }}", {{ it.default|number }}, {{ bound(it.above, "f64::NEG_INFINITY") }}, {{ bound(it.below, "f64::INFINITY") }}),
+{%- endfor %}
+        ],
+        sought: &[
+{%- for it in model.trim.sought %}
+            Sought::new("{{ it.name }}", {{ it.start|number }}, {{ it.scale|number }}),
+{%- endfor %}
+        ],
+        equations: &[
+{%- for it in model.trim.equations %}
+            Equation::new("{{ it.name }}", {{ it.weight|number }}, {{ like(it) }}),
+{%- endfor %}
+        ],
+        moving: &{{ model.trim.moving|texts }},
+    };
+    const MODES: &'static [ModeOfMotion] = &[
+{%- for mode in model.modes %}
+        ModeOfMotion::new({{ mode.name|text }}, &{{ mode.states|texts }}, {{ mode.slowest|optional }}),
+{%- endfor %}
+    ];
+    const DEFAULT_INPUTS: &'static [&'static str] = &{{ model.defaults.inputs|texts }};
+    const DEFAULT_OUTPUTS: &'static [&'static str] = &{{ model.defaults.outputs|texts }};
+    const DEVIATIONS: &'static [(&'static str, f64)] = &[
+{%- for (name, deviation) in deviations() %}
+        ("{{ name }}", {{ deviation|number }}),
+{%- endfor %}
+    ];
+
+    type Parameters = Parameters<f64>;
+    type ParametersOf<T: ahv_core::Component> = Parameters<T>;
+    type StateOf<T: ahv_core::Component> = State<T>;
+    type InputOf<T: ahv_core::Component> = Input<T>;
+    type NoiseOf<T: ahv_core::Component> = Noise<T>;
+    type OutputsOf<T: ahv_core::Component> = Outputs<T>;
+    type With<R: Real> = Model<R>;
+
+    fn with_parameters(parameters: &Parameters<f64>) -> Self {
+        Self::new(parameters)
+    }
+
+    fn generic<R: Real>(parameters: &Parameters<R>) -> Model<R> {
+        Model::new(parameters)
+    }
+
+    #[inline(always)]
+    fn map_model<R: Real, U: Real>(model: &Model<R>, f: impl FnMut(&R) -> U) -> Model<U> {
+        model.map_ref(f)
+    }
+
+    fn parameter_jacobian(&self, x: &State<f64>, u: &Input<f64>) -> ParameterJacobian<f64> {
+        parameter_jacobian(x, u, &self.prepared)
+    }
+
+    fn outputs(&self, x: &State<f64>, u: &Input<f64>) -> Outputs<f64> {
+        outputs(x, u, &self.prepared)
+    }
+
+    ahv_core::component_functions!();
+}

@@ -1,0 +1,39 @@
+//! What the table says beside its numbers.
+
+use super::nominal::{UNIT_SYSTEM, VALIDITY};
+use ahv_core::{Choice, ChoiceOption, Entry, Interval, Rule, Sign, Table, Term};
+
+/// Entries, choices, validity box and rules of the table.
+pub const TABLE: Table = Table {
+    name: "{{ name }}",
+    models: &{{ models|texts }},
+    unit_system: UNIT_SYSTEM,
+    entries: &[
+{%- for p in document.parameters %}
+        Entry::new({{ p.path.0|text }}, {{ p.path.1|text }}, {{ p.doc|text }}),
+{%- endfor %}
+    ],
+    choices: &[
+{%- for choice in document.choices %}
+        Choice::new({{ choice.name|text }}, {{ choice.doc|text }}, &[
+{%- for option in choice.options %}
+            ChoiceOption::new({{ option.name|text }}, {{ option.doc|text }}, &[
+                {%- for (name, value) in option.values %}("{{ name }}", {{ value|number }}), {% endfor -%}
+            ]),
+{%- endfor %}
+        ]),
+{%- endfor %}
+    ],
+    validity: &[
+{%- for v in document.validity %}
+        Interval::new("{{ v.name }}", {{ v.unit|text }}, VALIDITY.{{ v.name }}, &{{ bounded(v.name)|texts }}),
+{%- endfor %}
+    ],
+    rules: &[
+{%- for rule in document.rules %}
+        Rule::new({{ rule.name|text }}, {{ rule.reason|text }}, Sign::{{ rule.must|fmt("{:?}") }}, &[
+            {%- for (factor, parameters) in rule.terms %}Term::new({{ factor|number }}, &{{ parameters|texts }}), {% endfor -%}
+        ]),
+{%- endfor %}
+    ],
+};
