@@ -8,10 +8,10 @@ from importlib.metadata import version
 from . import __version__, units
 from .expression import tree
 from .model import Function, Model, Output
-from .schema import Choice, VariableSpec
+from .schema import Choice, Rule, VariableSpec
 from .table import Parameter, Table
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 
 
 class _Line:
@@ -39,6 +39,7 @@ def render(table: Table, models: list[Model]) -> str:
             _Line({"name": v.name, "symbol": v.symbol, "unit": units.converted(v.unit, table.units), "doc": v.doc})
             for v in table.validity
         ],
+        "rules": [_Line(_rule(r)) for r in table.schema.rules()],
         "models": [_model(m) for m in models],
     }
     return _dump(document, 0) + "\n"
@@ -60,6 +61,11 @@ def _parameter(p: Parameter) -> dict[str, object]:
 def _replacement(p: Parameter) -> dict[str, object]:
     whole = _parameter(p)
     return {key: whole[key] for key in ("name", "path", "source", "status", "uncertainty")}
+
+
+def _rule(r: Rule) -> dict[str, object]:
+    terms = [[_plain(factor), list(names)] for factor, names in r.terms]
+    return {"name": r.name, "terms": terms, "must": r.must, "reason": r.reason}
 
 
 def _choice(choice: Choice) -> dict[str, object]:
@@ -102,6 +108,7 @@ def _document(m: Model) -> dict[str, object]:
         "name": m.name,
         "title": m.title,
         "equations": m.equations,
+        "note": m.traits.note,
         "bases": {name: [_Line(_variable(v, m.unit(v.name))) for v in basis] for name, basis in m.bases.items()},
         "quantities": [
             _Line(
@@ -118,6 +125,46 @@ def _document(m: Model) -> dict[str, object]:
             for q in m.graph.quantities.values()
         ],
         "functions": [_function(f) for f in m.functions],
+    } | _traits(m)
+
+
+def _traits(m: Model) -> dict[str, object]:
+    traits = m.traits
+
+    def value(name: str, number: float | None) -> object:
+        """A number in the unit of a state or input, as the table has it."""
+        if number is None:
+            return None
+        return _plain(number * units.conversion(m.variable(name).unit, m.table.units))
+
+    return {
+        "trim": {
+            "given": [
+                _Line(
+                    {
+                        "name": g.name,
+                        "default": value(g.name, g.default),
+                        "above": value(g.name, g.above),
+                        "below": value(g.name, g.below),
+                    }
+                )
+                for g in traits.trim.given
+            ],
+            "sought": [
+                _Line({"name": s.name, "start": value(s.name, s.start), "scale": value(s.name, s.scale)})
+                for s in traits.trim.sought
+            ],
+            "equations": [
+                _Line({"name": e.name, "weight": _plain(e.weight), "like": e.like and list(e.like)})
+                for e in traits.trim.equations
+            ],
+            "moving": list(traits.trim.moving),
+        },
+        "modes": [
+            _Line({"name": mode.name, "states": list(mode.states), "slowest": mode.slowest}) for mode in traits.modes
+        ],
+        "defaults": {"inputs": list(traits.inputs), "outputs": list(traits.outputs)},
+        "deviations": _Line({name: value(name, size) for name, size in traits.deviations.items()}),
     }
 
 

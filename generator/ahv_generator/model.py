@@ -11,6 +11,7 @@ from . import units
 from .graph import Graph
 from .schema import VariableSpec
 from .table import Table
+from .traits import Traits
 
 # Prefixes that tell leaves of different bases apart: a Wiener increment and its intensity share a name.
 LEAVES = {"state": "x", "input": "u", "noise": "w", "argument": "t"}
@@ -64,11 +65,15 @@ class Model:
     equations: str
     table: Table
     bases: dict[str, tuple[VariableSpec, ...]]
+    traits: Traits
     graph: Graph = field(init=False)
     functions: list[Function] = field(default_factory=list)
     noise_structure: NoiseStructure | None = None
 
     def __post_init__(self) -> None:
+        faults = self.traits.faults(self.names("state"), self.names("input"))
+        if faults:
+            raise ValueError(f"the traits of {self.name} do not fit it: {'; '.join(faults)}")
         self.graph = Graph(self.table.units)
         for basis, prefix in LEAVES.items():
             for variable in self.bases.get(basis, ()):
@@ -97,8 +102,11 @@ class Model:
 
     def unit(self, name: str) -> str:
         """The unit of a state, an input or another component, in the system of the table."""
-        unit = next(v.unit for basis in self.bases.values() for v in basis if v.name == name)
-        return units.converted(unit, self.table.units)
+        return units.converted(self.variable(name).unit, self.table.units)
+
+    def variable(self, name: str) -> VariableSpec:
+        """A component of a basis by its name."""
+        return next(v for basis in self.bases.values() for v in basis if v.name == name)
 
     def leaves(self, basis: str) -> dict[str, str]:
         """Names of the entries of a basis, in order, with the names that they have in expressions."""
@@ -147,3 +155,11 @@ class Model:
             quantity = self.graph.quantities[name]
             doc = quantity.doc[0].upper() + quantity.doc[1:]
             self.add_scalar(name, "evaluations", doc, quantity.equation, self.graph.symbols[name], quantity.unit)
+
+    def add_outputs(self, *names: str) -> None:
+        """The function of the quantities that people look at, and the basis of its result; a state is none of them."""
+        quantities = [self.graph.quantities[name] for name in names if name not in self.names("state")]
+        self.bases["output"] = tuple(VariableSpec(q.name, q.symbol, q.unit, q.doc) for q in quantities)
+        entries = tuple(Entry((q.name,), self.graph.symbols[q.name]) for q in quantities)
+        doc = "Quantities that people look at, which are not states"
+        self.add("outputs", "outputs", doc, "", [Output("", ("output",), entries)])

@@ -68,7 +68,7 @@ def _substituted(expr: ca.SX, model: Model, values: dict[str, ca.SX]) -> ca.SX:
 
 def _outputs(model: Model) -> Iterator[tuple[str, ca.SX]]:
     for function in model.functions:
-        if function.name.startswith("drift_and_"):
+        if function.name.startswith("drift_and_") or function.name == "outputs":
             continue  # the same expressions once more
         for output in function.outputs:
             for entry in output.entries:

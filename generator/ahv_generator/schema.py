@@ -2,10 +2,39 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 STATUSES = ("published", "derived", "unverified", "assumed")
 FLEXIBLE = "(ft*slug)^0.5"  # ft·(slug/ft)^½, a mass-normalised modal coordinate
+
+
+POSITIVE, NOT_NEGATIVE, NOT_ZERO = "positive", "not_negative", "not_zero"
+_IN_WORDS = {POSITIVE: "must be positive", NOT_NEGATIVE: "must not be negative", NOT_ZERO: "must not be zero"}
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What the parameters must keep: a polynomial in them is positive, not negative or not zero.
+
+    A term is a factor and the names of parameters that multiply it. A fault is told at the first of them.
+    """
+
+    name: str
+    terms: tuple[tuple[float, tuple[str, ...]], ...]
+    must: str
+    reason: str
+
+    def holds(self, values: Mapping[str, float]) -> bool:
+        """Whether parameters of these values keep the rule; one that is not a number does not."""
+        # A product overflows to infinity, a power to an exception.
+        value = sum(factor * math.prod(values[name] for name in names) for factor, names in self.terms)
+        return {POSITIVE: value > 0, NOT_NEGATIVE: value >= 0, NOT_ZERO: value != 0}[self.must]
+
+    def parameters(self) -> tuple[str, ...]:
+        """The parameters that it is about, the one at which a fault is told first."""
+        return tuple(dict.fromkeys(name for _, names in self.terms for name in names))
 
 
 @dataclass(frozen=True)
@@ -16,8 +45,19 @@ class ParameterSpec:
     symbol: str
     unit: str
     doc: str
-    lowest: float = float("-inf")
-    positive: bool = False
+    must: str | None = None
+
+    @property
+    def name(self) -> str:
+        """Its name in the generated code."""
+        return self.key.lower()
+
+    def rules(self) -> tuple[Rule, ...]:
+        """Its range."""
+        if self.must is None:
+            return ()
+        reason = f"`{self.key}` ({self.doc}) {_IN_WORDS[self.must]}"
+        return (Rule(self.must.replace("_", "-"), ((1.0, (self.name,)),), self.must, reason),)
 
 
 @dataclass(frozen=True)
@@ -44,28 +84,28 @@ class VariableSpec:
 
 
 VEHICLE = (
-    ParameterSpec("m", "m", "slug/ft", "vehicle mass", positive=True),
-    ParameterSpec("I_yy", "I_{yy}", "slug*ft", "pitch moment of inertia", positive=True),
-    ParameterSpec("S", "S", "ft", "reference area", positive=True),
-    ParameterSpec("c_bar", r"\bar c", "ft", "mean aerodynamic chord", positive=True),
+    ParameterSpec("m", "m", "slug/ft", "vehicle mass", must=POSITIVE),
+    ParameterSpec("I_yy", "I_{yy}", "slug*ft", "pitch moment of inertia", must=POSITIVE),
+    ParameterSpec("S", "S", "ft", "reference area", must=POSITIVE),
+    ParameterSpec("c_bar", r"\bar c", "ft", "mean aerodynamic chord", must=POSITIVE),
     ParameterSpec("z_T", "z_T", "ft", "thrust-to-moment coupling arm"),
 )
 ENVIRONMENT = (
-    ParameterSpec("rho_0", r"\rho_0", "slug/ft^3", "air density at the reference altitude", positive=True),
+    ParameterSpec("rho_0", r"\rho_0", "slug/ft^3", "air density at the reference altitude", must=POSITIVE),
     ParameterSpec("h_0", "h_0", "ft", "reference altitude of the air density"),
-    ParameterSpec("h_s", "h_s", "ft", "scale height of the air density", positive=True),
-    ParameterSpec("g", "g", "ft/s^2", "acceleration of gravity at sea level", positive=True),
-    ParameterSpec("R_E", "R_E", "ft", "radius of the Earth", positive=True),
+    ParameterSpec("h_s", "h_s", "ft", "scale height of the air density", must=POSITIVE),
+    ParameterSpec("g", "g", "ft/s^2", "acceleration of gravity at sea level", must=POSITIVE),
+    ParameterSpec("R_E", "R_E", "ft", "radius of the Earth", must=POSITIVE),
 )
 RIGID_NOISE = (
-    ParameterSpec("w_gamma", r"\sigma_{w_\gamma}", "rad*s^0.5", "intensity of the white noise w_gamma", lowest=0.0),
-    ParameterSpec("w_alpha", r"\sigma_{w_\alpha}", "rad*s^0.5", "intensity of the white noise w_alpha", lowest=0.0),
-    ParameterSpec("w_q", r"\sigma_{w_Q}", "rad/s^0.5", "intensity of the white noise w_Q", lowest=0.0),
+    ParameterSpec("w_gamma", r"\sigma_{w_\gamma}", "rad*s^0.5", "intensity of the white noise w_gamma", must=NOT_NEGATIVE),
+    ParameterSpec("w_alpha", r"\sigma_{w_\alpha}", "rad*s^0.5", "intensity of the white noise w_alpha", must=NOT_NEGATIVE),
+    ParameterSpec("w_q", r"\sigma_{w_Q}", "rad/s^0.5", "intensity of the white noise w_Q", must=NOT_NEGATIVE),
 )
 
 GUST = (
-    ParameterSpec("gust_rms", r"\sigma_g", "rad", "root mean square of the gust incidence", lowest=0.0),
-    ParameterSpec("gust_time", r"\tau_g", "s", "correlation time of the gust incidence", positive=True),
+    ParameterSpec("gust_rms", r"\sigma_g", "rad", "root mean square of the gust incidence", must=NOT_NEGATIVE),
+    ParameterSpec("gust_time", r"\tau_g", "s", "correlation time of the gust incidence", must=POSITIVE),
 )
 
 RIGID_STATE = (
@@ -96,16 +136,16 @@ def coupling_parameters(modes: int) -> tuple[ParameterSpec, ...]:
 
 
 def _frequency(suffix: str, of: str) -> ParameterSpec:
-    return ParameterSpec(f"omega{suffix}", rf"\omega{suffix}", "rad/s", f"natural frequency{of}", positive=True)
+    return ParameterSpec(f"omega{suffix}", rf"\omega{suffix}", "rad/s", f"natural frequency{of}", must=POSITIVE)
 
 
 def _damping(suffix: str, of: str) -> ParameterSpec:
-    return ParameterSpec(f"zeta{suffix}", rf"\zeta{suffix}", "1", f"damping ratio{of}", positive=True)
+    return ParameterSpec(f"zeta{suffix}", rf"\zeta{suffix}", "1", f"damping ratio{of}", must=POSITIVE)
 
 
 def _intensity(suffix: str, of: str) -> ParameterSpec:
     unit = f"{FLEXIBLE}/s^1.5"
-    return ParameterSpec(f"sigma{suffix}", rf"\sigma{suffix}", unit, f"intensity of the white noise{of}", lowest=0.0)
+    return ParameterSpec(f"sigma{suffix}", rf"\sigma{suffix}", unit, f"intensity of the white noise{of}", must=NOT_NEGATIVE)
 
 
 def noise_parameters(modes: int) -> tuple[ParameterSpec, ...]:
@@ -202,6 +242,12 @@ class Schema:
     choices: tuple[Choice, ...]
     quantities: tuple[QuantitySpec, ...]
     validity: tuple[VariableSpec, ...]
+    rules_of_family: tuple[Rule, ...] = ()
+
+    def rules(self) -> tuple[Rule, ...]:
+        """The ranges of the parameters, then the rules that are about more."""
+        ranges = (rule for group in self.parameters.values() for spec in group for rule in spec.rules())
+        return (*ranges, *self.rules_of_family)
 
     def variable_units(self) -> dict[str, str]:
         """Units of the variables of the monomials."""
@@ -245,7 +291,14 @@ def com_schema(models: tuple[str, ...]) -> Schema:
             *forces,
         ),
         validity=(*RIGID_STATE, *((_ETA, _ETA_DOT) if modes else ()), PHI, DELTA_E),
+        rules_of_family=(_mass_matrix(modes),) if modes else (),
     )
+
+
+def _mass_matrix(modes: int) -> Rule:
+    couplings = tuple((-1.0, (f"psi_{i}", f"psi_{i}")) for i in range(1, modes + 1))
+    reason = "`I_yy` must exceed the sum of the squares of `psi_i`: no mass matrix is like this"
+    return Rule("mass-matrix", ((1.0, ("i_yy",)), *couplings), POSITIVE, reason)
 
 
 def dcom_schema(models: tuple[str, ...], modes: int) -> Schema:
@@ -281,6 +334,9 @@ def dcom_schema(models: tuple[str, ...], modes: int) -> Schema:
             *generalized,
         ),
         validity=(*RIGID_STATE, _ETA, _ETA_DOT, _CHI, *((ALPHA_GUST,) if gust else ()), PHI, DELTA_E, DELTA_C),
+        rules_of_family=(
+            Rule("not-zero", ((1.0, ("c_l_delta_c",)),), NOT_ZERO, "law (4) divides by the C_L of `delta_c`"),
+        ),
     )
 
 

@@ -284,9 +284,9 @@ class _Reader:
         if checked is None:
             return None
         value, entry = checked
-        if (spec.positive and value <= 0) or value < spec.lowest:
-            bound = "positive" if spec.positive else f"at least {spec.lowest:g}"
-            self.faults.value((*path, "value"), f"`{spec.key}` ({spec.doc}) must be {bound}")
+        for rule in spec.rules():
+            if not rule.holds({spec.name: value}):
+                self.faults.value((*path, "value"), rule.reason)
         return entry
 
     def _choices(self, choices: Iterable[Choice]) -> list[Parameter]:

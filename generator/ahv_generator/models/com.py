@@ -10,8 +10,8 @@ from ..schema import DELTA_E, FLEXIBLE, PHI, RIGID_STATE
 from ..table import Table
 from .dcom import define_modal_acceleration, modal_load, modal_state
 from .vehicle import (
-    add_flexible_evaluations,
-    add_rigid_evaluations,
+    FORCES,
+    add_outlooks,
     define_air,
     define_angles,
     define_force,
@@ -20,6 +20,7 @@ from .vehicle import (
     define_pitch_acceleration,
     define_polynomial,
     define_rigid_rates,
+    vehicle_traits,
 )
 
 INPUT = (PHI, DELTA_E)
@@ -27,25 +28,17 @@ INPUT = (PHI, DELTA_E)
 
 def build_com_rigid(table: Table) -> Model:
     """The rigid control-oriented model."""
-    m = Model(
-        "com_rigid",
-        "control-oriented model, rigid body",
-        "(1)-(3)",
-        table,
-        {"state": RIGID_STATE, "input": INPUT},
-    )
+    bases = {"state": RIGID_STATE, "input": INPUT}
+    title = "control-oriented model, rigid body"
+    m = Model("com_rigid", title, "(1)-(3)", table, bases, vehicle_traits(bases))
     return _finished(m, define_rigid_rates(m, _define_forces(m)))
 
 
 def build_com(table: Table) -> Model:
     """The control-oriented model with a forebody and an aftbody clamped at the centre of mass."""
-    m = Model(
-        "com",
-        "control-oriented model, forebody and aftbody flexible",
-        "(1)-(3)",
-        table,
-        {"state": RIGID_STATE + modal_state(table.schema.modes), "input": INPUT},
-    )
+    bases = {"state": RIGID_STATE + modal_state(table.schema.modes), "input": INPUT}
+    title = "control-oriented model, forebody and aftbody flexible"
+    m = Model("com", title, "(1)-(3)", table, bases, vehicle_traits(bases))
     turn = _define_forces(m)
     variables = {name: m[name] for name in ("alpha", "delta_e")}
     loads = {}
@@ -59,8 +52,7 @@ def build_com(table: Table) -> Model:
     for i, load in loads.items():
         rates[f"eta_{i}"] = m[f"eta_dot_{i}"]
         rates[f"eta_dot_{i}"] = define_modal_acceleration(m, i, load - mass[0, i] * m["pitch_acceleration"])
-    add_flexible_evaluations(m, "generalized_force")
-    return _finished(m, rates)
+    return _finished(m, rates, "generalized_force")
 
 
 def inertial_coupling(m: Model, modes: list[int]) -> ca.SX:
@@ -135,8 +127,8 @@ def _define_forces(m: Model) -> ca.SX:
     return m["turn_factor"] * fit["C_L"] + fit["T"] * m["sin_alpha"] * m["inverse_momentum"]
 
 
-def _finished(m: Model, rates: dict[str, ca.SX]) -> Model:
+def _finished(m: Model, rates: dict[str, ca.SX], *flexible: str) -> Model:
     add_drift_and_derivatives(m, rates, "(1)")
-    add_rigid_evaluations(m)
+    add_outlooks(m, *flexible, fits=("c_l", "c_d", "c_m"), forces=FORCES)
     add_lie_derivatives(m, rates, "(1)")
     return m

@@ -14,8 +14,8 @@ from ..stochastic import add_diffusion
 from ..table import Table
 from .noise import PERTURBATIONS, RIGID_INCREMENTS, modal_gains, modal_increments, perturbation_gains
 from .vehicle import (
-    add_flexible_evaluations,
-    add_rigid_evaluations,
+    FORCES,
+    add_outlooks,
     define_air,
     define_angles,
     define_force,
@@ -23,9 +23,11 @@ from .vehicle import (
     define_momentum,
     define_polynomial,
     define_rigid_rates,
+    vehicle_traits,
 )
 
 INPUT = (PHI, DELTA_E, DELTA_C)
+FITS = ("c_l", "c_d", "c_m", "c_t")
 
 
 def modal_state(modes: int) -> tuple[VariableSpec, ...]:
@@ -176,17 +178,12 @@ def define_surroundings(m: Model) -> None:
 def build_dcom(table: Table) -> Model:
     """The decoupled control-oriented model, with the noise that drives its reduction."""
     modes = range(1, table.schema.modes + 1)
-    m = Model(
-        "dcom",
-        "decoupled control-oriented model",
-        "(1)-(4)",
-        table,
-        {
-            "state": RIGID_STATE + modal_state(table.schema.modes),
-            "input": INPUT,
-            "noise": RIGID_INCREMENTS + modal_increments(table.schema.modes),
-        },
-    )
+    bases = {
+        "state": RIGID_STATE + modal_state(table.schema.modes),
+        "input": INPUT,
+        "noise": RIGID_INCREMENTS + modal_increments(table.schema.modes),
+    }
+    m = Model("dcom", "decoupled control-oriented model", "(1)-(4)", table, bases, vehicle_traits(bases))
     define_surroundings(m)
     variables = control_variables(m)
     turn = define_forces(m, variables | {f"eta_{i}": m[f"eta_{i}"] for i in modes})
@@ -196,8 +193,7 @@ def build_dcom(table: Table) -> Model:
         rates[f"eta_{i}"] = m[f"eta_dot_{i}"]
         rates[f"eta_dot_{i}"] = define_modal_acceleration(m, i, modal_load(m, i, force))
     add_drift_and_derivatives(m, rates, "(1)")
-    add_rigid_evaluations(m)
-    add_flexible_evaluations(m, "c_n", "generalized_force")
+    add_outlooks(m, "c_n", "generalized_force", fits=FITS, forces=FORCES)
     gains = perturbation_gains(m, rates)
     gains |= modal_gains(m, {f"eta_dot_{i}": m.parameter(f"sigma_{i}") for i in modes})
     add_diffusion(m, rates, gains, PERTURBATIONS + "; the modes are driven as in (17)", "(17)")

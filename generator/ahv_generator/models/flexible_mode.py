@@ -11,6 +11,7 @@ from ..model import Entry, Model, Output
 from ..schema import FLEXIBLE, FORCE, VariableSpec
 from ..stochastic import add_diffusion
 from ..table import Table
+from ..traits import Equation, Mode, Sought, Traits, Trim
 from . import reduction
 
 GROUP = "moments"
@@ -18,30 +19,35 @@ RESPONSE = "responses"
 SECTION = "Response of the mode"
 VARIANCE = "ft*slug"  # of a flexible coordinate
 
+_STATES = ("eta", "eta_dot", "chi")
+TRAITS = Traits(
+    trim=Trim(sought=tuple(Sought(name) for name in _STATES), equations=tuple(Equation(name) for name in _STATES)),
+    modes=(Mode("flexible", ("eta", "eta_dot")), Mode("coloured noise", ("chi",))),
+    inputs=("force",),
+    outputs=("eta",),
+    deviations={"eta": 1.0, "eta_dot": 1.0, "force": 1.0},
+)
+
 
 def build_flexible_mode(table: Table) -> Model:
     """The mode (17) and the coloured noise (24) in its place, driven by the same white noise."""
-    m = Model(
-        "flexible_mode",
-        "a flexible mode and its reduction to coloured noise",
-        "(5)-(26)",
-        table,
-        {
-            "state": (
-                VariableSpec("eta", r"\eta", FLEXIBLE, "flexible generalized coordinate", "eta"),
-                VariableSpec(
-                    "eta_dot", r"\dot\eta", f"{FLEXIBLE}/s", "rate of the flexible generalized coordinate", "eta_dot"
-                ),
-                VariableSpec("chi", r"\chi", FLEXIBLE, "coloured noise in the place of the coordinate", "chi"),
+    bases = {
+        "state": (
+            VariableSpec("eta", r"\eta", FLEXIBLE, "flexible generalized coordinate", "eta"),
+            VariableSpec(
+                "eta_dot", r"\dot\eta", f"{FLEXIBLE}/s", "rate of the flexible generalized coordinate", "eta_dot"
             ),
-            "input": (FORCE,),
-            "noise": (VariableSpec("xi", r"\xi", "s^0.5", "Wiener increment that drives mode and coloured noise"),),
-            "argument": (
-                VariableSpec("time", "t", "s", "time from the start, or lag"),
-                VariableSpec("frequency", r"\Omega", "rad/s", "angular frequency of a spectrum"),
-            ),
-        },
-    )
+            VariableSpec("chi", r"\chi", FLEXIBLE, "coloured noise in the place of the coordinate", "chi"),
+        ),
+        "input": (FORCE,),
+        "noise": (VariableSpec("xi", r"\xi", "s^0.5", "Wiener increment that drives mode and coloured noise"),),
+        "argument": (
+            VariableSpec("time", "t", "s", "time from the start, or lag"),
+            VariableSpec("frequency", r"\Omega", "rad/s", "angular frequency of a spectrum"),
+        ),
+    }
+    title = "a flexible mode and its reduction to coloured noise"
+    m = Model("flexible_mode", title, "(5)-(26)", table, bases, TRAITS)
     omega, zeta = m.parameter("omega"), m.parameter("zeta")
     damping = _define(m, "damping", 2 * zeta * omega, r"2\zeta\omega", "rad/s", "damping of the mode", "(5)")
     stiffness = _define(m, "stiffness", omega**2, r"\omega^2", "rad^2/s^2", "stiffness of the mode", "(5)")
@@ -66,6 +72,7 @@ def build_flexible_mode(table: Table) -> Model:
     for regime in (_underdamped(m), _critical(m), _overdamped(m)):
         _add_responses(m, regime, static, decay)
         _add_moments(m, regime)
+    m.add_outputs("eta_static")
     return m
 
 

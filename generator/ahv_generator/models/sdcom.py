@@ -12,12 +12,13 @@ from ..schema import ALPHA_GUST, FLEXIBLE, RIGID_STATE, VariableSpec
 from ..stochastic import Gains, add_diffusion
 from ..table import Table
 from . import reduction
-from .dcom import INPUT, control_variables, define_forces, define_generalized_forces, define_surroundings
+from .dcom import FITS, INPUT, control_variables, define_forces, define_generalized_forces, define_surroundings
 from .feedback import StrictFeedback
 from .noise import PERTURBATIONS, RIGID_INCREMENTS, modal_gains, modal_increments, perturbation_gains
-from .vehicle import add_flexible_evaluations, add_rigid_evaluations, define_rigid_rates
+from .vehicle import FORCES, add_outlooks, define_rigid_rates, vehicle_traits
 
 EQUATION = "(27)"
+FLEXIBLE_OUTLOOKS = ("c_n", "generalized_force", "eta_static", "eta")
 
 
 def coloured_states(modes: int) -> tuple[VariableSpec, ...]:
@@ -33,26 +34,26 @@ def mode_basis(modes: int) -> tuple[VariableSpec, ...]:
     return tuple(VariableSpec(f"mode_{i}", str(i), "1", f"flexible mode {i}") for i in range(1, modes + 1))
 
 
+def reduced_bases(modes: int) -> dict[str, tuple[VariableSpec, ...]]:
+    """The bases of (27)."""
+    return {
+        "state": RIGID_STATE + coloured_states(modes),
+        "input": INPUT,
+        "noise": RIGID_INCREMENTS + modal_increments(modes),
+        "mode": mode_basis(modes),
+    }
+
+
 def build_sdcom(table: Table) -> Model:
     """The stochastic decoupled control-oriented model, exact form."""
     modes = table.schema.modes
-    m = Model(
-        "sdcom",
-        "stochastic decoupled control-oriented model, exact form",
-        "(24)-(35)",
-        table,
-        {
-            "state": RIGID_STATE + coloured_states(modes),
-            "input": INPUT,
-            "noise": RIGID_INCREMENTS + modal_increments(modes),
-            "mode": mode_basis(modes),
-        },
-    )
+    bases = reduced_bases(modes)
+    title = "stochastic decoupled control-oriented model, exact form"
+    m = Model("sdcom", title, "(24)-(35)", table, bases, vehicle_traits(bases))
     define_surroundings(m)
     rates, variables = define_exact_rates(m)
     add_drift_and_derivatives(m, rates, EQUATION)
-    add_rigid_evaluations(m)
-    add_flexible_evaluations(m, "c_n", "generalized_force", "eta_static", "eta")
+    add_outlooks(m, *FLEXIBLE_OUTLOOKS, fits=FITS, forces=FORCES)
     gains = perturbation_gains(m, rates) | coloured_gains(m)
     add_diffusion(m, rates, gains, PERTURBATIONS, EQUATION)
     static = {f"eta_{i}": m[f"eta_static_{i}"] for i in range(1, modes + 1)}
@@ -65,18 +66,12 @@ def build_sdcom_gust(table: Table) -> Model:
     """SDCOM whose incidence is disturbed by a band-limited gust in the place of white noise."""
     modes = table.schema.modes
     gust = VariableSpec("w_gust", "w_g", "s^0.5", "Wiener increment that drives the gust")
-    m = Model(
-        "sdcom_gust",
-        "stochastic decoupled control-oriented model with a band-limited gust",
-        "(24)-(27)",
-        table,
-        {
-            "state": (*RIGID_STATE, *coloured_states(modes), ALPHA_GUST),
-            "input": INPUT,
-            "noise": (RIGID_INCREMENTS[2], *modal_increments(modes), gust),
-            "mode": mode_basis(modes),
-        },
-    )
+    bases = reduced_bases(modes) | {
+        "state": (*RIGID_STATE, *coloured_states(modes), ALPHA_GUST),
+        "noise": (RIGID_INCREMENTS[2], *modal_increments(modes), gust),
+    }
+    title = "stochastic decoupled control-oriented model with a band-limited gust"
+    m = Model("sdcom_gust", title, "(24)-(27)", table, bases, vehicle_traits(bases))
     define_surroundings(m)
     incidence = m.graph.define(
         "incidence",
@@ -90,8 +85,7 @@ def build_sdcom_gust(table: Table) -> Model:
     rates, _ = define_exact_rates(m, incidence)
     rates["alpha_gust"] = -m["alpha_gust"] / m.parameter("gust_time")
     add_drift_and_derivatives(m, rates, EQUATION)
-    add_rigid_evaluations(m)
-    add_flexible_evaluations(m, "c_n", "generalized_force", "eta_static", "eta")
+    add_outlooks(m, *FLEXIBLE_OUTLOOKS, fits=FITS, forces=FORCES)
     gains = coloured_gains(m)
     gains["alpha", "w_q"] = m.parameter("w_q")
     gains["alpha_gust", "w_gust"] = m.parameter("gust_rms") * ca.sqrt(2 / m.parameter("gust_time"))

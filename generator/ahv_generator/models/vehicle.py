@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import casadi as ca
 
 from ..model import Model
 from ..polynomial import Polynomial
-from ..schema import QuantitySpec
+from ..schema import RIGID_STATE, QuantitySpec, VariableSpec
+from ..traits import Equation, Given, Mode, Sought, Traits, Trim
 
 
 def define_air(m: Model) -> None:
@@ -120,7 +122,7 @@ def define_momentum(m: Model) -> None:
 
 
 def define_angles(m: Model) -> None:
-    """Sines and cosines of angle of attack and flight-path angle."""
+    """Sines and cosines of angle of attack and flight-path angle, and their sum."""
     for angle, doc in (("alpha", "angle of attack"), ("gamma", "flight-path angle")):
         for function, word in ((ca.sin, "sin"), (ca.cos, "cos")):
             m.graph.define(
@@ -132,6 +134,15 @@ def define_angles(m: Model) -> None:
                 equation="(1)",
                 section="Angles",
             )
+    m.graph.define(
+        "theta",
+        m["gamma"] + m["alpha"],
+        symbol=r"\theta",
+        unit="rad",
+        doc="pitch angle",
+        equation="(1)",
+        section="Angles",
+    )
 
 
 def coefficient_symbols(m: Model, variables: Mapping[str, ca.SX]) -> dict[str, ca.SX]:
@@ -252,14 +263,77 @@ def define_rigid_rates(m: Model, turn: ca.SX, pitch_acceleration: ca.SX | None =
     return rates
 
 
-def add_rigid_evaluations(m: Model) -> None:
-    """What every model offers by name: air, curve fits, forces and moment."""
-    thrust_fit = ("c_t",) if "c_t" in m.graph.quantities else ()
-    fits = ("c_l", "c_d", "c_m", *thrust_fit)
-    m.add_evaluations("density", "dynamic_pressure", *fits, "thrust", "lift", "drag", "pitching_moment")
+def add_outlooks(m: Model, *flexible: str, fits: Iterable[str] = (), forces: Iterable[str] = ()) -> None:
+    """What a model offers by name: air, curve fits, forces and moment, then such quantities of each flexible mode.
+
+    All of them, after the pitch angle, are also the output of one function.
+    """
+    modes = range(1, m.table.schema.modes + 1)
+    names = ["density", "dynamic_pressure", *fits, *forces, *(f"{name}_{i}" for i in modes for name in flexible)]
+    m.add_evaluations(*names)
+    m.add_outputs("theta", *names)
 
 
-def add_flexible_evaluations(m: Model, *quantities: str) -> None:
-    """Quantities of each flexible mode by name, such as `generalized_force_1`."""
-    for i in range(1, m.table.schema.modes + 1):
-        m.add_evaluations(*(f"{quantity}_{i}" for quantity in quantities))
+FORCES = ("thrust", "lift", "drag", "pitching_moment")
+
+
+def vehicle_traits(bases: Mapping[str, tuple[VariableSpec, ...]]) -> Traits:
+    """Steady flight on a straight path, the modes of rigid body and structure, and what a pilot would call a lot.
+
+    Two rows of the drift are no equations: `altitude`, which is V sin(gamma) whatever the unknowns, and `alpha`, which
+    at zero pitch rate is the row `gamma` again. The rate of the velocity weighs as V times that of gamma, for both are
+    accelerations; flexible rows weigh more, so that where there is no trim the rigid body is off balance, not a mode.
+    """
+    states = [v.name for v in bases["state"]]
+    flexible = [name for name in states if name not in RIGID_ROWS]
+    equations = [
+        Equation(name, 1.0 if name in RIGID_ROWS else 100.0, ("gamma", "velocity") if name == "velocity" else None)
+        for name in states
+        if name not in ("altitude", "alpha")
+    ]
+    return Traits(
+        trim=Trim(
+            given=(
+                Given("velocity", 7702.0808, above=0.0),
+                Given("altitude", 85000.0),
+                Given("gamma", 0.0, -math.pi / 2, math.pi / 2),
+            ),
+            sought=(
+                Sought("alpha", scale=0.1),
+                *(Sought(name) for name in flexible),
+                Sought("phi", 0.25, 0.1),
+                Sought("delta_e", 0.2, 0.1),
+            ),
+            equations=tuple(equations),
+            moving=("altitude",),
+        ),
+        modes=(
+            Mode("phugoid", ("velocity", "altitude", "gamma"), "height"),
+            Mode("short period", ("alpha", "pitch_rate")),
+            *_flexible_modes(flexible),
+        ),
+        inputs=("phi", "delta_e"),
+        outputs=("velocity", "gamma"),
+        deviations={
+            "velocity": 10.0,
+            "altitude": 100.0,
+            "gamma": 0.01,
+            "alpha": 0.02,
+            "pitch_rate": 0.05,
+            "phi": 0.2,
+            "delta_e": 0.05,
+        },
+    )
+
+
+RIGID_ROWS = tuple(v.name for v in RIGID_STATE)
+
+
+def _flexible_modes(states: Iterable[str]) -> list[Mode]:
+    """The modes of the states beyond the rigid body, by their names."""
+    found: dict[str, list[str]] = {}
+    for state in states:
+        kind, _, number = state.rpartition("_")
+        words = {"eta": f"flexible {number}", "eta_dot": f"flexible {number}", "chi": f"coloured noise {number}"}
+        found.setdefault(words.get(kind, "gust"), []).append(state)
+    return [Mode(name, tuple(members)) for name, members in found.items()]
