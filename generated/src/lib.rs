@@ -35,3 +35,19 @@ pub mod sdcom_gust;
 /// FLEXIBLE_MODE: a flexible mode and its reduction to coloured noise, eq. (5)-(26).
 #[rustfmt::skip]
 pub mod flexible_mode;
+
+/// The models of this package.
+#[derive(Clone, Copy, Debug)]
+pub struct Models;
+
+impl ahv_core::ModelList for Models {
+    fn visit(visitor: &mut impl ahv_core::ModelVisitor) {
+        visitor.visit::<com::Model<f64>>();
+        visitor.visit::<com_rigid::Model<f64>>();
+        visitor.visit::<dcom::Model<f64>>();
+        visitor.visit::<sdcom::Model<f64>>();
+        visitor.visit::<sdcom_printed::Model<f64>>();
+        visitor.visit::<sdcom_gust::Model<f64>>();
+        visitor.visit::<flexible_mode::Model<f64>>();
+    }
+}

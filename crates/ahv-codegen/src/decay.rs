@@ -39,7 +39,7 @@ mod tests {
     use crate::dag::Dag;
     use crate::ir::Model;
     use crate::passes::Passes;
-    use crate::testing::{Point, choices_of_passes, value_of_node};
+    use crate::testing::{Point, choices_of_passes, model_with, value_of_node};
 
     /// A model whose functions, in order, give the state `a` these rates.
     fn model(functions: &[(&str, &str)]) -> Model {
@@ -50,10 +50,7 @@ mod tests {
             )
         });
         let text = text.collect::<Vec<_>>().join(", ");
-        serde_json::from_str(&format!(
-            r#"{{"name": "m", "title": "", "equations": "", "bases": {{}}, "quantities": [], "functions": [{text}]}}"#
-        ))
-        .unwrap()
+        model_with("", &text)
     }
 
     /// The states of a model that count as coloured noise, each with the value of its decay rate at d = 3, e = 5.

@@ -1,5 +1,6 @@
 //! Filters of templates: values as Rust has them.
 
+use std::f64::consts::FRAC_PI_2;
 use std::fmt::Display;
 
 use askama::Values;
@@ -9,7 +10,17 @@ use crate::wording::visible;
 /// A number.
 #[askama::filter_fn]
 pub(crate) fn number(value: &f64, _: &dyn Values) -> askama::Result<String> {
-    Ok(format!("{value:?}"))
+    Ok(literal(*value))
+}
+
+/// A number, a right angle by its name.
+pub(crate) fn literal(value: f64) -> String {
+    let sign = if value < 0.0 { "-" } else { "" };
+    if value.abs() == FRAC_PI_2 {
+        format!("{sign}core::f64::consts::FRAC_PI_2")
+    } else {
+        format!("{value:?}")
+    }
 }
 
 /// A text.

@@ -11,6 +11,7 @@ mod docs;
 mod effect;
 mod emit;
 mod evaluate;
+#[allow(unreachable_pub, reason = "the functions that `filter_fn` makes are")]
 mod filters;
 mod format;
 mod home;

@@ -84,7 +84,7 @@ impl DescriptionTemplate<'_> {
     }
 
     fn bound(&self, bound: &Option<f64>, open: &str) -> String {
-        bound.map_or_else(|| open.to_owned(), |bound| format!("{bound:?}"))
+        bound.map_or_else(|| open.to_owned(), filters::literal)
     }
 
     fn like(&self, equation: &ir::Equation) -> String {

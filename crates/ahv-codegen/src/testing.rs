@@ -16,8 +16,15 @@ pub(crate) const NAMES: [&str; 7] = ["x.a", "x.b", "u.c", "p.d", "p.e", "p.f", "
 
 /// A model with these quantities.
 pub(crate) fn model(quantities: &str) -> Model {
+    model_with(quantities, "")
+}
+
+/// A model with these quantities and functions.
+pub(crate) fn model_with(quantities: &str, functions: &str) -> Model {
     let json = format!(
-        r#"{{"name": "m", "title": "", "equations": "", "bases": {{}}, "functions": [], "quantities": [{quantities}]}}"#
+        r#"{{"name": "m", "title": "", "equations": "", "bases": {{}}, "quantities": [{quantities}], "functions": [{functions}],
+        "note": null, "trim": {{"given": [], "sought": [], "equations": [], "moving": []}}, "modes": [],
+        "defaults": {{"inputs": [], "outputs": []}}, "deviations": {{}}}}"#
     );
     serde_json::from_str(&json).unwrap()
 }

@@ -46,10 +46,11 @@ pub(crate) fn summary(function: &ir::Function) -> Vec<String> {
         Some(unit) if function.outputs.len() == 1 => format!(" Unit: {unit}."),
         _ => String::new(),
     };
-    wrapped(&format!(
-        "{}, eq. {}.{unit}",
-        function.doc, function.equation
-    ))
+    let equation = match function.equation.as_str() {
+        "" => String::new(),
+        equation => format!(", eq. {equation}"),
+    };
+    wrapped(&format!("{}{equation}.{unit}", function.doc))
 }
 
 /// The implementation of a vector, from the names and units of its fields.

@@ -5,33 +5,6 @@
 use super::{Input, Prepared, State};
 use ahv_core::Real;
 
-/// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
-///
-/// 5 operations: 2 additions, 3 multiplications.
-#[inline(always)]
-pub fn generalized_force_1<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    // Curve fits, (2)
-    let alpha_2 = x.alpha * x.alpha;
-
-    p.n_1_0
-        + p.n_1_alpha_2 * alpha_2
-        + p.n_1_alpha * x.alpha
-}
-
-/// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
-///
-/// 7 operations: 3 additions, 4 multiplications.
-#[inline(always)]
-pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Curve fits, (2)
-    let alpha_2 = x.alpha * x.alpha;
-
-    p.n_2_0
-        + p.n_2_alpha_2 * alpha_2
-        + p.n_2_alpha * x.alpha
-        + p.n_2_delta_e * u.delta_e
-}
-
 /// Air density, eq. (2). Unit: slug/ft^3.
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
@@ -194,4 +167,31 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
 
     // Forces and moment, (2)
     p.z_t * thrust + reference_force * p.c_bar * c_m
+}
+
+/// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
+///
+/// 5 operations: 2 additions, 3 multiplications.
+#[inline(always)]
+pub fn generalized_force_1<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
+    // Curve fits, (2)
+    let alpha_2 = x.alpha * x.alpha;
+
+    p.n_1_0
+        + p.n_1_alpha_2 * alpha_2
+        + p.n_1_alpha * x.alpha
+}
+
+/// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
+///
+/// 7 operations: 3 additions, 4 multiplications.
+#[inline(always)]
+pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    // Curve fits, (2)
+    let alpha_2 = x.alpha * x.alpha;
+
+    p.n_2_0
+        + p.n_2_alpha_2 * alpha_2
+        + p.n_2_alpha * x.alpha
+        + p.n_2_delta_e * u.delta_e
 }

@@ -3,27 +3,32 @@
 //! COM: control-oriented model, forebody and aftbody flexible, eq. (1)-(3).
 
 mod choices;
+mod description;
 mod drift;
 mod evaluations;
 mod hessian;
 mod jacobians;
 mod lie_derivatives;
 mod nominal;
+mod outputs;
 mod parameter_jacobian;
 mod parameters;
 mod prepared;
 mod provenance;
+mod table;
 
 pub use drift::*;
 pub use evaluations::*;
 pub use hessian::*;
 pub use jacobians::*;
 pub use lie_derivatives::*;
+pub use outputs::*;
 pub use parameter_jacobian::*;
 pub use choices::*;
 pub use nominal::*;
 pub use parameters::{Parameters, Validity};
 pub use provenance::*;
+pub use table::*;
 pub use prepared::{Prepared, prepare};
 
 use ahv_core::{Bounds, Pattern, Real};
@@ -114,6 +119,59 @@ pub const INPUT_BOUNDS: Input<Bounds> = Input {
     delta_e: VALIDITY.delta_e,
 };
 
+/// Quantities that people look at of COM.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Outputs<T> {
+    /// Pitch angle, rad.
+    pub theta: T,
+    /// Air density, slug/ft^3.
+    pub density: T,
+    /// Dynamic pressure, lb/ft^2.
+    pub dynamic_pressure: T,
+    /// Lift coefficient, dimensionless.
+    pub c_l: T,
+    /// Drag coefficient, dimensionless.
+    pub c_d: T,
+    /// Pitching-moment coefficient, dimensionless.
+    pub c_m: T,
+    /// Thrust, lb/ft.
+    pub thrust: T,
+    /// Lift, lb/ft.
+    pub lift: T,
+    /// Drag, lb/ft.
+    pub drag: T,
+    /// Pitching moment, lb.
+    pub pitching_moment: T,
+    /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
+    pub generalized_force_1: T,
+    /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
+    pub generalized_force_2: T,
+}
+
+ahv_core::impl_vector! {
+    Outputs {
+        theta: ["rad", "rad", 1.0],
+        density: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        dynamic_pressure: ["lb/ft^2", "N/m^2", 47.880258980335846],
+        c_l: ["1", "1", 1.0],
+        c_d: ["1", "1", 1.0],
+        c_m: ["1", "1", 1.0],
+        thrust: ["lb/ft", "N/m", 14.593902937206364],
+        lift: ["lb/ft", "N/m", 14.593902937206364],
+        drag: ["lb/ft", "N/m", 14.593902937206364],
+        pitching_moment: ["lb", "N", 4.4482216152605],
+        generalized_force_1: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        generalized_force_2: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+    }
+}
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Outputs);
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra_matrix!(State, Outputs);
+
 /// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
 
@@ -186,3 +244,10 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
         drift_and_jacobians(x, u, &self.prepared)
     }
 }
+
+/// There is no noise.
+pub type Noise<T> = ahv_core::NoNoise<T>;
+
+ahv_core::impl_no_noise!(Model, State, Input);
+
+impl<R: Real> ahv_core::ColouredNoise for Model<R> {}

@@ -2,8 +2,9 @@
 
 //! The numbers of the table.
 
+use super::provenance::*;
 use super::{Parameters, Validity};
-use ahv_core::Bounds;
+use ahv_core::{Bounds, ParameterSet, Provenance};
 
 /// The unit system: `ft-slug-s-rad` or `si`.
 pub const UNIT_SYSTEM: &str = "ft-slug-s-rad";
@@ -60,9 +61,9 @@ pub const NOMINAL: Parameters<f64> = Parameters {
 pub const SECTION5_3: Parameters<f64> = Parameters { ..NOMINAL };
 
 /// Sets of parameters by name.
-pub const SETS: [(&str, Parameters<f64>); 2] = [
-    ("section5.1", NOMINAL),
-    ("section5.3", SECTION5_3),
+pub const SETS: [ParameterSet<Parameters<f64>, Parameters<Provenance>>; 2] = [
+    ParameterSet::new("section5.1", NOMINAL, PROVENANCE),
+    ParameterSet::new("section5.3", SECTION5_3, SECTION5_3_PROVENANCE),
 ];
 
 /// The box in which the curve fits are meant to be used.

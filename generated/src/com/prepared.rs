@@ -8,20 +8,6 @@ use ahv_core::Real;
 /// Parameters as the functions of this model use them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared<R> {
-    /// Coefficient of alpha^2 in N_1, (ft*slug)^0.5/s^2/rad^2.
-    pub n_1_alpha_2: R,
-    /// Coefficient of alpha in N_1, (ft*slug)^0.5/s^2/rad.
-    pub n_1_alpha: R,
-    /// Constant part of N_1, (ft*slug)^0.5/s^2.
-    pub n_1_0: R,
-    /// Coefficient of alpha^2 in N_2, (ft*slug)^0.5/s^2/rad^2.
-    pub n_2_alpha_2: R,
-    /// Coefficient of alpha in N_2, (ft*slug)^0.5/s^2/rad.
-    pub n_2_alpha: R,
-    /// Coefficient of delta_e in N_2, (ft*slug)^0.5/s^2/rad.
-    pub n_2_delta_e: R,
-    /// Constant part of N_2, (ft*slug)^0.5/s^2.
-    pub n_2_0: R,
     /// Coefficient of phi*alpha^3 in T, lb/ft/rad^3.
     pub t_phi_alpha_3: R,
     /// Coefficient of phi*alpha^2 in T, lb/ft/rad^2.
@@ -84,12 +70,26 @@ pub struct Prepared<R> {
     pub c_m_0: R,
     /// Inertial coupling of mode 1 with the pitch rate, (ft*slug)^0.5.
     pub psi_1: R,
+    /// Coefficient of alpha^2 in N_1, (ft*slug)^0.5/s^2/rad^2.
+    pub n_1_alpha_2: R,
+    /// Coefficient of alpha in N_1, (ft*slug)^0.5/s^2/rad.
+    pub n_1_alpha: R,
+    /// Constant part of N_1, (ft*slug)^0.5/s^2.
+    pub n_1_0: R,
     /// Damping of mode 1, rad/s.
     pub damping_1: R,
     /// Stiffness of mode 1, rad^2/s^2.
     pub stiffness_1: R,
     /// Inertial coupling of mode 2 with the pitch rate, (ft*slug)^0.5.
     pub psi_2: R,
+    /// Coefficient of alpha^2 in N_2, (ft*slug)^0.5/s^2/rad^2.
+    pub n_2_alpha_2: R,
+    /// Coefficient of alpha in N_2, (ft*slug)^0.5/s^2/rad.
+    pub n_2_alpha: R,
+    /// Coefficient of delta_e in N_2, (ft*slug)^0.5/s^2/rad.
+    pub n_2_delta_e: R,
+    /// Constant part of N_2, (ft*slug)^0.5/s^2.
+    pub n_2_0: R,
     /// Damping of mode 2, rad/s.
     pub damping_2: R,
     /// Stiffness of mode 2, rad^2/s^2.
@@ -257,13 +257,6 @@ impl<R> Prepared<R> {
     #[inline(always)]
     pub fn map_ref<U>(&self, mut f: impl FnMut(&R) -> U) -> Prepared<U> {
         Prepared {
-            n_1_alpha_2: f(&self.n_1_alpha_2),
-            n_1_alpha: f(&self.n_1_alpha),
-            n_1_0: f(&self.n_1_0),
-            n_2_alpha_2: f(&self.n_2_alpha_2),
-            n_2_alpha: f(&self.n_2_alpha),
-            n_2_delta_e: f(&self.n_2_delta_e),
-            n_2_0: f(&self.n_2_0),
             t_phi_alpha_3: f(&self.t_phi_alpha_3),
             t_phi_alpha_2: f(&self.t_phi_alpha_2),
             t_phi_alpha: f(&self.t_phi_alpha),
@@ -295,9 +288,16 @@ impl<R> Prepared<R> {
             c_m_delta_e: f(&self.c_m_delta_e),
             c_m_0: f(&self.c_m_0),
             psi_1: f(&self.psi_1),
+            n_1_alpha_2: f(&self.n_1_alpha_2),
+            n_1_alpha: f(&self.n_1_alpha),
+            n_1_0: f(&self.n_1_0),
             damping_1: f(&self.damping_1),
             stiffness_1: f(&self.stiffness_1),
             psi_2: f(&self.psi_2),
+            n_2_alpha_2: f(&self.n_2_alpha_2),
+            n_2_alpha: f(&self.n_2_alpha),
+            n_2_delta_e: f(&self.n_2_delta_e),
+            n_2_0: f(&self.n_2_0),
             damping_2: f(&self.damping_2),
             stiffness_2: f(&self.stiffness_2),
             inv_effective_inertia: f(&self.inv_effective_inertia),
@@ -464,13 +464,6 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let m_2 = p.m * p.m;
 
     Prepared {
-        n_1_alpha_2: p.n_1_alpha_2,
-        n_1_alpha: p.n_1_alpha,
-        n_1_0: p.n_1_0,
-        n_2_alpha_2: p.n_2_alpha_2,
-        n_2_alpha: p.n_2_alpha,
-        n_2_delta_e: p.n_2_delta_e,
-        n_2_0: p.n_2_0,
         t_phi_alpha_3: p.t_phi_alpha_3,
         t_phi_alpha_2: p.t_phi_alpha_2,
         t_phi_alpha: p.t_phi_alpha,
@@ -502,9 +495,16 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_m_delta_e: p.c_m_delta_e,
         c_m_0: p.c_m_0,
         psi_1: p.psi_1,
+        n_1_alpha_2: p.n_1_alpha_2,
+        n_1_alpha: p.n_1_alpha,
+        n_1_0: p.n_1_0,
         damping_1,
         stiffness_1,
         psi_2: p.psi_2,
+        n_2_alpha_2: p.n_2_alpha_2,
+        n_2_alpha: p.n_2_alpha,
+        n_2_delta_e: p.n_2_delta_e,
+        n_2_0: p.n_2_0,
         damping_2,
         stiffness_2,
         inv_effective_inertia,

@@ -2,11 +2,13 @@
 
 //! COM_RIGID: control-oriented model, rigid body, eq. (1)-(3).
 
+mod description;
 mod drift;
 mod evaluations;
 mod hessian;
 mod jacobians;
 mod lie_derivatives;
+mod outputs;
 mod parameter_jacobian;
 mod prepared;
 
@@ -15,10 +17,11 @@ pub use evaluations::*;
 pub use hessian::*;
 pub use jacobians::*;
 pub use lie_derivatives::*;
+pub use outputs::*;
 pub use parameter_jacobian::*;
 pub use crate::com::{
     Earth, NOMINAL, PROVENANCE, Parameters, SECTION5_3, SECTION5_3_PROVENANCE, SETS,
-    UNIT_SYSTEM, VALIDITY, Validity,
+    TABLE, UNIT_SYSTEM, VALIDITY, Validity,
 };
 
 pub use prepared::{Prepared, prepare};
@@ -95,6 +98,53 @@ pub const INPUT_BOUNDS: Input<Bounds> = Input {
     delta_e: VALIDITY.delta_e,
 };
 
+/// Quantities that people look at of COM_RIGID.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Outputs<T> {
+    /// Pitch angle, rad.
+    pub theta: T,
+    /// Air density, slug/ft^3.
+    pub density: T,
+    /// Dynamic pressure, lb/ft^2.
+    pub dynamic_pressure: T,
+    /// Lift coefficient, dimensionless.
+    pub c_l: T,
+    /// Drag coefficient, dimensionless.
+    pub c_d: T,
+    /// Pitching-moment coefficient, dimensionless.
+    pub c_m: T,
+    /// Thrust, lb/ft.
+    pub thrust: T,
+    /// Lift, lb/ft.
+    pub lift: T,
+    /// Drag, lb/ft.
+    pub drag: T,
+    /// Pitching moment, lb.
+    pub pitching_moment: T,
+}
+
+ahv_core::impl_vector! {
+    Outputs {
+        theta: ["rad", "rad", 1.0],
+        density: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        dynamic_pressure: ["lb/ft^2", "N/m^2", 47.880258980335846],
+        c_l: ["1", "1", 1.0],
+        c_d: ["1", "1", 1.0],
+        c_m: ["1", "1", 1.0],
+        thrust: ["lb/ft", "N/m", 14.593902937206364],
+        lift: ["lb/ft", "N/m", 14.593902937206364],
+        drag: ["lb/ft", "N/m", 14.593902937206364],
+        pitching_moment: ["lb", "N", 4.4482216152605],
+    }
+}
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Outputs);
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra_matrix!(State, Outputs);
+
 /// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
 
@@ -167,3 +217,10 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
         drift_and_jacobians(x, u, &self.prepared)
     }
 }
+
+/// There is no noise.
+pub type Noise<T> = ahv_core::NoNoise<T>;
+
+ahv_core::impl_no_noise!(Model, State, Input);
+
+impl<R: Real> ahv_core::ColouredNoise for Model<R> {}

@@ -3,6 +3,7 @@
 //! DCOM: decoupled control-oriented model, eq. (1)-(4).
 
 mod choices;
+mod description;
 mod diffusion;
 mod drift;
 mod evaluations;
@@ -11,10 +12,12 @@ mod jacobians;
 mod lie_derivatives;
 mod noise_derivatives;
 mod nominal;
+mod outputs;
 mod parameter_jacobian;
 mod parameters;
 mod prepared;
 mod provenance;
+mod table;
 
 pub use diffusion::*;
 pub use drift::*;
@@ -23,11 +26,13 @@ pub use hessian::*;
 pub use jacobians::*;
 pub use lie_derivatives::*;
 pub use noise_derivatives::*;
+pub use outputs::*;
 pub use parameter_jacobian::*;
 pub use choices::*;
 pub use nominal::*;
 pub use parameters::{Parameters, Validity};
 pub use provenance::*;
+pub use table::*;
 pub use prepared::{Prepared, prepare};
 
 use ahv_core::{Bounds, NoiseClass, Pattern, Real, Vector};
@@ -164,6 +169,74 @@ ahv_core::impl_nalgebra!(Noise);
 
 #[cfg(feature = "nalgebra")]
 ahv_core::impl_nalgebra_matrix!(State, Noise);
+
+/// Quantities that people look at of DCOM.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Outputs<T> {
+    /// Pitch angle, rad.
+    pub theta: T,
+    /// Air density, slug/ft^3.
+    pub density: T,
+    /// Dynamic pressure, lb/ft^2.
+    pub dynamic_pressure: T,
+    /// Lift coefficient, dimensionless.
+    pub c_l: T,
+    /// Drag coefficient, dimensionless.
+    pub c_d: T,
+    /// Pitching-moment coefficient, dimensionless.
+    pub c_m: T,
+    /// Thrust coefficient, dimensionless.
+    pub c_t: T,
+    /// Thrust, lb/ft.
+    pub thrust: T,
+    /// Lift, lb/ft.
+    pub lift: T,
+    /// Drag, lb/ft.
+    pub drag: T,
+    /// Pitching moment, lb.
+    pub pitching_moment: T,
+    /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
+    pub c_n_1: T,
+    /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
+    pub generalized_force_1: T,
+    /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
+    pub c_n_2: T,
+    /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
+    pub generalized_force_2: T,
+    /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
+    pub c_n_3: T,
+    /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
+    pub generalized_force_3: T,
+}
+
+ahv_core::impl_vector! {
+    Outputs {
+        theta: ["rad", "rad", 1.0],
+        density: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        dynamic_pressure: ["lb/ft^2", "N/m^2", 47.880258980335846],
+        c_l: ["1", "1", 1.0],
+        c_d: ["1", "1", 1.0],
+        c_m: ["1", "1", 1.0],
+        c_t: ["1", "1", 1.0],
+        thrust: ["lb/ft", "N/m", 14.593902937206364],
+        lift: ["lb/ft", "N/m", 14.593902937206364],
+        drag: ["lb/ft", "N/m", 14.593902937206364],
+        pitching_moment: ["lb", "N", 4.4482216152605],
+        c_n_1: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        generalized_force_1: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        c_n_2: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        generalized_force_2: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        c_n_3: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        generalized_force_3: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+    }
+}
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Outputs);
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra_matrix!(State, Outputs);
 
 /// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
@@ -361,3 +434,5 @@ impl<R: Real> ahv_core::DifferentiableNoise for Model<R> {
         State::from_array(sum)
     }
 }
+
+impl<R: Real> ahv_core::ColouredNoise for Model<R> {}

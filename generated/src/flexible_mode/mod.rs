@@ -3,6 +3,7 @@
 //! FLEXIBLE_MODE: a flexible mode and its reduction to coloured noise, eq. (5)-(26).
 
 mod choices;
+mod description;
 mod diffusion;
 mod drift;
 mod hessian;
@@ -10,11 +11,13 @@ mod jacobians;
 mod moments;
 mod noise_derivatives;
 mod nominal;
+mod outputs;
 mod parameter_jacobian;
 mod parameters;
 mod prepared;
 mod provenance;
 mod responses;
+mod table;
 
 pub use diffusion::*;
 pub use drift::*;
@@ -22,12 +25,14 @@ pub use hessian::*;
 pub use jacobians::*;
 pub use moments::*;
 pub use noise_derivatives::*;
+pub use outputs::*;
 pub use parameter_jacobian::*;
 pub use responses::*;
 pub use choices::*;
 pub use nominal::*;
 pub use parameters::{Parameters, Validity};
 pub use provenance::*;
+pub use table::*;
 pub use prepared::{Prepared, prepare};
 
 use ahv_core::{Bounds, NoiseClass, Pattern, Real, Vector};
@@ -107,6 +112,26 @@ ahv_core::impl_nalgebra!(Noise);
 
 #[cfg(feature = "nalgebra")]
 ahv_core::impl_nalgebra_matrix!(State, Noise);
+
+/// Quantities that people look at of FLEXIBLE_MODE.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Outputs<T> {
+    /// Static coordinate, (ft*slug)^0.5.
+    pub eta_static: T,
+}
+
+ahv_core::impl_vector! {
+    Outputs {
+        eta_static: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+    }
+}
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Outputs);
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra_matrix!(State, Outputs);
 
 /// ∂f/∂x: `jacobian.eta.eta_dot` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;

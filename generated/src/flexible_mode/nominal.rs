@@ -2,8 +2,9 @@
 
 //! The numbers of the table.
 
+use super::provenance::*;
 use super::{Parameters, Validity};
-use ahv_core::Bounds;
+use ahv_core::{Bounds, ParameterSet, Provenance};
 
 /// The unit system: `ft-slug-s-rad` or `si`.
 pub const UNIT_SYSTEM: &str = "ft-slug-s-rad";
@@ -32,10 +33,10 @@ pub const MODE3: Parameters<f64> = Parameters {
 };
 
 /// Sets of parameters by name.
-pub const SETS: [(&str, Parameters<f64>); 3] = [
-    ("mode1", NOMINAL),
-    ("mode2", MODE2),
-    ("mode3", MODE3),
+pub const SETS: [ParameterSet<Parameters<f64>, Parameters<Provenance>>; 3] = [
+    ParameterSet::new("mode1", NOMINAL, PROVENANCE),
+    ParameterSet::new("mode2", MODE2, MODE2_PROVENANCE),
+    ParameterSet::new("mode3", MODE3, MODE3_PROVENANCE),
 ];
 
 /// The box in which the curve fits are meant to be used.

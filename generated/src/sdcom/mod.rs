@@ -2,6 +2,7 @@
 
 //! SDCOM: stochastic decoupled control-oriented model, exact form, eq. (24)-(35).
 
+mod description;
 mod diffusion;
 mod drift;
 mod evaluations;
@@ -9,6 +10,7 @@ mod hessian;
 mod jacobians;
 mod lie_derivatives;
 mod noise_derivatives;
+mod outputs;
 mod parameter_jacobian;
 mod prepared;
 mod strict_feedback;
@@ -20,11 +22,12 @@ pub use hessian::*;
 pub use jacobians::*;
 pub use lie_derivatives::*;
 pub use noise_derivatives::*;
+pub use outputs::*;
 pub use parameter_jacobian::*;
 pub use strict_feedback::*;
 pub use crate::dcom::{
     Canard, Earth, ModalNoise, NOMINAL, PROVENANCE, Parameters, Reduction, SECTION5_3,
-    SECTION5_3_PROVENANCE, SETS, UNIT_SYSTEM, VALIDITY, Validity,
+    SECTION5_3_PROVENANCE, SETS, TABLE, UNIT_SYSTEM, VALIDITY, Validity,
 };
 
 pub use prepared::{Prepared, prepare};
@@ -151,6 +154,92 @@ ahv_core::impl_nalgebra!(Noise);
 
 #[cfg(feature = "nalgebra")]
 ahv_core::impl_nalgebra_matrix!(State, Noise);
+
+/// Quantities that people look at of SDCOM.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Outputs<T> {
+    /// Pitch angle, rad.
+    pub theta: T,
+    /// Air density, slug/ft^3.
+    pub density: T,
+    /// Dynamic pressure, lb/ft^2.
+    pub dynamic_pressure: T,
+    /// Lift coefficient, dimensionless.
+    pub c_l: T,
+    /// Drag coefficient, dimensionless.
+    pub c_d: T,
+    /// Pitching-moment coefficient, dimensionless.
+    pub c_m: T,
+    /// Thrust coefficient, dimensionless.
+    pub c_t: T,
+    /// Thrust, lb/ft.
+    pub thrust: T,
+    /// Lift, lb/ft.
+    pub lift: T,
+    /// Drag, lb/ft.
+    pub drag: T,
+    /// Pitching moment, lb.
+    pub pitching_moment: T,
+    /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
+    pub c_n_1: T,
+    /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
+    pub generalized_force_1: T,
+    /// Static flexible coordinate of mode 1, (ft*slug)^0.5.
+    pub eta_static_1: T,
+    /// Reduced flexible coordinate of mode 1, (ft*slug)^0.5.
+    pub eta_1: T,
+    /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
+    pub c_n_2: T,
+    /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
+    pub generalized_force_2: T,
+    /// Static flexible coordinate of mode 2, (ft*slug)^0.5.
+    pub eta_static_2: T,
+    /// Reduced flexible coordinate of mode 2, (ft*slug)^0.5.
+    pub eta_2: T,
+    /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
+    pub c_n_3: T,
+    /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
+    pub generalized_force_3: T,
+    /// Static flexible coordinate of mode 3, (ft*slug)^0.5.
+    pub eta_static_3: T,
+    /// Reduced flexible coordinate of mode 3, (ft*slug)^0.5.
+    pub eta_3: T,
+}
+
+ahv_core::impl_vector! {
+    Outputs {
+        theta: ["rad", "rad", 1.0],
+        density: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        dynamic_pressure: ["lb/ft^2", "N/m^2", 47.880258980335846],
+        c_l: ["1", "1", 1.0],
+        c_d: ["1", "1", 1.0],
+        c_m: ["1", "1", 1.0],
+        c_t: ["1", "1", 1.0],
+        thrust: ["lb/ft", "N/m", 14.593902937206364],
+        lift: ["lb/ft", "N/m", 14.593902937206364],
+        drag: ["lb/ft", "N/m", 14.593902937206364],
+        pitching_moment: ["lb", "N", 4.4482216152605],
+        c_n_1: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        generalized_force_1: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        eta_static_1: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        eta_1: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        c_n_2: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        generalized_force_2: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        eta_static_2: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        eta_2: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        c_n_3: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        generalized_force_3: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        eta_static_3: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        eta_3: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+    }
+}
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(Outputs);
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra_matrix!(State, Outputs);
 
 /// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;

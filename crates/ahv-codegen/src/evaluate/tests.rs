@@ -1,23 +1,7 @@
 //! The evaluator against direct arithmetic.
 
 use super::*;
-
-fn model(quantities: &str) -> Model {
-    let text = format!(
-        r#"{{"name": "m", "title": "", "equations": "", "bases": {{}}, "quantities": [{quantities}], "functions": []}}"#
-    );
-    serde_json::from_str(&text).expect("a model")
-}
-
-fn quantity(name: &str, expr: &str) -> String {
-    format!(
-        r#"{{"name": "{name}", "symbol": "", "unit": "1", "doc": "", "equation": "", "section": "", "expr": {expr}}}"#
-    )
-}
-
-fn expr(text: &str) -> Expr {
-    serde_json::from_str(text).expect("an expression")
-}
+use crate::testing::{expr, model, quantity};
 
 fn value(model: &Model, text: &str, leaf: impl Fn(&str) -> f64) -> f64 {
     let root = expr(text);

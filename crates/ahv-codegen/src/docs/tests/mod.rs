@@ -36,7 +36,7 @@ m = { value = 3.0, unit = "slug" }
 
 /// Its IR.
 const IR: &str = r#"{
-  "schema_version": 2,
+  "schema_version": 3,
   "provenance": {"table": "small", "generator": "0", "casadi": "0"},
   "units": {"system": "ft-slug-s-rad", "other": "si", "factors": {"1": ["1", 1.0], "1/rad": ["1/rad", 1.0], "ft/s": ["m/s", 0.3048],
     "ft/s^2": ["m/s^2", 0.3048], "rad": ["rad", 1.0], "rad/s": ["rad/s", 1.0], "s^0.5": ["s^0.5", 1.0], "slug": ["kg", 14.5939]}},
@@ -75,8 +75,11 @@ const IR: &str = r#"{
         "entries": [{"at": ["speed", "w_1"], "expr": "x.speed"}, {"at": ["angle", "w_2"], "expr": 1}]}]},
       {"name": "H_V", "group": "strict_feedback", "doc": "Total derivative", "equation": "(2)", "outputs": [{"name": "", "basis": [], "unit": "1", "entries": [{"at": [], "expr": ["*", "x.speed", "d_c_l_d_angle"]}]}]},
       {"name": "delta_f_V", "group": "strict_feedback", "doc": "Difference", "equation": "(2)", "outputs": [{"name": "", "basis": [], "unit": "ft/s^2", "entries": [{"at": [], "expr": ["*", "p.slaving", "x.speed", ["sin", "x.angle"]]}]}]}],
-    "noise": {"columns": [{"name": "w_1", "class": "diagonal"}, {"name": "w_2", "class": "constant"}], "commuting": []}
-  }]
+    "noise": {"columns": [{"name": "w_1", "class": "diagonal"}, {"name": "w_2", "class": "constant"}], "commuting": []},
+    "note": null, "trim": {"given": [], "sought": [], "equations": [], "moving": []}, "modes": [],
+    "defaults": {"inputs": [], "outputs": []}, "deviations": {}
+  }],
+  "rules": []
 }"#;
 
 fn document() -> Document {
