@@ -4,7 +4,7 @@
 //! ones; [`slopes`] tells the same spread to first order, and which parameters it comes from.
 
 mod draws;
-pub(crate) mod matching;
+mod matching;
 mod quantity;
 mod slopes;
 mod solution;
@@ -21,6 +21,7 @@ use crate::parametric::Parametric;
 use crate::trim::SteadyFlight;
 
 pub use draws::{Distribution, DrawError, Draws, Group};
+pub use matching::assignment;
 pub use quantity::{Kind, Part, Quantity};
 pub use slopes::{Contribution, Slopes, slopes};
 pub use solution::{Solution, SolutionError, solve};

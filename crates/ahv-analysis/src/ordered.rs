@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// # Errors
 ///
 /// One of those of `make`.
-pub(crate) fn in_order<I: Send, T: Send, E: Send>(
+pub fn in_order<I: Send, T: Send, E: Send>(
     items: impl Iterator<Item = I> + Send,
     make: impl Fn(I) -> Result<Option<T>, E> + Sync + Send,
 ) -> Result<Vec<T>, E> {

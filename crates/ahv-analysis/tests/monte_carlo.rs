@@ -3,12 +3,12 @@
 
 use std::sync::atomic::Ordering;
 
+use ahv_analysis::actuator::Actuator;
 use ahv_analysis::monte_carlo::{
     Control, Dcom, Experiment, Feedback, Flown, Mode, MonteCarloError, QUANTILES, Scheme, Sdcom,
     SdcomGust, Seen,
 };
 use ahv_analysis::statistics::{Estimate, QuantileEstimate};
-use ahv_analysis::track::Actuator;
 use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::{Bounds, ColouredNoise, Vector};
 use ahv_integrate::{ItoEulerMaruyama, ItoHeun, ItoStrangSplitting, NormalStream, WienerSource};

@@ -3,6 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use ahv_analysis::actuator::Actuator;
 use ahv_analysis::disperse::{Distribution, Draws};
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
@@ -11,10 +12,9 @@ use ahv_analysis::monte_carlo::{
     Scheme, Sdcom,
 };
 use ahv_analysis::statistics::Estimate;
-use ahv_analysis::track::{ACTUATORS, silent};
 use ahv_analysis::trim::{SteadyFlight, Trim, trim};
 use ahv_core::{Bounds, ColouredNoise, StochasticModel, Vector};
-use ahv_models::sdcom::{Input, Model, NOMINAL, Noise, Parameters, State};
+use ahv_models::sdcom::{INPUT_BOUNDS, Input, Model, NOMINAL, Noise, Parameters, State};
 
 /// Steps of a flight, and their size in s.
 const STEPS: u64 = 100;
@@ -70,8 +70,16 @@ fn closed_loop(seed: u64) -> Experiment<Sdcom> {
                 delta_c: State::splat(0.0),
             },
             actuators: Input {
-                phi: Some(ACTUATORS[0]),
-                delta_e: Some(ACTUATORS[1]),
+                phi: Some(Actuator {
+                    bandwidth: 10.0,
+                    rate: 1.0,
+                    bounds: INPUT_BOUNDS.phi,
+                }),
+                delta_e: Some(Actuator {
+                    bandwidth: 20.0,
+                    rate: 1.0,
+                    bounds: INPUT_BOUNDS.delta_e,
+                }),
                 delta_c: None,
             },
         }),
@@ -423,7 +431,15 @@ fn what_cannot_be_estimated_is_told() {
     assert_eq!(error, Err(RareError::OutOfReach { level: limit }.into()));
     // Without noise, all pass or none.
     let mut calm = open_loop(1);
-    calm.parameters = silent(NOMINAL);
+    calm.parameters = Parameters {
+        sigma_1: 0.0,
+        sigma_2: 0.0,
+        sigma_3: 0.0,
+        w_gamma: 0.0,
+        w_alpha: 0.0,
+        w_q: 0.0,
+        ..NOMINAL
+    };
     calm.state[0].chi_1 = 1.0;
     let decayed = RareEvent {
         limit: 0.9,

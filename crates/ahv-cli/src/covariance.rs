@@ -19,11 +19,11 @@ use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
 use crate::flights::feedback::FeedbackArguments;
 use crate::flights::{Pair, deviations};
+use crate::number::positive;
 use crate::output::{self, Pairs};
 use crate::place::Place;
 use crate::progress::{Progress, Work};
 use crate::signals::Stoppable;
-use crate::simulate::grid::positive;
 use crate::vehicle::{FlightModel, ModelName};
 
 /// Fewest members that have a standard deviation.

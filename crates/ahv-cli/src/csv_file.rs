@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::output::{Output, cannot_write, plain};
 
 /// A CSV file that takes its place only when complete.
-pub(crate) struct CsvFile {
+pub struct CsvFile {
     writer: csv::Writer<Output>,
 }
 
@@ -18,7 +18,7 @@ impl CsvFile {
     /// # Errors
     ///
     /// [`Failure::Request`] if no file can be made there.
-    pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+    pub fn create(path: &Path) -> Result<Self, Failure> {
         let writer = csv::WriterBuilder::new()
             .buffer_capacity(1 << 16)
             .from_writer(Output::create(path)?);
@@ -30,7 +30,7 @@ impl CsvFile {
     /// # Errors
     ///
     /// As [`Self::row`].
-    pub(crate) fn numbers(&mut self, values: &[f64]) -> Result<(), Failure> {
+    pub fn numbers(&mut self, values: &[f64]) -> Result<(), Failure> {
         let finite = values
             .iter()
             .map(|value| value.is_finite().then_some(*value));
@@ -42,7 +42,7 @@ impl CsvFile {
     /// # Errors
     ///
     /// [`Failure::Request`] if the file cannot be written.
-    pub(crate) fn row<T: Serialize>(&mut self, values: &[T]) -> Result<(), Failure> {
+    pub fn row<T: Serialize>(&mut self, values: &[T]) -> Result<(), Failure> {
         self.writer.serialize(values).map_err(|error| {
             let why = match error.into_kind() {
                 csv::ErrorKind::Io(error) => plain(&error),
@@ -57,7 +57,7 @@ impl CsvFile {
     /// # Errors
     ///
     /// [`Failure::Request`] if that fails; what was there stays.
-    pub(crate) fn finish(mut self) -> Result<(), Failure> {
+    pub fn finish(mut self) -> Result<(), Failure> {
         if let Err(error) = self.writer.flush() {
             return Err(cannot_write(self.writer.get_ref().path(), &plain(&error)));
         }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 /// Why a command failed, in words for the person at the terminal.
 #[derive(Debug)]
-pub(crate) enum Failure {
+pub enum Failure {
     /// The request cannot be carried out: bad input, a file that cannot be written. Exit code 2.
     Request(String),
     /// The computation failed: no trim, a state that is not finite. Exit code 3.
@@ -28,7 +28,7 @@ impl Failure {
 }
 
 /// Writes a line to stderr. A closed stderr is no reason to stop.
-pub(crate) fn complain(message: &str) {
+pub fn complain(message: &str) {
     let _ = writeln!(io::stderr(), "{message}");
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn complain(message: &str) {
 /// # Errors
 ///
 /// [`Failure::Request`] if stdout cannot be written for another reason.
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
+pub fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout();
     match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

@@ -17,11 +17,11 @@ use serde::Serialize;
 use crate::assignment::Assignments;
 use crate::condition::{Condition, Vehicle};
 use crate::failure::Failure;
+use crate::number::positive;
 use crate::number::{self, Shown};
 use crate::place::Place;
 use crate::progress::Progress;
 use crate::signals::Stoppable;
-use crate::simulate::grid::positive;
 use crate::vehicle::{FlightModel, ModelName};
 
 /// How members fly.

@@ -9,7 +9,7 @@ const PLAIN: std::ops::Range<f64> = 1e-5..1e16;
 
 /// A number in a text. Width, precision and `e` are heeded; huge and tiny ones have a power of ten anyway.
 #[derive(Clone, Copy)]
-pub(crate) struct Shown(pub(crate) f64);
+pub struct Shown(pub f64);
 
 impl Display for Shown {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -43,7 +43,7 @@ fn not_finite(f: &mut Formatter<'_>) -> fmt::Result {
 }
 
 /// The number of a cell of a table, which reads back as the same bits; empty if it is not finite.
-pub(crate) fn cell(value: f64) -> String {
+pub fn cell(value: f64) -> String {
     if value.is_finite() {
         Shown(value).to_string()
     } else {
@@ -53,32 +53,26 @@ pub(crate) fn cell(value: f64) -> String {
 
 /// A time that is a number of steps, in s, as a person would write it: 15 significant digits, which leave out what rounding
 /// adds to 35 · 0.01.
-pub(crate) fn time(seconds: f64) -> f64 {
+pub fn time(seconds: f64) -> f64 {
     format!("{seconds:.14e}").parse().unwrap_or(seconds)
 }
 
-/// A number with four significant digits, as the page of `ahv reproduce` has it.
-pub(crate) fn significant(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    // The exponent after rounding: 0.99999 has one digit before the point.
-    let scientific = format!("{value:.3e}");
-    let exponent = scientific
-        .split_once('e')
-        .and_then(|(_, exponent)| exponent.parse().ok());
-    match exponent {
-        Some(exponent @ -4..6) => {
-            let decimals = usize::try_from(3 - exponent).unwrap_or(0);
-            format!("{value:.decimals$}")
-        }
-        _ => scientific,
+/// Reads a positive, finite number.
+///
+/// # Errors
+///
+/// What is wrong, for clap to print.
+pub fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
+        Ok(_) => Err("must be positive and finite".to_owned()),
+        Err(_) => Err("is not a number of seconds".to_owned()),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Shown, cell, significant, time};
+    use super::{Shown, cell, time};
 
     #[test]
     fn no_number_is_long_and_none_is_nan() {
@@ -100,31 +94,5 @@ mod tests {
         assert!(times.map(|it| it.len()).max() <= Some(4));
         assert_eq!(time(0.350_000_000_000_000_03), 0.35);
         assert_eq!(time(1.0 / 3.0), 0.333_333_333_333_333);
-    }
-
-    #[test]
-    fn numbers_have_four_digits() {
-        let texts = [
-            0.0,
-            0.30735,
-            -0.000_970_4,
-            13.100_56,
-            7702.08,
-            85_000.0,
-            1e-5,
-        ]
-        .map(significant);
-        assert_eq!(
-            texts,
-            [
-                "0",
-                "0.3074",
-                "-0.0009704",
-                "13.10",
-                "7702",
-                "85000",
-                "1.000e-5"
-            ]
-        );
     }
 }

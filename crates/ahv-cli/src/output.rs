@@ -152,7 +152,7 @@ impl Write for Output {
 /// # Errors
 ///
 /// [`Failure::Request`] if it cannot be written.
-pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), Failure> {
+pub fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), Failure> {
     let mut output = Output::create(path)?;
     output
         .write_all(contents.as_ref())
@@ -165,7 +165,7 @@ pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> Result<(), Failu
 /// # Errors
 ///
 /// [`Failure::Request`] if it cannot be made, or no file can be made in it.
-pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
+pub fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| {
         let why = match error.kind() {
             io::ErrorKind::AlreadyExists => "it exists and is not a folder".to_owned(),
@@ -184,7 +184,7 @@ pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
 /// # Errors
 ///
 /// [`Failure::Request`] if the file cannot be written.
-pub(crate) fn picture(path: &Path, svg: Result<String, impl Display>) -> Result<(), Failure> {
+pub fn picture(path: &Path, svg: Result<String, impl Display>) -> Result<(), Failure> {
     match svg {
         Ok(svg) => write(path, svg),
         Err(why) => {
@@ -210,7 +210,7 @@ pub(crate) fn picture(path: &Path, svg: Result<String, impl Display>) -> Result<
 /// # Errors
 ///
 /// [`Failure::Numeric`] if `value` does not serialize.
-pub(crate) fn json(value: &impl Serialize) -> Result<String, Failure> {
+pub fn json(value: &impl Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(value)
         .map_err(|error| Failure::Numeric(format!("cannot write the outcome as JSON: {error}")))
 }
@@ -220,7 +220,7 @@ pub(crate) fn json(value: &impl Serialize) -> Result<String, Failure> {
 /// # Errors
 ///
 /// As [`json`] and [`print`].
-pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     print(&json(value)?)
 }
 

@@ -21,17 +21,17 @@ const LINE_INTERVAL: Duration = Duration::from_secs(10);
 
 /// What is counted.
 #[derive(Clone, Copy)]
-pub(crate) struct Work {
+pub struct Work {
     /// Name of the command.
-    pub(crate) command: &'static str,
+    pub command: &'static str,
     /// What is counted, in the plural; empty if nothing is.
-    pub(crate) unit: &'static str,
+    pub unit: &'static str,
     /// How much there is to do, if that is known.
-    pub(crate) total: Option<u64>,
+    pub total: Option<u64>,
 }
 
 /// Shows on stderr how far work is, as long as it lives.
-pub(crate) struct Progress {
+pub struct Progress {
     control: Arc<Control>,
     /// Dropped, it ends the thread.
     end: Option<Sender<()>>,
@@ -40,7 +40,7 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// Starts to watch work.
-    pub(crate) fn start(work: Work) -> Self {
+    pub fn start(work: Work) -> Self {
         let control = Arc::new(Control::default());
         let watched = Arc::clone(&control);
         let (end, ended) = channel();
@@ -62,12 +62,12 @@ impl Progress {
     }
 
     /// Counts what is done, and stops the work if a signal asks for it.
-    pub(crate) fn control(&self) -> &Arc<Control> {
+    pub fn control(&self) -> &Arc<Control> {
         &self.control
     }
 
     /// So much is done.
-    pub(crate) fn reach(&self, done: u64) {
+    pub fn reach(&self, done: u64) {
         self.control.done.store(done, Ordering::Relaxed);
     }
 }

@@ -78,7 +78,7 @@ pub(crate) fn exit_code() -> u8 {
 }
 
 /// The mark of an outcome that a signal cut short, as "interrupted: 3 of 8 members"; empty if it is complete.
-pub(crate) fn interrupted(done: u64, asked: u64, unit: &str) -> String {
+pub fn interrupted(done: u64, asked: u64, unit: &str) -> String {
     if done == asked {
         String::new()
     } else {
@@ -87,10 +87,11 @@ pub(crate) fn interrupted(done: u64, asked: u64, unit: &str) -> String {
 }
 
 /// While it lives, the first signal stops the work of a control and leaves the process alone.
-pub(crate) struct Stoppable;
+pub struct Stoppable;
 
 impl Stoppable {
-    pub(crate) fn new(control: &Arc<Control>) -> Self {
+    /// Stops the work of `control` by a signal from now on.
+    pub fn new(control: &Arc<Control>) -> Self {
         set(Some(Arc::clone(control)));
         Self
     }

@@ -1,7 +1,7 @@
 //! `ahv simulate`: from a trim, with held inputs, into a CSV file.
 
 mod flight;
-pub(crate) mod grid;
+mod grid;
 mod report;
 
 use std::path::PathBuf;
@@ -32,11 +32,11 @@ pub(crate) struct Arguments {
     condition: Condition,
 
     /// End of the simulation in s; the last step is shortened to end there
-    #[arg(long, value_name = "S", value_parser = grid::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = crate::number::positive, allow_negative_numbers = true)]
     t_end: f64,
 
     /// Step size in s
-    #[arg(long, value_name = "S", value_parser = grid::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = crate::number::positive, allow_negative_numbers = true)]
     dt: f64,
 
     /// Drive dcom with its noise too (Euler-Maruyama, Ito)

@@ -16,7 +16,7 @@ pub(super) fn partners(nominal: &[Complex<f64>], roots: &[Complex<f64>]) -> Opti
 
 /// For each of `n` rows its column, such that the sum of `cost` is least (the assignment problem, by the method of Kuhn and
 /// Munkres with potentials).
-pub(crate) fn assignment(n: usize, cost: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+pub fn assignment(n: usize, cost: impl Fn(usize, usize) -> f64) -> Vec<usize> {
     // Rows and columns count from 1; column 0 stands for "none yet".
     let (mut row_price, mut column_price) = (vec![0.0; n + 1], vec![0.0; n + 1]);
     let mut row_of = vec![0; n + 1];

@@ -4,8 +4,8 @@ use ahv_core::{DifferentiableModel, Real, Vector};
 use nalgebra::DMatrix;
 
 use super::family::{Family, LANES, Packed};
+use crate::actuator::{Actuator, ActuatorStep};
 use crate::covariance::Regulation;
-use crate::track::{Actuator, ActuatorStep};
 
 /// The state that climbs in a steady flight; all others stay.
 const CLIMBS: &str = "altitude";
@@ -171,10 +171,12 @@ impl<F: Family> Law<F> {
 #[cfg(test)]
 mod tests {
     use ahv_core::{Bounds, Vector};
-    use ahv_models::sdcom::{Input, State};
 
     use super::{Actuator, Feedback, LANES, Packed, Real};
-    use crate::monte_carlo::Sdcom;
+    use crate::monte_carlo::{Family, Sdcom};
+
+    type State<T> = <Sdcom as Family>::State<T>;
+    type Input<T> = <Sdcom as Family>::Input<T>;
 
     /// A member that flies on from step 40 sees the reference of step 40.
     #[test]

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use ahv_analysis::actuator::Actuator;
 use ahv_analysis::monte_carlo::{Feedback, Flown};
-use ahv_analysis::track::Actuator;
 use ahv_analysis::trim::SteadyFlight;
 use ahv_core::Vector;
 use clap::{Args, ValueEnum};
@@ -31,7 +31,7 @@ pub(crate) struct FeedbackArguments {
     feedback_mismatch: Mismatch,
 
     /// Bandwidth of the actuators in rad/s, a lag of first order
-    #[arg(long, value_name = "RAD_S", default_value_t = BANDWIDTH, requires = "feedback", value_parser = crate::simulate::grid::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RAD_S", default_value_t = BANDWIDTH, requires = "feedback", value_parser = crate::number::positive, allow_negative_numbers = true)]
     actuator_bandwidth: f64,
 
     /// Largest rates of the inputs per second, e.g. phi=1,delta_e=60deg [default: 1 per s, 1 rad/s]

@@ -5,19 +5,6 @@ use ahv_integrate::TimeGrid;
 use crate::failure::Failure;
 use crate::number::Shown;
 
-/// Reads a positive, finite number.
-///
-/// # Errors
-///
-/// What is wrong, for clap to print.
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
-        Ok(_) => Err("must be positive and finite".to_owned()),
-        Err(_) => Err("is not a number of seconds".to_owned()),
-    }
-}
-
 /// The steps of a run from 0 to `t_end` with steps `dt`, both in s, positive and finite.
 ///
 /// # Errors

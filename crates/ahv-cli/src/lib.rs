@@ -1,0 +1,141 @@
+//! The command `ahv`: its general commands, and what further ones need. One module a command; no science in it.
+//!
+//! [`run`] is the whole program; an [`ExtraCommand`] adds a command of another crate. Such a command watches its work with
+//! [`progress`], stops in order by [`signals`], leaves files and JSON by [`output`] and [`csv_file`], writes numbers by
+//! [`number`] and fails by [`failure`], as those do that are here.
+#![forbid(unsafe_code)]
+
+mod assignment;
+mod condition;
+mod covariance;
+pub mod csv_file;
+mod disperse;
+pub mod failure;
+mod flights;
+mod gains;
+#[cfg(feature = "generate")]
+mod generate;
+mod linearize;
+mod lqr;
+mod monte_carlo;
+mod names;
+pub mod number;
+pub mod output;
+mod place;
+mod poles;
+pub mod progress;
+mod rare;
+pub mod signals;
+mod simulate;
+mod table;
+mod trim;
+mod units;
+mod vehicle;
+
+use std::process::ExitCode;
+
+use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use failure::Failure;
+
+/// Flight models of an air-breathing hypersonic vehicle.
+#[derive(Parser)]
+#[command(name = "ahv", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    #[cfg(feature = "generate")]
+    Generate(generate::Arguments),
+    #[command(flatten)]
+    Model(Box<ModelCommand>),
+}
+
+/// What is done with the generated models.
+#[derive(Subcommand)]
+enum ModelCommand {
+    Covariance(covariance::Arguments),
+    Disperse(disperse::Arguments),
+    Linearize(linearize::Arguments),
+    Lqr(lqr::Arguments),
+    #[command(name = "montecarlo")]
+    MonteCarlo(monte_carlo::Arguments),
+    Poles(poles::Arguments),
+    Rare(rare::Arguments),
+    Simulate(simulate::Arguments),
+    Trim(trim::Arguments),
+}
+
+/// Reads its arguments from those of its command line, and runs.
+type Run = Box<dyn Fn(&ArgMatches) -> Result<(), Failure>>;
+
+/// A command of another crate.
+pub struct ExtraCommand {
+    command: clap::Command,
+    run: Run,
+}
+
+impl ExtraCommand {
+    /// The command `name` with the arguments `A`, whose description is the command's.
+    pub fn new<A: Args + 'static>(name: &'static str, run: fn(&A) -> Result<(), Failure>) -> Self {
+        Self {
+            command: A::augment_args(clap::Command::new(name)),
+            run: Box::new(move |matches| {
+                run(&A::from_arg_matches(matches).unwrap_or_else(|error| error.exit()))
+            }),
+        }
+    }
+}
+
+/// The program `ahv` with `extra` commands beside the general ones: reads the command line of this process, runs what it
+/// asks for, and gives the exit code.
+pub fn run(extra: &[ExtraCommand]) -> ExitCode {
+    let mut matches = command(extra).get_matches();
+    if let Some((name, matches)) = matches.subcommand()
+        && let Some(extra) = extra.iter().find(|it| it.command.get_name() == name)
+    {
+        return listening(|| (extra.run)(matches));
+    }
+    let cli = Cli::from_arg_matches_mut(&mut matches);
+    match cli.unwrap_or_else(|error| error.exit()).command {
+        // It handles signals itself.
+        #[cfg(feature = "generate")]
+        Command::Generate(arguments) => generate::run(&arguments),
+        Command::Model(command) => listening(|| command.run()),
+    }
+}
+
+/// The whole command line. What is done with models stands in the order of the names.
+fn command(extra: &[ExtraCommand]) -> clap::Command {
+    let command = Cli::command().subcommands(extra.iter().map(|it| it.command.clone()));
+    command.mut_subcommands(|command| match command.get_name() {
+        "generate" => command,
+        _ => command.display_order(1),
+    })
+}
+
+fn listening(run: impl FnOnce() -> Result<(), Failure>) -> ExitCode {
+    match signals::listen().and_then(|()| run()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(signals::exit_code()),
+    }
+}
+
+impl ModelCommand {
+    fn run(&self) -> Result<(), Failure> {
+        match self {
+            Self::Covariance(arguments) => covariance::run(arguments),
+            Self::Disperse(arguments) => disperse::run(arguments),
+            Self::Linearize(arguments) => linearize::run(arguments),
+            Self::Lqr(arguments) => lqr::run(arguments),
+            Self::MonteCarlo(arguments) => monte_carlo::run(arguments),
+            Self::Poles(arguments) => poles::run(arguments),
+            Self::Rare(arguments) => rare::run(arguments),
+            Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Trim(arguments) => trim::run(arguments),
+        }
+    }
+}

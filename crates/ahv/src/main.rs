@@ -1,0 +1,8 @@
+//! The command `ahv`: what is done with any model, and what is about the paper.
+#![forbid(unsafe_code)]
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ahv_cli::run(&ahv_paper::commands::all())
+}
