@@ -5,7 +5,7 @@
 use super::{Input, Outputs, Prepared, State};
 use ahv_core::Real;
 
-/// Quantities that people look at, which are not states, eq. .
+/// Quantities that people look at, which are not states.
 ///
 /// 1 operation: 1 multiplication.
 #[inline(always)]

@@ -23,7 +23,12 @@ impl GeneratedModel for Model<f64> {
         given: &[
             Given::new("velocity", 7702.0808, 0.0, f64::INFINITY),
             Given::new("altitude", 85000.0, f64::NEG_INFINITY, f64::INFINITY),
-            Given::new("gamma", 0.0, -1.5707963267948966, 1.5707963267948966),
+            Given::new(
+                "gamma",
+                0.0,
+                -core::f64::consts::FRAC_PI_2,
+                core::f64::consts::FRAC_PI_2,
+            ),
         ],
         sought: &[
             Sought::new("alpha", 0.0, 0.1),

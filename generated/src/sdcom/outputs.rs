@@ -5,7 +5,7 @@
 use super::{Input, Outputs, Prepared, State};
 use ahv_core::Real;
 
-/// Quantities that people look at, which are not states, eq. .
+/// Quantities that people look at, which are not states.
 ///
 /// 120 operations: 51 additions, 68 multiplications, 1 exp.
 #[inline(always)]
