@@ -1,20 +1,20 @@
 //! What {{ label }} says of itself.
 
 use super::*;
-use ahv_core::{Equation, GeneratedModel, Given, ModeOfMotion, ParameterSet, Provenance, Real, Sought, Table, TrimProblem};
+use ahv_core::{Equation, GeneratedModel, ModeOfMotion, ParameterSetOf, Real, Sought, Table, TrimProblem};
 
 impl GeneratedModel for Model<f64> {
     const NAME: &'static str = "{{ model.name }}";
     const TITLE: &'static str = {{ model.title|text }};
     const NOTE: Option<&'static str> = {{ model.note|optional }};
     const TABLE: &'static Table = &TABLE;
-    const SETS: &'static [ParameterSet<Self::Parameters, Self::ParametersOf<Provenance>>] = &SETS;
+    const SETS: &'static [ParameterSetOf<Self>] = &SETS;
     const STATE_BOUNDS: Self::StateOf<ahv_core::Bounds> = STATE_BOUNDS;
     const INPUT_BOUNDS: Self::InputOf<ahv_core::Bounds> = INPUT_BOUNDS;
     const TRIM: TrimProblem = TrimProblem {
         given: &[
 {%- for it in model.trim.given %}
-            Given::new("{{ it.name }}", {{ it.default|number }}, {{ bound(it.above, "f64::NEG_INFINITY") }}, {{ bound(it.below, "f64::INFINITY") }}),
+            ahv_core::Given::new("{{ it.name }}", {{ it.default|number }}, {{ bound(it.above, "f64::NEG_INFINITY") }}, {{ bound(it.below, "f64::INFINITY") }}),
 {%- endfor %}
         ],
         sought: &[
@@ -28,6 +28,7 @@ impl GeneratedModel for Model<f64> {
 {%- endfor %}
         ],
         moving: &{{ model.trim.moving|texts }},
+        shown: &{{ model.trim.shown|texts }},
     };
     const MODES: &'static [ModeOfMotion] = &[
 {%- for mode in model.modes %}
@@ -42,7 +43,6 @@ impl GeneratedModel for Model<f64> {
 {%- endfor %}
     ];
 
-    type Parameters = Parameters<f64>;
     type ParametersOf<T: ahv_core::Component> = Parameters<T>;
     type StateOf<T: ahv_core::Component> = State<T>;
     type InputOf<T: ahv_core::Component> = Input<T>;
@@ -63,12 +63,20 @@ impl GeneratedModel for Model<f64> {
         model.map_ref(f)
     }
 
+    fn coloured<V: ahv_core::CountVisitor>({% if coloured == 0 %}_{% else %}visitor{% endif %}: V) -> Option<V::Output> {
+{%- if coloured == 0 %}
+        None
+{%- else %}
+        Some(visitor.visit::<{{ coloured }}>())
+{%- endif %}
+    }
+
     fn parameter_jacobian(&self, x: &State<f64>, u: &Input<f64>) -> ParameterJacobian<f64> {
         parameter_jacobian(x, u, &self.prepared)
     }
 
-    fn outputs(&self, x: &State<f64>, u: &Input<f64>) -> Outputs<f64> {
-        outputs(x, u, &self.prepared)
+    fn outputs<R: Real>(model: &Model<R>, x: &State<R>, u: &Input<R>) -> Outputs<R> {
+        outputs(x, u, &model.prepared)
     }
 
     ahv_core::component_functions!();

@@ -159,6 +159,7 @@ def _traits(m: Model) -> dict[str, object]:
                 for e in traits.trim.equations
             ],
             "moving": list(traits.trim.moving),
+            "shown": list(traits.trim.shown),
         },
         "modes": [
             _Line({"name": mode.name, "states": list(mode.states), "slowest": mode.slowest}) for mode in traits.modes

@@ -46,6 +46,7 @@ class Trim:
     sought: tuple[Sought, ...] = ()
     equations: tuple[Equation, ...] = ()
     moving: tuple[str, ...] = ()  # states whose rate need not vanish
+    shown: tuple[str, ...] = ()  # states, inputs and outputs of a trim that people look at
 
 
 @dataclass(frozen=True)

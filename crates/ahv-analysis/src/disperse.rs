@@ -13,12 +13,11 @@ mod spread;
 use std::convert::Infallible;
 use std::sync::atomic::Ordering;
 
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 
 use crate::monte_carlo::Control;
 use crate::ordered::in_order;
-use crate::parametric::Parametric;
-use crate::trim::SteadyFlight;
+use crate::trim::SteadyState;
 
 pub use draws::{Distribution, DrawError, Draws, Group};
 pub use matching::assignment;
@@ -33,35 +32,32 @@ use quantity::Ordered;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nominal<X, U> {
     /// Where it flies.
-    pub flight: SteadyFlight<U>,
+    pub flight: SteadyState<U>,
     /// The vehicle in trim.
     pub solution: Solution<X, U>,
     /// What is followed.
     pub quantities: Vec<Quantity>,
 }
 
-impl<X: Vector<f64>, U: Vector<f64>> Nominal<X, U> {
-    /// The vehicle with these `parameters` in `flight`.
-    ///
-    /// # Errors
-    ///
-    /// [`SolutionError`].
-    pub fn new<M>(
-        parameters: &M::Parameters,
-        flight: SteadyFlight<U>,
-    ) -> Result<Self, SolutionError>
-    where
-        M: Parametric<State = X, Input = U>,
-    {
-        let solution = solve::<M>(parameters, &flight)?;
-        let quantities = quantity::quantities(&solution);
-        Ok(Self {
-            flight,
-            solution,
-            quantities,
-        })
-    }
+/// The vehicle with these `parameters` in `flight`, and what is followed of it.
+///
+/// # Errors
+///
+/// [`SolutionError`].
+pub fn nominal<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
+    flight: SteadyState<M::Input>,
+) -> Result<Nominal<M::State, M::Input>, SolutionError> {
+    let solution = solve::<M>(parameters, &flight)?;
+    let quantities = quantity::quantities(&solution, M::TRIM.shown);
+    Ok(Nominal {
+        flight,
+        solution,
+        quantities,
+    })
+}
 
+impl<X: Vector<f64>, U: Vector<f64>> Nominal<X, U> {
     /// The quantities of the nominal vehicle.
     pub fn values(&self) -> Vec<f64> {
         let values = self.values_of(&self.solution).into_iter();
@@ -92,16 +88,13 @@ pub struct Member<X, U> {
 ///
 /// A member does not depend on the others, nor on the number of threads.
 pub fn disperse<M>(
-    draws: &Draws<M::Parameters>,
+    draws: &Draws<M::ParametersOf<f64>>,
     nominal: &Nominal<M::State, M::Input>,
     members: u64,
     control: &Control,
 ) -> Vec<Member<M::State, M::Input>>
 where
-    M: Parametric,
-    M::Parameters: Send + Sync,
-    M::State: Send + Sync,
-    M::Input: Send + Sync,
+    M: GeneratedModel,
 {
     let member = |number| {
         if control.stop.load(Ordering::Relaxed) {

@@ -3,12 +3,6 @@
 use ahv_core::{DifferentiableModel, Vector};
 use nalgebra::DMatrix;
 
-/// Outputs of a flight-path controller: velocity and flight-path angle.
-pub const PATH_OUTPUTS: [&str; 2] = ["velocity", "gamma"];
-
-/// Inputs of a flight-path controller, in the order of the models: fuel and elevator.
-pub const PATH_INPUTS: [&str; 2] = ["phi", "delta_e"];
-
 /// dx/dt = A x + B u, y = C x + D u, for deviations from a state and an input.
 ///
 /// Units are those of the model.

@@ -95,24 +95,12 @@ pub struct Regulator {
     pub residual: f64,
 }
 
-/// Deviations that cost 1 unless others are asked for, by state and input, in ft, s and rad.
-const DEVIATIONS: [(&str, f64); 7] = [
-    ("velocity", 10.0),
-    ("altitude", 100.0),
-    ("gamma", 0.01),
-    ("alpha", 0.02),
-    ("pitch_rate", 0.05),
-    ("phi", 0.2),
-    ("delta_e", 0.05),
-];
-
-/// The customary deviations that cost 1 for [`bryson`], in ft, s and rad. Flexible states cost nothing, and the canard is
-/// not for the regulator: infinite.
-pub fn deviations<V: Vector<f64>>() -> V {
+/// The deviations that cost 1 for [`bryson`] by name, as [`ahv_core::GeneratedModel::DEVIATIONS`]; infinite where a state or
+/// input is not listed.
+pub fn deviations<V: Vector<f64>>(listed: &[(&str, f64)]) -> V {
     V::from_fn(|index| {
         let name = V::NAMES.get(index);
-        let mut known = DEVIATIONS.iter();
-        let found = known.find(|(known, _)| Some(known) == name);
+        let found = listed.iter().find(|(known, _)| Some(known) == name);
         found.map_or(f64::INFINITY, |&(_, deviation)| deviation)
     })
 }

@@ -9,8 +9,8 @@ mod arithmetic;
 mod batch;
 
 mod experiment;
-mod family;
 mod feedback;
+mod lanes;
 mod outcome;
 mod propagator;
 mod rare;
@@ -22,12 +22,14 @@ use ahv_integrate::NoiseError;
 pub use arithmetic::Mode;
 pub use batch::Loss;
 pub use experiment::{Control, Experiment, Seen};
-pub use family::{Dcom, Family, LANES, Packed, Sdcom, SdcomGust, SdcomPrinted};
 pub use feedback::{Feedback, Unsteady};
+pub use lanes::{LANES, Packed};
 pub use outcome::{Outcome, Point, Snapshot, StateSpread};
-pub use propagator::{Flown, Propagator};
+pub use propagator::Propagator;
 pub use rare::{FEWEST_REPETITIONS, Level, RareError, RareEstimate, RareEvent};
 pub use scheme::Scheme;
+
+use scheme::MOST_NORMALS;
 pub use spread::{Bin, QUANTILES};
 
 /// Why members cannot be flown.
@@ -41,27 +43,12 @@ pub enum MonteCarloError {
         /// What its stepper says.
         reason: NoiseError,
     },
-    /// A scheme that the model is not flown by.
-    #[error("the scheme {scheme} is not available for {model}; splitting is")]
-    SchemeOfModel {
-        /// The scheme.
-        scheme: &'static str,
-        /// The model.
-        model: &'static str,
+    /// A scheme that takes more normal numbers a step than there is room for.
+    #[error("a step would take {normals} normal numbers; {MOST_NORMALS} can be drawn")]
+    Normals {
+        /// How many it takes.
+        normals: usize,
     },
-    /// A mode that the scheme does not have.
-    #[error("the scheme {scheme} has no mode {mode}; splitting, heun and euler-maruyama have it")]
-    ModeOfScheme {
-        /// The mode.
-        mode: &'static str,
-        /// The scheme.
-        scheme: &'static str,
-    },
-    /// The mode `fma` on a processor without the instruction.
-    #[error(
-        "the mode fma asks for a processor with a fused multiply-add, which this one is without"
-    )]
-    NoFma,
     /// A step that is not positive and finite.
     #[error("the step must be positive and finite, not {0:?} s")]
     StepSize(f64),

@@ -5,12 +5,12 @@ mod modes;
 mod staircase;
 mod zeros;
 
+use ahv_core::ModeOfMotion;
 use faer::Mat;
 use nalgebra::{Complex, DMatrix};
 
 use crate::linearize::LinearSystem;
 use balance::{balance, similar};
-pub use modes::Mode;
 pub use zeros::{Decoupling, Zero, Zeros, zeros};
 
 /// A pole with the mode that it belongs to.
@@ -18,8 +18,8 @@ pub use zeros::{Decoupling, Zero, Zeros, zeros};
 pub struct Pole {
     /// The eigenvalue of A, 1/s.
     pub value: Complex<f64>,
-    /// The mode; `None` where the states of the system name none.
-    pub mode: Option<Mode>,
+    /// Name of the mode; `None` where no mode has such states.
+    pub mode: Option<&'static str>,
     /// Share of the mode's states in the participation factors of this pole, from 0 to 1.
     pub participation: f64,
 }
@@ -50,7 +50,7 @@ pub fn frequency(root: Complex<f64>) -> f64 {
     root.re.hypot(root.im)
 }
 
-/// Poles of `system` by rising frequency, each with its mode. A pole that rounding cannot tell from 0 is 0.
+/// Poles of `system` by rising frequency, each with its mode among `modes`. A pole that rounding cannot tell from 0 is 0.
 ///
 /// Modes are told by participation factors |uᵢ vᵢ| with right and left eigenvectors u, v (Perez-Arriaga, Verghese and
 /// Schweppe 1982), which do not depend on units.
@@ -58,7 +58,7 @@ pub fn frequency(root: Complex<f64>) -> f64 {
 /// # Errors
 ///
 /// [`PolesError::NoConvergence`]
-pub fn poles(system: &LinearSystem) -> Result<Vec<Pole>, PolesError> {
+pub fn poles(system: &LinearSystem, modes: &[ModeOfMotion]) -> Result<Vec<Pole>, PolesError> {
     let balanced = similar(&system.a, &balance(&system.a));
     let n = balanced.nrows();
     let eigen = Mat::from_fn(n, n, |row, column| balanced[(row, column)])
@@ -76,6 +76,7 @@ pub fn poles(system: &LinearSystem) -> Result<Vec<Pole>, PolesError> {
     let values: Vec<Complex<f64>> = values.collect();
     let participation = participation(&right);
     Ok(modes::named(
+        modes,
         &system.states,
         &values,
         participation.as_ref(),

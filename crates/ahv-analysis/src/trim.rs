@@ -1,96 +1,108 @@
-//! Steady flight on a straight path: the state and input at which velocity, flight path and pitch rate stay.
+//! Steady states: the state and input at which the rows of the drift that a model's [`TrimProblem`] names vanish.
 //!
-//! Given are velocity, altitude, flight-path angle and the inputs other than `phi` and `delta_e`. The pitch rate is 0.
-//! Unknown are `alpha`, `phi`, `delta_e` and every flexible state. The equations are all rows of the drift but two:
-//! `altitude`, which is V sin γ whatever the unknowns, and `alpha`, which is −γ̇ at zero pitch rate and repeats the row
-//! `gamma`. That leaves as many equations as unknowns. A climb is steady at its instant only, for the air thins.
+//! Some states are given, all inputs that are not sought are held. A flight on a straight path is such a state: given are
+//! velocity, altitude and flight-path angle; the row of the altitude does not vanish, and that of the angle of attack repeats
+//! the one of the flight path at zero pitch rate. A climb is steady at its instant only, for the air thins.
 
 mod nearest;
 mod newton;
 mod response;
 mod system;
 
-use std::f64::consts::FRAC_PI_2;
-
-use ahv_core::{Bounds, DifferentiableModel, Vector};
+use ahv_core::{Bounds, DifferentiableModel, TrimProblem, Vector};
 
 pub use response::{Shift, response};
 use system::{Point, System};
 
-/// Inputs that are sought; all others are held.
-pub const SOUGHT_INPUTS: [&str; 2] = ["phi", "delta_e"];
-
-/// Where to trim.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SteadyFlight<U> {
-    /// Velocity, in the model's unit.
-    pub velocity: f64,
-    /// Altitude, in the model's unit.
-    pub altitude: f64,
-    /// Flight-path angle, rad.
-    pub gamma: f64,
-    /// Inputs: `phi` and `delta_e` are where the search starts, all others are held.
+/// A steady state that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SteadyState<U> {
+    problem: TrimProblem,
+    given: Vec<(&'static str, f64)>,
+    /// Inputs: those that are sought are where the search starts, all others are held.
     pub input: U,
-    /// Where `phi` and `delta_e` may lie, in the order of [`SOUGHT_INPUTS`].
-    pub bounds: [Bounds; 2],
+    /// Where the inputs that are sought may lie, in their order.
+    bounds: Vec<Bounds>,
 }
 
-impl<U: Vector<f64>> SteadyFlight<U> {
-    /// Level flight at `velocity` and `altitude`, in the model's units, all other inputs 0, with the customary cold
-    /// start and without bounds.
-    pub fn new(velocity: f64, altitude: f64) -> Self {
-        let start = |name| match name {
-            "phi" => 0.25,
-            "delta_e" => 0.2,
-            _ => 0.0,
+impl<U: Vector<f64>> SteadyState<U> {
+    /// What the problem gives where nothing else is asked for, in the model's units: all held inputs 0, the others without
+    /// bounds.
+    pub fn new(problem: &TrimProblem) -> Self {
+        let sought = |name: &str| problem.sought.iter().find(|it| it.name == name);
+        let start = |index| {
+            let name = U::NAMES.get(index).copied().and_then(sought);
+            name.map_or(0.0, |it| it.start)
         };
-        let input = U::from_fn(|index| U::NAMES.get(index).map_or(0.0, |name| start(name)));
-        Self {
-            velocity,
-            altitude,
-            gamma: 0.0,
-            input,
-            bounds: [Bounds::new(f64::NEG_INFINITY, f64::INFINITY); 2],
+        let mut flight = Self {
+            problem: *problem,
+            given: problem
+                .given
+                .iter()
+                .map(|it| (it.name, it.default))
+                .collect(),
+            input: U::from_fn(start),
+            bounds: Vec::new(),
+        };
+        let open = Bounds::new(f64::NEG_INFINITY, f64::INFINITY);
+        flight.bounds = flight.sought_inputs().map(|_| open).collect();
+        flight
+    }
+
+    /// The same with another value of a given state. A name that is none of a given state is an error of [`Self::check`].
+    #[must_use]
+    pub fn with(mut self, name: &'static str, value: f64) -> Self {
+        self.given.retain(|&(known, _)| known != name);
+        self.given.push((name, value));
+        self
+    }
+
+    /// The same with the sought inputs inside their `bounds`, a vector over the inputs.
+    #[must_use]
+    pub fn within<B: Vector<Bounds>>(mut self, bounds: &B) -> Self {
+        let of = |name| B::index_of(name).and_then(|index| bounds.get(index));
+        let found: Vec<_> = self.sought_inputs().map(of).collect();
+        for (own, found) in self.bounds.iter_mut().zip(found) {
+            *own = found.unwrap_or(*own);
         }
+        self
     }
 
-    /// The same on a path that climbs by `gamma`, in rad.
-    pub fn climbing(self, gamma: f64) -> Self {
-        Self { gamma, ..self }
+    /// The given states by name, in the order of the problem.
+    pub fn given(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
+        let value = |name| self.given.iter().find(|(known, _)| *known == name);
+        self.problem
+            .given
+            .iter()
+            .filter_map(move |it| value(it.name).copied())
     }
 
-    /// Whether there may be a steady flight: the velocity is above 0 and the path is not vertical.
+    /// The inputs that are sought.
+    pub fn sought_inputs(&self) -> impl Iterator<Item = &'static str> + use<U> {
+        let sought = self.problem.sought.iter().map(|it| it.name);
+        sought.filter(|name| U::index_of(name).is_some())
+    }
+
+    /// Whether there may be such a state: what is given lies in the problem's domain.
     ///
     /// # Errors
     ///
-    /// [`TrimError::Domain`]
+    /// [`TrimError::Domain`], [`TrimError::MissingName`].
     pub fn check(&self) -> Result<(), TrimError> {
-        let fault = |name, value, must| Err(TrimError::Domain { name, value, must });
-        if !(self.velocity > 0.0 && self.velocity.is_finite()) {
-            return fault("velocity", self.velocity, "above 0");
-        }
-        if !self.altitude.is_finite() {
-            return fault("altitude", self.altitude, "a finite number");
-        }
-        // The double next to π/2 is not vertical, but an angle in deg that is rounds to it.
-        if self.gamma.is_nan() || self.gamma.abs() >= FRAC_PI_2 {
-            return fault("gamma", self.gamma, "between -90 deg and 90 deg");
+        for &(name, value) in &self.given {
+            let known = self.problem.given.iter().find(|it| it.name == name);
+            let given = known.ok_or(TrimError::MissingName { name })?;
+            let inside = value > given.above && value < given.below;
+            if !(inside && value.is_finite()) {
+                return Err(TrimError::Domain {
+                    name,
+                    value,
+                    above: given.above,
+                    below: given.below,
+                });
+            }
         }
         Ok(())
-    }
-
-    /// The same with `phi` and `delta_e` inside their `bounds`, a vector over the inputs.
-    pub fn within<B: Vector<Bounds>>(self, bounds: &B) -> Self {
-        let of = |(name, unbounded)| {
-            let found = B::index_of(name).and_then(|index| bounds.get(index));
-            found.unwrap_or(unbounded)
-        };
-        let [phi, delta_e] = self.bounds;
-        let [first, second] = SOUGHT_INPUTS;
-        Self {
-            bounds: [of((first, phi)), of((second, delta_e))],
-            ..self
-        }
     }
 }
 
@@ -101,7 +113,7 @@ pub struct Trim<X, U> {
     pub state: X,
     /// Trimmed input.
     pub input: U,
-    /// What is left of each row of the drift, of `altitude` less V sin γ; each in its own unit per second.
+    /// What is left of each row of the drift, 0 for states that move; each in its own unit per second.
     pub residuals: X,
     /// The largest of their absolute values.
     pub residual_max: f64,
@@ -112,8 +124,7 @@ pub struct Trim<X, U> {
 /// The point inside the bounds that comes nearest to a trim.
 ///
 /// The sum of squares of the scaled residuals has a minimum there. A row's scale is its largest derivative by an
-/// unknown where the search starts, with 0.1 for a unit of `alpha`, `phi` and `delta_e`; the row `velocity` weighs as V γ̇,
-/// and those of the modes a hundred times as much, so that they rest.
+/// unknown where the search starts, times its weight in the problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearest {
     /// The state by name.
@@ -160,21 +171,23 @@ impl std::fmt::Display for Blocking {
 /// Why there is no trim.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrimError {
-    /// The model lacks a state or input that steady flight is defined by.
-    #[error("the model has no state or input called {name}")]
+    /// There is no such state, input or given state.
+    #[error("the model has no state or input called {name}, or it is not given")]
     MissingName {
         /// The name that was looked for.
         name: &'static str,
     },
-    /// A flight condition at which there is no steady flight.
-    #[error("{name} is {value:?}; it must be {must}")]
+    /// A given state where there is no steady state.
+    #[error("{name} is {value:?}; it must be finite, above {above:?} and below {below:?}")]
     Domain {
-        /// The quantity, a field of [`SteadyFlight`].
+        /// The state.
         name: &'static str,
-        /// Its value: in the model's unit, an angle in rad.
+        /// Its value, in the model's unit.
         value: f64,
-        /// What it must be.
-        must: &'static str,
+        /// It must be above this.
+        above: f64,
+        /// It must be below this.
+        below: f64,
     },
     /// A derivative is infinite or NaN where the search starts.
     #[error("the derivative of {name} is {value:?} where the trim starts")]
@@ -194,8 +207,8 @@ pub enum TrimError {
     Blocked {
         /// The bounds that the search ran into, then others that the trim outside violates; at least one.
         blocking: Vec<Blocking>,
-        /// `phi` and `delta_e` of a trim outside the bounds, if there is one.
-        beyond: Option<[f64; 2]>,
+        /// The sought inputs of a trim outside the bounds, if there is one.
+        beyond: Option<Vec<(&'static str, f64)>>,
         /// The nearest point.
         nearest: Box<Nearest>,
     },
@@ -227,7 +240,7 @@ fn list(blocking: &[Blocking]) -> String {
     texts.join(" and ")
 }
 
-/// Finds steady flight by a damped Newton method on the model's own Jacobians.
+/// Finds a steady state by a damped Newton method on the model's own Jacobians.
 ///
 /// Rows and columns are scaled, and a step is halved until the scaled residual shrinks. Where that fails, or ends
 /// outside the bounds, a Levenberg-Marquardt method inside the bounds looks for the nearest point, from which Newton's
@@ -239,7 +252,7 @@ fn list(blocking: &[Blocking]) -> String {
 /// below 1e-12.
 pub fn trim<M>(
     model: &M,
-    flight: &SteadyFlight<M::Input>,
+    flight: &SteadyState<M::Input>,
 ) -> Result<Trim<M::State, M::Input>, TrimError>
 where
     M: DifferentiableModel<Scalar = f64>,
@@ -264,7 +277,7 @@ where
             blocking.push(violated);
         }
     }
-    let beyond = beyond.map(|it| system.sought_inputs(&it.point));
+    let beyond = beyond.map(|it| system.named_inputs(&it.point));
     let nearest = Box::new(system.describe(&nearest, iterations));
     if blocking.is_empty() {
         return Err(TrimError::NoConvergence { nearest });

@@ -298,6 +298,8 @@ pub struct Trim {
     pub equations: Vec<Equation>,
     /// States that move all the same.
     pub moving: Vec<String>,
+    /// States, inputs and outputs of a steady state that people look at.
+    pub shown: Vec<String>,
 }
 
 /// A state that is given.

@@ -71,6 +71,8 @@ impl ModelTemplate<'_> {
 struct DescriptionTemplate<'a> {
     model: &'a ir::Model,
     label: String,
+    /// States of coloured noise.
+    coloured: usize,
 }
 
 impl DescriptionTemplate<'_> {
@@ -212,6 +214,7 @@ impl<'a> ModelEmitter<'a> {
         let description = DescriptionTemplate {
             model: self.model,
             label: self.label(),
+            coloured: self.coloured().len(),
         };
         files.insert("description".to_owned(), render(&description)?);
         files.insert("mod".to_owned(), self.module(groups)?);

@@ -23,7 +23,7 @@ pub(crate) fn model(quantities: &str) -> Model {
 pub(crate) fn model_with(quantities: &str, functions: &str) -> Model {
     let json = format!(
         r#"{{"name": "m", "title": "", "equations": "", "bases": {{}}, "quantities": [{quantities}], "functions": [{functions}],
-        "note": null, "trim": {{"given": [], "sought": [], "equations": [], "moving": []}}, "modes": [],
+        "note": null, "trim": {{"given": [], "sought": [], "equations": [], "moving": [], "shown": []}}, "modes": [],
         "defaults": {{"inputs": [], "outputs": []}}, "deviations": {{}}}}"#
     );
     serde_json::from_str(&json).unwrap()

@@ -12,6 +12,12 @@ pub trait Component: Copy + Send + Sync + 'static {}
 
 impl<T: Copy + Send + Sync + 'static> Component for T {}
 
+/// A set of parameters of a model.
+pub type ParameterSetOf<M> = ParameterSet<
+    <M as GeneratedModel>::ParametersOf<f64>,
+    <M as GeneratedModel>::ParametersOf<Provenance>,
+>;
+
 /// A model as it is generated, with `f64`, and all that its table and its family say of it.
 ///
 /// Vectors over its bases have components of any type: `StateOf<Bounds>` is a state's validity box, `StateOf<Lanes<f64, 8>>`
@@ -40,7 +46,7 @@ pub trait GeneratedModel:
     /// Its table.
     const TABLE: &'static Table;
     /// Sets of parameters, the table's own first.
-    const SETS: &'static [ParameterSet<Self::Parameters, Self::ParametersOf<Provenance>>];
+    const SETS: &'static [ParameterSetOf<Self>];
     /// Where its curve fits are meant to be used.
     const STATE_BOUNDS: Self::StateOf<Bounds>;
     /// Where its curve fits are meant to be used.
@@ -57,9 +63,7 @@ pub trait GeneratedModel:
     /// nothing, or is not for the regulator.
     const DEVIATIONS: &'static [(&'static str, f64)];
 
-    /// Parameters of its table.
-    type Parameters: Vector<f64> + PartialEq + Debug + Send + Sync + 'static;
-    /// A vector over its parameters.
+    /// A vector over the parameters of its table.
     type ParametersOf<T: Component>: Vector<T> + Send + Sync + 'static;
     /// A vector over its states.
     type StateOf<T: Component>: Vector<T> + Send + Sync + 'static;
@@ -83,13 +87,16 @@ pub trait GeneratedModel:
         + 'static;
 
     /// The model of these parameters.
-    fn with_parameters(parameters: &Self::Parameters) -> Self;
+    fn with_parameters(parameters: &Self::ParametersOf<f64>) -> Self;
 
     /// The model of parameters with another scalar.
     fn generic<R: Real>(parameters: &Self::ParametersOf<R>) -> Self::With<R>;
 
     /// The model with another scalar: `f` applied to every prepared value.
     fn map_model<R: Real, U: Real>(model: &Self::With<R>, f: impl FnMut(&R) -> U) -> Self::With<U>;
+
+    /// Shows the visitor how many states are coloured noise; `None`, and no visit, if none is.
+    fn coloured<V: CountVisitor>(visitor: V) -> Option<V::Output>;
 
     /// ∂f/∂p at (x, u): a vector over the rows of f, each a vector over the parameters. The unit of an entry is that of its
     /// row per second, over that of its column.
@@ -100,7 +107,11 @@ pub trait GeneratedModel:
     ) -> Self::StateOf<Self::ParametersOf<f64>>;
 
     /// The quantities that people look at, at (x, u).
-    fn outputs(&self, x: &Self::State, u: &Self::Input) -> Self::OutputsOf<f64>;
+    fn outputs<R: Real>(
+        model: &Self::With<R>,
+        x: &Self::StateOf<R>,
+        u: &Self::InputOf<R>,
+    ) -> Self::OutputsOf<R>;
 
     /// Parameters with other components.
     fn map_parameters<T: Component, U: Component>(
@@ -210,6 +221,8 @@ pub struct TrimProblem {
     pub equations: &'static [Equation],
     /// States that move all the same, such as the altitude of a climb.
     pub moving: &'static [&'static str],
+    /// States, inputs and outputs of a steady state that people look at.
+    pub shown: &'static [&'static str],
 }
 
 /// A state that is given.
@@ -302,6 +315,15 @@ impl ModeOfMotion {
             slowest,
         }
     }
+}
+
+/// What is done with a number that a model knows when it is compiled.
+pub trait CountVisitor {
+    /// What comes of it.
+    type Output;
+
+    /// Does it with `N`.
+    fn visit<const N: usize>(self) -> Self::Output;
 }
 
 /// The models of a package.

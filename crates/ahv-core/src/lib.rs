@@ -42,8 +42,8 @@ pub use bounds::{Bounds, Outside, first_outside};
 #[cfg(feature = "std")]
 pub use fused::{Fused, MulAdd};
 pub use generated::{
-    Component, Equation, GeneratedModel, Given, ModeOfMotion, ModelList, ModelVisitor, Sought,
-    TrimProblem,
+    Component, CountVisitor, Equation, GeneratedModel, Given, ModeOfMotion, ModelList,
+    ModelVisitor, ParameterSetOf, Sought, TrimProblem,
 };
 pub use lanes::{Lane, Lanes};
 pub use model::{

@@ -4,8 +4,8 @@
 
 use super::*;
 use ahv_core::{
-    Equation, GeneratedModel, Given, ModeOfMotion, ParameterSet, Provenance, Real,
-    Sought, Table, TrimProblem,
+    Equation, GeneratedModel, ModeOfMotion, ParameterSetOf, Real, Sought, Table,
+    TrimProblem,
 };
 
 impl GeneratedModel for Model<f64> {
@@ -13,17 +13,14 @@ impl GeneratedModel for Model<f64> {
     const TITLE: &'static str = "decoupled control-oriented model";
     const NOTE: Option<&'static str> = None;
     const TABLE: &'static Table = &TABLE;
-    const SETS: &'static [ParameterSet<
-        Self::Parameters,
-        Self::ParametersOf<Provenance>,
-    >] = &SETS;
+    const SETS: &'static [ParameterSetOf<Self>] = &SETS;
     const STATE_BOUNDS: Self::StateOf<ahv_core::Bounds> = STATE_BOUNDS;
     const INPUT_BOUNDS: Self::InputOf<ahv_core::Bounds> = INPUT_BOUNDS;
     const TRIM: TrimProblem = TrimProblem {
         given: &[
-            Given::new("velocity", 7702.0808, 0.0, f64::INFINITY),
-            Given::new("altitude", 85000.0, f64::NEG_INFINITY, f64::INFINITY),
-            Given::new(
+            ahv_core::Given::new("velocity", 7702.0808, 0.0, f64::INFINITY),
+            ahv_core::Given::new("altitude", 85000.0, f64::NEG_INFINITY, f64::INFINITY),
+            ahv_core::Given::new(
                 "gamma",
                 0.0,
                 -core::f64::consts::FRAC_PI_2,
@@ -53,6 +50,7 @@ impl GeneratedModel for Model<f64> {
             Equation::new("eta_dot_3", 100.0, None),
         ],
         moving: &["altitude"],
+        shown: &["alpha", "phi", "delta_e", "eta_1", "eta_2", "eta_3"],
     };
     const MODES: &'static [ModeOfMotion] = &[
         ModeOfMotion::new("phugoid", &["velocity", "altitude", "gamma"], Some("height")),
@@ -72,7 +70,6 @@ impl GeneratedModel for Model<f64> {
         ("phi", 0.2),
         ("delta_e", 0.05),
     ];
-    type Parameters = Parameters<f64>;
     type ParametersOf<T: ahv_core::Component> = Parameters<T>;
     type StateOf<T: ahv_core::Component> = State<T>;
     type InputOf<T: ahv_core::Component> = Input<T>;
@@ -93,6 +90,9 @@ impl GeneratedModel for Model<f64> {
     ) -> Model<U> {
         model.map_ref(f)
     }
+    fn coloured<V: ahv_core::CountVisitor>(_: V) -> Option<V::Output> {
+        None
+    }
     fn parameter_jacobian(
         &self,
         x: &State<f64>,
@@ -100,8 +100,8 @@ impl GeneratedModel for Model<f64> {
     ) -> ParameterJacobian<f64> {
         parameter_jacobian(x, u, &self.prepared)
     }
-    fn outputs(&self, x: &State<f64>, u: &Input<f64>) -> Outputs<f64> {
-        outputs(x, u, &self.prepared)
+    fn outputs<R: Real>(model: &Model<R>, x: &State<R>, u: &Input<R>) -> Outputs<R> {
+        outputs(x, u, &model.prepared)
     }
     ahv_core::component_functions!();
 }

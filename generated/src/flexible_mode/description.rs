@@ -4,8 +4,8 @@
 
 use super::*;
 use ahv_core::{
-    Equation, GeneratedModel, Given, ModeOfMotion, ParameterSet, Provenance, Real,
-    Sought, Table, TrimProblem,
+    Equation, GeneratedModel, ModeOfMotion, ParameterSetOf, Real, Sought, Table,
+    TrimProblem,
 };
 
 impl GeneratedModel for Model<f64> {
@@ -13,10 +13,7 @@ impl GeneratedModel for Model<f64> {
     const TITLE: &'static str = "a flexible mode and its reduction to coloured noise";
     const NOTE: Option<&'static str> = None;
     const TABLE: &'static Table = &TABLE;
-    const SETS: &'static [ParameterSet<
-        Self::Parameters,
-        Self::ParametersOf<Provenance>,
-    >] = &SETS;
+    const SETS: &'static [ParameterSetOf<Self>] = &SETS;
     const STATE_BOUNDS: Self::StateOf<ahv_core::Bounds> = STATE_BOUNDS;
     const INPUT_BOUNDS: Self::InputOf<ahv_core::Bounds> = INPUT_BOUNDS;
     const TRIM: TrimProblem = TrimProblem {
@@ -32,6 +29,7 @@ impl GeneratedModel for Model<f64> {
             Equation::new("chi", 1.0, None),
         ],
         moving: &[],
+        shown: &[],
     };
     const MODES: &'static [ModeOfMotion] = &[
         ModeOfMotion::new("flexible", &["eta", "eta_dot"], None),
@@ -44,7 +42,6 @@ impl GeneratedModel for Model<f64> {
         ("eta_dot", 1.0),
         ("force", 1.0),
     ];
-    type Parameters = Parameters<f64>;
     type ParametersOf<T: ahv_core::Component> = Parameters<T>;
     type StateOf<T: ahv_core::Component> = State<T>;
     type InputOf<T: ahv_core::Component> = Input<T>;
@@ -65,6 +62,9 @@ impl GeneratedModel for Model<f64> {
     ) -> Model<U> {
         model.map_ref(f)
     }
+    fn coloured<V: ahv_core::CountVisitor>(visitor: V) -> Option<V::Output> {
+        Some(visitor.visit::<1>())
+    }
     fn parameter_jacobian(
         &self,
         x: &State<f64>,
@@ -72,8 +72,8 @@ impl GeneratedModel for Model<f64> {
     ) -> ParameterJacobian<f64> {
         parameter_jacobian(x, u, &self.prepared)
     }
-    fn outputs(&self, x: &State<f64>, u: &Input<f64>) -> Outputs<f64> {
-        outputs(x, u, &self.prepared)
+    fn outputs<R: Real>(model: &Model<R>, x: &State<R>, u: &Input<R>) -> Outputs<R> {
+        outputs(x, u, &model.prepared)
     }
     ahv_core::component_functions!();
 }

@@ -306,6 +306,7 @@ def vehicle_traits(bases: Mapping[str, tuple[VariableSpec, ...]]) -> Traits:
             ),
             equations=tuple(equations),
             moving=("altitude",),
+            shown=("alpha", "phi", "delta_e", *_coordinates(flexible)),
         ),
         modes=(
             Mode("phugoid", ("velocity", "altitude", "gamma"), "height"),
@@ -327,6 +328,12 @@ def vehicle_traits(bases: Mapping[str, tuple[VariableSpec, ...]]) -> Traits:
 
 
 RIGID_ROWS = tuple(v.name for v in RIGID_STATE)
+
+
+def _coordinates(states: Iterable[str]) -> list[str]:
+    """The flexible coordinates that the states beyond the rigid body stand for."""
+    parts = [state.rpartition("_") for state in states]
+    return [f"eta_{number}" for kind, _, number in parts if kind in ("eta", "chi")]
 
 
 def _flexible_modes(states: Iterable[str]) -> list[Mode]:

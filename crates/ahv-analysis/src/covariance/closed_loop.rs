@@ -162,7 +162,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
             d: DMatrix::zeros(0, 0),
         };
         check("A", &system.a, moved.len())?;
-        let poles = poles(&system)?;
+        let poles = poles(&system, &[])?;
         let rightmost = poles
             .iter()
             .max_by(|p, q| p.value.re.total_cmp(&q.value.re));

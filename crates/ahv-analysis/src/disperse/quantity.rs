@@ -13,7 +13,7 @@ use crate::poles::Pole;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// The trim: a component of state or input, or the deflection of a mode.
+    /// The trim: a component of state or input, or another quantity.
     Trim,
     /// A pole.
     Pole,
@@ -38,30 +38,27 @@ pub enum Part {
 pub struct Quantity {
     /// What it tells of.
     pub kind: Kind,
-    /// Name: `alpha`, `phi`, `delta_e`, `eta_1` …, of a mode, or `zero_1` … from right to left.
+    /// Name: of a state, an input or another quantity, of a mode, or `zero_1` … from right to left.
     pub name: String,
     /// Which part of a root.
     pub part: Part,
-    /// Place in the list of deflections, poles or zeros that it is taken from.
+    /// Place in the list of poles or zeros that it is taken from.
     index: usize,
 }
 
-/// The components of the trim that are followed, beside the deflections.
-const TRIM: [&str; 3] = ["alpha", "phi", "delta_e"];
-
-/// The quantities of `nominal`, the vehicle about which is drawn; of a pair of roots the upper one.
+/// The quantities of `nominal`, the vehicle about which is drawn: of its trim those that are `shown`, and its roots, of a
+/// pair the upper one.
 pub(super) fn quantities<X: Vector<f64>, U: Vector<f64>>(
     nominal: &Solution<X, U>,
+    shown: &[&str],
 ) -> Vec<Quantity> {
-    let trim = |name: &str, index| Quantity {
+    let trim = |name: &&str| Quantity {
         kind: Kind::Trim,
-        name: name.to_owned(),
+        name: (*name).to_owned(),
         part: Part::Value,
-        index,
+        index: 0,
     };
-    let components = TRIM.iter().map(|name| trim(name, 0));
-    let deflections = (0..nominal.deflections.len()).map(|i| trim(&format!("eta_{}", i + 1), i));
-    let mut quantities: Vec<Quantity> = components.chain(deflections).collect();
+    let mut quantities: Vec<Quantity> = shown.iter().map(trim).collect();
     let poles = nominal
         .poles
         .iter()
@@ -102,10 +99,7 @@ fn of_its_mode<'a>(poles: &'a [Pole], pole: &Pole) -> Vec<&'a Pole> {
 
 /// The name of a pole: its mode, with a number where the mode has several real poles.
 fn name(poles: &[Pole], pole: &Pole) -> String {
-    let mode = pole
-        .mode
-        .map_or_else(|| "unnamed".to_owned(), |mode| mode.to_string());
-    let name = mode.replace(' ', "_");
+    let name = pole.mode.unwrap_or("unnamed").replace(' ', "_");
     let of_mode = of_its_mode(poles, pole);
     if pole.value.im != 0.0 || of_mode.len() == 1 {
         return name;
@@ -129,17 +123,7 @@ impl Quantity {
             zeros,
         } = solution;
         let root = match self.kind {
-            Kind::Trim => {
-                let state = X::index_of(&self.name).and_then(|i| solution.trim.state.get(i));
-                let input = U::index_of(&self.name).and_then(|i| solution.trim.input.get(i));
-                let deflection = || solution.deflections.get(self.index).copied();
-                let is_component = TRIM.contains(&self.name.as_str());
-                return if is_component {
-                    state.or(input)
-                } else {
-                    deflection()
-                };
-            }
+            Kind::Trim => return solution.trim_value(&self.name),
             Kind::Pole => poles.as_ref()?.get(self.index)?,
             Kind::Zero => zeros.as_ref()?.get(self.index)?,
         };
@@ -157,7 +141,7 @@ impl Quantity {
         }
     }
 
-    /// Place in the list of deflections, poles or zeros.
+    /// Place in the list of poles or zeros.
     pub(super) const fn index(&self) -> usize {
         self.index
     }

@@ -1,13 +1,12 @@
 //! How trim and roots move with parameters, to first order.
 
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use nalgebra::{Complex, DMatrix};
 
 use super::draws::Draws;
 use super::quantity::{Kind, Quantity};
 use super::{Nominal, SolutionError};
-use crate::linearize::{LinearSystem, PATH_INPUTS, PATH_OUTPUTS, linearize};
-use crate::parametric::Parametric;
+use crate::linearize::{LinearSystem, linearize};
 use crate::sensitivity::RootVectors;
 use crate::trim::{Shift, response};
 
@@ -69,7 +68,7 @@ impl Slopes {
 
 /// A change per unit of a parameter, along which the trim moves too.
 struct Change {
-    deflections: Vec<f64>,
+    outputs: Vec<f64>,
     a: DMatrix<f64>,
     b: DMatrix<f64>,
 }
@@ -79,8 +78,8 @@ struct Change {
 /// # Errors
 ///
 /// [`SolutionError`].
-pub fn slopes<M: Parametric>(
-    draws: &Draws<M::Parameters>,
+pub fn slopes<M: GeneratedModel>(
+    draws: &Draws<M::ParametersOf<f64>>,
     nominal: &Nominal<M::State, M::Input>,
 ) -> Result<Slopes, SolutionError> {
     let parameters = draws.varied();
@@ -91,7 +90,7 @@ pub fn slopes<M: Parametric>(
         let row = |row| {
             jacobian
                 .get(row)
-                .and_then(|it: M::Parameters| it.get(parameter))
+                .and_then(|it: M::ParametersOf<f64>| it.get(parameter))
         };
         M::State::from_fn(|index| row(index).unwrap_or(0.0))
     };
@@ -112,8 +111,9 @@ pub fn slopes<M: Parametric>(
             let slope = |(shift, change): (&Shift<M::State, M::Input>, &Change)| {
                 let state = M::State::index_of(&quantity.name).and_then(|i| shift.state.get(i));
                 let input = M::Input::index_of(&quantity.name).and_then(|i| shift.input.get(i));
-                let deflection = || change.deflections.get(quantity.index()).copied();
-                state.or(input).or_else(deflection)
+                let output = M::OutputsOf::<f64>::index_of(&quantity.name);
+                let output = output.and_then(|i| change.outputs.get(i).copied());
+                state.or(input).or(output)
             };
             return moves.iter().zip(&changes).map(slope).collect();
         }
@@ -135,8 +135,8 @@ pub fn slopes<M: Parametric>(
 }
 
 /// Central differences by the parameter number `parameter`, the trim moving by `shift` per unit of it.
-fn change<M: Parametric>(
-    parameters: &M::Parameters,
+fn change<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
     nominal: &Nominal<M::State, M::Input>,
     parameter: usize,
     shift: &Shift<M::State, M::Input>,
@@ -149,17 +149,15 @@ fn change<M: Parametric>(
         let model = M::with_parameters(&moved);
         let x = trim.state.zip_with(shift.state, |x, by| x + by * step);
         let u = trim.input.zip_with(shift.input, |u, by| u + by * step);
-        let system = linearize(&model, &x, &u, &PATH_INPUTS, &PATH_OUTPUTS)?;
-        Ok::<_, SolutionError>((model.deflections(&x, &u), system))
+        let system = linearize(&model, &x, &u, M::DEFAULT_INPUTS, M::DEFAULT_OUTPUTS)?;
+        Ok::<_, SolutionError>((M::outputs(&M::generic(&moved), &x, &u), system))
     };
     let step = STEP * value.abs();
     let ((above, system_above), (below, system_below)) = (at(step)?, at(-step)?);
     let per_unit = 0.5 / step;
     Ok(Change {
-        deflections: above
-            .iter()
-            .zip(&below)
-            .map(|(above, below)| (above - below) * per_unit)
+        outputs: (0..M::OutputsOf::<f64>::LEN)
+            .filter_map(|index| Some((above.get(index)? - below.get(index)?) * per_unit))
             .collect(),
         a: (system_above.a - system_below.a) * per_unit,
         b: (system_above.b - system_below.b) * per_unit,

@@ -1,11 +1,11 @@
 //! One vehicle in trim, and what describes it.
 
+use ahv_core::{GeneratedModel, Vector};
 use nalgebra::Complex;
 
-use crate::linearize::{LinearSystem, LinearizeError, PATH_INPUTS, PATH_OUTPUTS, linearize};
-use crate::parametric::Parametric;
+use crate::linearize::{LinearSystem, LinearizeError, linearize};
 use crate::poles::{Pole, PolesError, poles, zeros};
-use crate::trim::{SteadyFlight, Trim, TrimError, trim};
+use crate::trim::{SteadyState, Trim, TrimError, trim};
 
 /// Real part, in 1/s, up to which a root counts as lying on the imaginary axis: that of the altitude would be 0 but for
 /// rounding.
@@ -14,9 +14,9 @@ const AXIS: f64 = 1e-6;
 /// Why a vehicle has no trim with poles and zeros.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolutionError {
-    /// The parameters belong to no vehicle.
+    /// The parameters break a rule of their table.
     #[error("{0}")]
-    Contradiction(&'static str),
+    Rule(&'static str),
     /// There is no trim.
     #[error(transparent)]
     Trim(#[from] TrimError),
@@ -33,14 +33,26 @@ pub enum SolutionError {
 pub struct Solution<X, U> {
     /// Its trim.
     pub trim: Trim<X, U>,
-    /// Deflections η of the flexible modes.
-    pub deflections: Vec<f64>,
-    /// The linear system about the trim, from [`PATH_INPUTS`] to [`PATH_OUTPUTS`].
+    /// Other quantities of the trim by name: those of [`GeneratedModel::OutputsOf`].
+    pub outputs: Vec<(&'static str, f64)>,
+    /// The linear system about the trim, from the model's default inputs to its default outputs.
     pub system: LinearSystem,
     /// Its poles, each with its mode.
     pub poles: Vec<Pole>,
     /// Its finite zeros, in 1/s.
     pub zeros: Vec<Complex<f64>>,
+}
+
+impl<X: Vector<f64>, U: Vector<f64>> Solution<X, U> {
+    /// A state, an input or another quantity of the trim by its name.
+    pub fn trim_value(&self, name: &str) -> Option<f64> {
+        let state = X::index_of(name).and_then(|index| self.trim.state.get(index));
+        let input = U::index_of(name).and_then(|index| self.trim.input.get(index));
+        let output = || self.outputs.iter().find(|(known, _)| *known == name);
+        state
+            .or(input)
+            .or_else(|| output().map(|&(_, value)| value))
+    }
 }
 
 impl<X, U> Solution<X, U> {
@@ -63,25 +75,24 @@ impl<X, U> Solution<X, U> {
 /// # Errors
 ///
 /// [`SolutionError`].
-pub fn solve<M: Parametric>(
-    parameters: &M::Parameters,
-    flight: &SteadyFlight<M::Input>,
+pub fn solve<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
+    flight: &SteadyState<M::Input>,
 ) -> Result<Solution<M::State, M::Input>, SolutionError> {
-    if let Some(contradiction) = M::contradiction(parameters) {
-        return Err(SolutionError::Contradiction(contradiction));
+    if let Some(rule) = M::TABLE.rules.iter().find(|rule| !rule.holds(parameters)) {
+        return Err(SolutionError::Rule(rule.reason));
     }
     let model = M::with_parameters(parameters);
     let trim = trim(&model, flight)?;
-    let system = linearize(
-        &model,
-        &trim.state,
-        &trim.input,
-        &PATH_INPUTS,
-        &PATH_OUTPUTS,
-    )?;
+    let (inputs, outputs) = (M::DEFAULT_INPUTS, M::DEFAULT_OUTPUTS);
+    let system = linearize(&model, &trim.state, &trim.input, inputs, outputs)?;
+    let values = M::outputs(&M::generic(parameters), &trim.state, &trim.input);
+    let names = M::OutputsOf::<f64>::NAMES.iter().enumerate();
     Ok(Solution {
-        deflections: model.deflections(&trim.state, &trim.input),
-        poles: poles(&system)?,
+        outputs: names
+            .filter_map(|(index, &name)| Some((name, values.get(index)?)))
+            .collect(),
+        poles: poles(&system, M::MODES)?,
         zeros: zeros(&system)?
             .finite
             .iter()

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
-use ahv_core::{Bounds, Real, Vector};
+use ahv_core::{Bounds, GeneratedModel, Real, Vector};
 use ahv_integrate::{NormalLanes, Precision, StepError};
 
 use super::arithmetic::{Arithmetic, Called};
-use super::family::{Family, LANES, Packed};
 use super::feedback::Law;
+use super::lanes::{LANES, Packed};
 use super::rare::Passage;
 use super::scheme::{MOST_NORMALS, Steps};
 
@@ -71,26 +71,26 @@ fn fill<T: Precision>(
 
 /// What members fly.
 #[derive(Clone, Copy)]
-pub(super) struct Dynamics<F: Family, S> {
-    pub(super) model: F::Model<Packed>,
+pub(super) struct Dynamics<F: GeneratedModel, S> {
+    pub(super) model: F::With<Packed>,
     pub(super) scheme: S,
 }
 
 /// [`LANES`] members in flight.
-pub(super) struct Batch<'c, F: Family, S: Copy> {
+pub(super) struct Batch<'c, F: GeneratedModel, S: Copy> {
     dynamics: Cow<'c, Dynamics<F, S>>,
     law: Option<Law<F>>,
     noise: Noise,
     dt: f64,
     /// Step that comes next.
     pub(super) step: u64,
-    pub(super) x: F::State<Packed>,
-    pub(super) u: F::Input<Packed>,
+    pub(super) x: F::StateOf<Packed>,
+    pub(super) u: F::InputOf<Packed>,
     /// Where the members started: a lane flies on from there when its member is lost.
-    start: F::State<Packed>,
+    start: F::StateOf<Packed>,
     pub(super) lost: [Option<Loss>; LANES],
     /// Last states of those that are lost.
-    last: F::State<Packed>,
+    last: F::StateOf<Packed>,
     /// The box of validity, and the limits if there are any.
     pub(super) watches: Vec<Watch<F>>,
     /// What a search for rare events looks for.
@@ -98,8 +98,8 @@ pub(super) struct Batch<'c, F: Family, S: Copy> {
 }
 
 /// Intervals of the states, and when each was left first.
-pub(super) struct Watch<F: Family> {
-    intervals: F::State<Interval>,
+pub(super) struct Watch<F: GeneratedModel> {
+    intervals: F::StateOf<Interval>,
 }
 
 /// An interval of one state.
@@ -120,8 +120,8 @@ impl Interval {
     }
 }
 
-impl<F: Family> Watch<F> {
-    pub(super) fn new(bounds: F::State<Bounds>) -> Self {
+impl<F: GeneratedModel> Watch<F> {
+    pub(super) fn new(bounds: F::StateOf<Bounds>) -> Self {
         let intervals = F::map_state(&bounds, |bounds| Interval {
             min: Packed::splat(bounds.min),
             max: Packed::splat(bounds.max),
@@ -131,7 +131,7 @@ impl<F: Family> Watch<F> {
     }
 
     /// Steps after which a member first was outside, state by state.
-    pub(super) fn left(&self, lane: usize) -> F::State<Option<u64>> {
+    pub(super) fn left(&self, lane: usize) -> F::StateOf<Option<u64>> {
         F::map_state(&self.intervals, |interval| {
             Some(interval.left[lane]).filter(|&step| step != NEVER)
         })
@@ -139,7 +139,7 @@ impl<F: Family> Watch<F> {
 
     /// Looks at the states after `step` steps.
     #[inline(always)]
-    fn look(&mut self, x: &F::State<Packed>, step: u64) {
+    fn look(&mut self, x: &F::StateOf<Packed>, step: u64) {
         let mut any = false;
         for lane in 0..LANES {
             let mut outside = false;
@@ -156,7 +156,7 @@ impl<F: Family> Watch<F> {
 
     #[cold]
     #[inline(never)]
-    fn note(&mut self, x: &F::State<Packed>, step: u64) {
+    fn note(&mut self, x: &F::StateOf<Packed>, step: u64) {
         F::update_state(&mut self.intervals, *x, |interval, x| {
             for (lane, value) in x.0.into_iter().enumerate() {
                 if value < interval.min.0[lane] || value > interval.max.0[lane] {
@@ -168,13 +168,13 @@ impl<F: Family> Watch<F> {
     }
 
     fn close(&mut self, lane: usize) {
-        let all = F::State::splat(lane);
+        let all = F::StateOf::splat(lane);
         F::update_state(&mut self.intervals, all, Interval::close);
     }
 }
 
 /// Steps a batch with the instructions of the machine that it runs on.
-struct Advance<'b, 'c, F: Family, S: Copy, A> {
+struct Advance<'b, 'c, F: GeneratedModel, S: Copy, A> {
     batch: &'b mut Batch<'c, F, S>,
     /// Step to stop before.
     until: u64,
@@ -183,21 +183,21 @@ struct Advance<'b, 'c, F: Family, S: Copy, A> {
 }
 
 /// Makes a member's model of the batch's.
-pub(super) trait Member<F: Family>: Copy {
+pub(super) trait Member<F: GeneratedModel>: Copy {
     type Scalar: Arithmetic;
     type Model: ahv_core::StochasticModel<
             Scalar = Self::Scalar,
-            State = F::State<Self::Scalar>,
-            Input = F::Input<Self::Scalar>,
-            Noise = F::Noise<Self::Scalar>,
+            State = F::StateOf<Self::Scalar>,
+            Input = F::InputOf<Self::Scalar>,
+            Noise = F::NoiseOf<Self::Scalar>,
         >;
 
-    fn model(model: &F::Model<Packed>, lane: usize) -> Self::Model;
+    fn model(model: &F::With<Packed>, lane: usize) -> Self::Model;
 }
 
 impl<F, S, A, E> pulp::WithSimd for Advance<'_, '_, F, S, (A, E)>
 where
-    F: Family,
+    F: GeneratedModel,
     A: Member<F>,
     E: Member<F>,
     S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
@@ -255,15 +255,15 @@ where
 /// Steps one member.
 #[inline(always)]
 fn step<F, S, A>(
-    (model, scheme): (&F::Model<Packed>, &S),
+    (model, scheme): (&F::With<Packed>, &S),
     dt: f64,
-    x: &mut F::State<A::Scalar>,
-    u: &F::Input<Packed>,
+    x: &mut F::StateOf<A::Scalar>,
+    u: &F::InputOf<Packed>,
     normals: &[Packed; MOST_NORMALS],
     lane: usize,
 ) -> Result<(), StepError<A::Scalar>>
 where
-    F: Family,
+    F: GeneratedModel,
     A: Member<F>,
     S: Steps<F, A::Model>,
 {
@@ -272,11 +272,11 @@ where
     scheme.step(dt, pick, &model, x, &u, |channel| normals[channel].0[lane])
 }
 
-impl<'c, F: Family, S: Copy> Batch<'c, F, S> {
+impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
     /// The batch before its first step.
     pub(super) fn new(
         dynamics: Cow<'c, Dynamics<F, S>>,
-        (x, u): (F::State<Packed>, F::Input<Packed>),
+        (x, u): (F::StateOf<Packed>, F::InputOf<Packed>),
         dt: f64,
         noise: Noise,
         law: Option<Law<F>>,
@@ -337,7 +337,7 @@ impl<'c, F: Family, S: Copy> Batch<'c, F, S> {
     }
 
     /// The state of a member, and whether it still flies; else it is the last one that was finite.
-    pub(super) fn member(&self, lane: usize) -> (F::State<f64>, bool) {
+    pub(super) fn member(&self, lane: usize) -> (F::StateOf<f64>, bool) {
         let flies = self.lost.get(lane).is_some_and(Option::is_none);
         let x = if flies { self.x } else { self.last };
         (F::map_state(&x, |numbers| numbers.0[lane]), flies)
@@ -348,10 +348,10 @@ impl<'c, F: Family, S: Copy> Batch<'c, F, S> {
     #[inline(never)]
     fn repair<E>(
         &mut self,
-        x: &F::State<Packed>,
-        u: &F::Input<Packed>,
+        x: &F::StateOf<Packed>,
+        u: &F::InputOf<Packed>,
         normals: &[Packed; MOST_NORMALS],
-        next: &mut F::State<Packed>,
+        next: &mut F::StateOf<Packed>,
     ) where
         E: Member<F>,
         S: Steps<F, E::Model>,
@@ -379,7 +379,7 @@ impl<'c, F: Family, S: Copy> Batch<'c, F, S> {
         }
     }
 
-    fn lose<R: Real>(&mut self, lane: usize, x: &F::State<Packed>, error: StepError<R>) {
+    fn lose<R: Real>(&mut self, lane: usize, x: &F::StateOf<Packed>, error: StepError<R>) {
         let Some(lost @ None) = self.lost.get_mut(lane) else {
             return;
         };

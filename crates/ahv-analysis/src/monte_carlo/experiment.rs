@@ -2,12 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
-use ahv_core::Bounds;
+use ahv_core::{Bounds, GeneratedModel};
 use ahv_integrate::NormalStream;
 
 use super::Loss;
 use super::arithmetic::Mode;
-use super::family::Family;
 use super::feedback::Feedback;
 use super::rare::Particle;
 use super::scheme::Scheme;
@@ -18,19 +17,19 @@ const START_SEED: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// Members of a model, each with noise of its own.
 #[derive(Clone)]
-pub struct Experiment<F: Family> {
+pub struct Experiment<F: GeneratedModel> {
     /// Parameters.
-    pub parameters: F::Parameters<f64>,
+    pub parameters: F::ParametersOf<f64>,
     /// Parameters drawn for each member, in the place of those.
-    pub dispersion: Option<Draws<F::Parameters<f64>>>,
+    pub dispersion: Option<Draws<F::ParametersOf<f64>>>,
     /// State at the start, and the standard deviation of a normal distribution about it.
-    pub state: [F::State<f64>; 2],
+    pub state: [F::StateOf<f64>; 2],
     /// Input, and the standard deviation of a normal distribution about it: held, or where actuators start.
-    pub input: [F::Input<f64>; 2],
+    pub input: [F::InputOf<f64>; 2],
     /// What moves the inputs.
     pub feedback: Option<Feedback<F>>,
     /// Intervals of the states that are watched: the box of validity, and limits of one's own.
-    pub watched: Vec<F::State<Bounds>>,
+    pub watched: Vec<F::StateOf<Bounds>>,
     /// Stepper.
     pub scheme: Scheme,
     /// Arithmetic.
@@ -45,15 +44,15 @@ pub struct Experiment<F: Family> {
 
 /// What was seen of a member.
 #[derive(Clone)]
-pub struct Seen<F: Family> {
+pub struct Seen<F: GeneratedModel> {
     /// State and input at each snapshot that it lived to see.
-    pub at: Vec<(F::State<f64>, F::Input<f64>)>,
+    pub at: Vec<(F::StateOf<f64>, F::InputOf<f64>)>,
     /// Its last finite state.
-    pub last: F::State<f64>,
+    pub last: F::StateOf<f64>,
     /// How it ended before its time.
     pub lost: Option<Loss>,
     /// Steps after which each state was first outside its interval, for each set of intervals.
-    pub left: Vec<F::State<Option<u64>>>,
+    pub left: Vec<F::StateOf<Option<u64>>>,
 }
 
 /// Counts steps, and stops the work when asked to.
@@ -65,7 +64,7 @@ pub struct Control {
     pub stop: AtomicBool,
 }
 
-impl<F: Family> Experiment<F> {
+impl<F: GeneratedModel> Experiment<F> {
     /// Steps of a whole flight.
     pub fn steps(&self) -> u64 {
         self.snapshots.last().copied().unwrap_or(0)

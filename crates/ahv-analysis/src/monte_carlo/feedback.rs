@@ -1,14 +1,12 @@
 //! State feedback through actuators, for all members of a batch at once.
 
-use ahv_core::{DifferentiableModel, Real, Vector};
+use ahv_core::{DifferentiableModel, GeneratedModel, Real, Vector};
 use nalgebra::DMatrix;
 
-use super::family::{Family, LANES, Packed};
+use super::lanes::{LANES, Packed};
 use crate::actuator::{Actuator, ActuatorStep};
 use crate::covariance::Regulation;
 
-/// The state that climbs in a steady flight; all others stay.
-const CLIMBS: &str = "altitude";
 /// Largest rate of a state that stays, as a share of the terms of its drift, to first order.
 const STEADY: f64 = 1e-9;
 
@@ -16,17 +14,17 @@ const STEADY: f64 = 1e-9;
 ///
 /// Inputs without actuator are held.
 #[derive(Clone, Copy)]
-pub struct Feedback<F: Family> {
+pub struct Feedback<F: GeneratedModel> {
     /// State of the trim at the start.
-    pub state: F::State<f64>,
+    pub state: F::StateOf<f64>,
     /// Rate of the trim, per second: of a climb that of the altitude, else 0.
-    pub rate: F::State<f64>,
+    pub rate: F::StateOf<f64>,
     /// Input of the trim.
-    pub input: F::Input<f64>,
+    pub input: F::InputOf<f64>,
     /// Gain, row by row; the unit of an entry is that of the input over that of the state.
-    pub gain: F::Input<F::State<f64>>,
+    pub gain: F::InputOf<F::StateOf<f64>>,
     /// What moves each input.
-    pub actuators: F::Input<Option<Actuator>>,
+    pub actuators: F::InputOf<Option<Actuator>>,
 }
 
 /// A state that does not follow its reference.
@@ -42,41 +40,42 @@ pub struct Unsteady {
 
 /// A row of the law.
 #[derive(Clone, Copy)]
-struct Row<F: Family> {
+struct Row<F: GeneratedModel> {
     input: f64,
-    gain: F::State<f64>,
+    gain: F::StateOf<f64>,
     actuator: ActuatorStep,
 }
 
 /// The law over steps of fixed length.
 #[derive(Clone, Copy)]
-pub(super) struct Law<F: Family> {
-    state: F::State<f64>,
-    rate: F::State<f64>,
+pub(super) struct Law<F: GeneratedModel> {
+    state: F::StateOf<f64>,
+    rate: F::StateOf<f64>,
     /// Whether the reference moves.
     moves: bool,
     dt: f64,
     /// Steps that each member had flown before those that are counted.
     flown: [u64; LANES],
-    rows: F::Input<Option<Row<F>>>,
+    rows: F::InputOf<Option<Row<F>>>,
 }
 
-impl<F: Family> Feedback<F> {
-    /// The first state of `model` that does not follow the reference: in a steady flight the altitude climbs, and all
-    /// other states stay.
+impl<F: GeneratedModel> Feedback<F> {
+    /// The first state of `model` that does not follow the reference: the states that move in a trim move on, and all
+    /// others stay.
     pub fn unsteady<M>(&self, model: &M) -> Option<Unsteady>
     where
-        M: DifferentiableModel<Scalar = f64, State = F::State<f64>, Input = F::Input<f64>>,
+        M: DifferentiableModel<Scalar = f64, State = F::StateOf<f64>, Input = F::InputOf<f64>>,
     {
         let drift = model.drift(&self.state, &self.input);
         let (by_state, by_input) = model.jacobians(&self.state, &self.input);
-        F::State::<f64>::NAMES
+        F::StateOf::<f64>::NAMES
             .iter()
             .enumerate()
             .find_map(|(index, &state)| {
                 let (rate, own) = (drift.get(index)?, self.rate.get(index)?);
-                let expected = if state == CLIMBS { rate } else { 0.0 };
-                let row: F::State<f64> = by_state.get(index)?;
+                let moves = F::TRIM.moving.contains(&state);
+                let expected = if moves { rate } else { 0.0 };
+                let row: F::StateOf<f64> = by_state.get(index)?;
                 let terms = size(&row, &self.state) + size(&by_input.get(index)?, &self.input);
                 let follows = |rate: f64| (rate - expected).abs() <= STEADY * terms;
                 let rate = if follows(rate) { own } else { rate };
@@ -90,8 +89,8 @@ impl<F: Family> Feedback<F> {
     }
 
     /// The same law for a linear covariance: it acts all the time, and the actuators have no limits.
-    pub fn regulation(&self) -> Regulation<F::State<f64>, F::Input<f64>> {
-        let (inputs, states) = (F::Input::<f64>::LEN, F::State::<f64>::LEN);
+    pub fn regulation(&self) -> Regulation<F::StateOf<f64>, F::InputOf<f64>> {
+        let (inputs, states) = (F::InputOf::<f64>::LEN, F::StateOf::<f64>::LEN);
         let gain = |input, state| self.gain.get(input)?.get(state);
         Regulation {
             state: self.state,
@@ -108,7 +107,7 @@ impl<F: Family> Feedback<F> {
 
     /// The law over steps of `dt`, for members that have flown some steps.
     pub(super) fn over(&self, dt: f64, flown: [u64; LANES]) -> Law<F> {
-        let rows = F::Input::from_fn(|index| {
+        let rows = F::InputOf::from_fn(|index| {
             let actuator = self.actuators.get(index)??;
             Some(Row {
                 input: self.input.get(index)?,
@@ -133,10 +132,10 @@ fn size<V: Vector<f64>>(slopes: &V, point: &V) -> f64 {
     terms.map(f64::abs).sum()
 }
 
-impl<F: Family> Law<F> {
+impl<F: GeneratedModel> Law<F> {
     /// Moves the inputs over step number `step`, towards what the law wants at its start.
     #[inline(always)]
-    pub(super) fn apply(&self, x: &F::State<Packed>, u: &mut F::Input<Packed>, step: u64) {
+    pub(super) fn apply(&self, x: &F::StateOf<Packed>, u: &mut F::InputOf<Packed>, step: u64) {
         let mut deviation = *x;
         F::update_state(&mut deviation, self.state, |x, rest| {
             *x = *x - Packed::splat(rest);
@@ -151,7 +150,7 @@ impl<F: Family> Law<F> {
             });
         }
         // No closure around this: it would be too large to be inlined.
-        for index in 0..F::Input::<Packed>::LEN {
+        for index in 0..F::InputOf::<Packed>::LEN {
             let (Some(mut position), Some(Some(row))) = (u.get(index), self.rows.get(index)) else {
                 continue;
             };

@@ -4,13 +4,13 @@ use std::ops::Range;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use super::experiment::{Control, Experiment, Seen};
-use super::family::{Family, LANES};
-use super::propagator::{Flown, Propagator};
+use super::lanes::LANES;
+use super::propagator::{Propagator, propagator};
 use super::spread::{Bin, QUANTILES, Spread};
 use super::{Loss, MonteCarloError};
 use crate::ordered::in_order;
@@ -27,13 +27,13 @@ const TOLD: usize = 20;
 
 /// A member at one time.
 #[derive(Clone, Copy)]
-pub struct Point<F: Family> {
+pub struct Point<F: GeneratedModel> {
     /// Time, in s.
     pub time: f64,
     /// State.
-    pub state: F::State<f64>,
+    pub state: F::StateOf<f64>,
     /// Input.
-    pub input: F::Input<f64>,
+    pub input: F::InputOf<f64>,
 }
 
 /// What members show together.
@@ -92,7 +92,7 @@ pub struct StateSpread {
 /// Bins of the histograms that are told.
 const TOLD_BINS: usize = 60;
 
-impl<F: Flown> Experiment<F> {
+impl<F: GeneratedModel> Experiment<F> {
     /// Flies members 0 to `members` − 1 on `threads` threads.
     ///
     /// The same numbers whatever the threads. Stopped by `control`, it reports the members that were flown so far, 0 to some
@@ -128,7 +128,7 @@ impl<F: Flown> Experiment<F> {
             .build()
             .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
         let started = Instant::now();
-        let propagator = F::propagator(self)?;
+        let propagator = propagator(self)?;
         let mut collector = Collector::<F>::new(self);
         let mut next = 0;
         while next < members {
@@ -163,7 +163,7 @@ impl<F: Flown> Experiment<F> {
             snapshots: (0..=self.steps()).step_by(stride.max(1) as usize).collect(),
             ..self.clone()
         };
-        let propagator = F::propagator(&alone)?;
+        let propagator = propagator(&alone)?;
         let seen = propagator.fly(&[member], &Control::default())?;
         let at = seen.into_iter().flatten().next().map(|seen| seen.at);
         let timed = alone.snapshots.iter().zip(at.unwrap_or_default());
@@ -177,7 +177,7 @@ impl<F: Flown> Experiment<F> {
 }
 
 /// Flies members; stopped, it returns those before the first that was not flown.
-fn group<F: Family>(
+fn group<F: GeneratedModel>(
     propagator: &dyn Propagator<F>,
     members: Range<u64>,
     steps: u64,
@@ -198,7 +198,7 @@ fn group<F: Family>(
 }
 
 /// Sums over members, in their order.
-struct Collector<'e, F: Family> {
+struct Collector<'e, F: GeneratedModel> {
     experiment: &'e Experiment<F>,
     sums: Vec<Sums>,
     members: u64,
@@ -274,9 +274,9 @@ fn components<T: Copy>(x: &impl Vector<T>, len: usize) -> Vec<T> {
     (0..len).filter_map(|index| x.get(index)).collect()
 }
 
-impl<'e, F: Family> Collector<'e, F> {
+impl<'e, F: GeneratedModel> Collector<'e, F> {
     fn new(experiment: &'e Experiment<F>) -> Self {
-        let states = F::State::<f64>::LEN;
+        let states = F::StateOf::<f64>::LEN;
         let sums = experiment.snapshots.iter().map(|_| Sums {
             count: 0,
             states: Vec::new(),
@@ -297,7 +297,7 @@ impl<'e, F: Family> Collector<'e, F> {
 
     /// Members from number `first` on.
     fn add(&mut self, first: u64, seen: Vec<Seen<F>>) {
-        let states = F::State::<f64>::LEN;
+        let states = F::StateOf::<f64>::LEN;
         for (member, seen) in (first..).zip(&seen) {
             for value in components(&seen.last, states) {
                 self.hash.update(value.to_le_bytes());
@@ -347,7 +347,7 @@ impl<'e, F: Family> Collector<'e, F> {
 
 impl Sums {
     /// Counts what a member has left after so many steps.
-    fn leave<F: Family>(&mut self, left: &[F::State<Option<u64>>], step: u64) {
+    fn leave<F: GeneratedModel>(&mut self, left: &[F::StateOf<Option<u64>>], step: u64) {
         let sets = left.iter().zip(&mut self.left).zip(&mut self.left_any);
         for ((left, counts), any) in sets {
             let mut some = false;

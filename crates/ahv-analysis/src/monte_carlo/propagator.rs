@@ -4,14 +4,14 @@ use std::borrow::Cow;
 use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 
-use ahv_core::{Bounds, Fused, Real, Straight, Vector};
+use ahv_core::{Bounds, CountVisitor, GeneratedModel, Outlined, Real, Straight, Vector};
 use ahv_integrate::NoiseError;
 
 use super::MonteCarloError;
-use super::arithmetic::{Called, In, Mode, Narrowed};
+use super::arithmetic::{Called, In, Mode};
 use super::batch::{Batch, Dynamics, Member, Noise, Watch};
 use super::experiment::{Control, Experiment, Seen};
-use super::family::{Dcom, Family, LANES, Packed, Sdcom, SdcomGust, SdcomPrinted};
+use super::lanes::{LANES, Packed, packed};
 use super::rare::{Goal, Particle, Passed, pass};
 use super::scheme::{
     Dri1, EulerMaruyama, Heun, InStratonovichSense, MOST_NORMALS, Milstein, Scheme, Splitting,
@@ -24,7 +24,7 @@ const PATIENCE: u64 = 1024;
 const FRACTION: f64 = 0.618;
 
 /// Propagates members of an experiment.
-pub trait Propagator<F: Family>: Send + Sync {
+pub trait Propagator<F: GeneratedModel>: Send + Sync {
     /// Flies members, at most [`LANES`]; `None` if the work was stopped.
     ///
     /// # Errors
@@ -50,115 +50,69 @@ pub trait Propagator<F: Family>: Send + Sync {
     ) -> Result<Option<Vec<Passed<F>>>, MonteCarloError>;
 }
 
-/// A model for which every scheme that it has can be chosen at run time.
-pub trait Flown: Family {
-    /// The propagator of an experiment's members.
-    ///
-    /// # Errors
-    ///
-    /// [`MonteCarloError::Scheme`] for a scheme that is not for this model's noise, [`MonteCarloError::ModeOfScheme`],
-    /// [`MonteCarloError::NoFma`], [`MonteCarloError::StepSize`].
-    fn propagator(
-        experiment: &Experiment<Self>,
-    ) -> Result<Box<dyn Propagator<Self> + '_>, MonteCarloError>
-    where
-        Self: Sized;
-}
-
-/// A propagator with the scheme `$scheme` in the experiment's mode.
-macro_rules! in_mode {
-    ($experiment:ident, $scheme:ty) => {
-        match $experiment.mode {
-            Mode::Exact | Mode::F32Noise => {
-                BatchPropagator::<Self, $scheme, In<Straight<f64>>, In<f64>>::new($experiment)
-            }
-            Mode::Fma => {
-                BatchPropagator::<Self, $scheme, In<Fused<Straight<f64>>>, In<Fused<f64>>>::new(
-                    $experiment,
-                )
-            }
-            Mode::F32Drift => BatchPropagator::<
-                Self,
-                $scheme,
-                Narrowed<Straight<f64>, Straight<f32>>,
-                Narrowed<f64, f32>,
-            >::new($experiment),
+/// The propagator of an experiment's members, with the scheme that it asks for.
+///
+/// # Errors
+///
+/// [`MonteCarloError::Scheme`] for a scheme that is not for this model's noise, [`MonteCarloError::StepSize`],
+/// [`MonteCarloError::Normals`].
+pub(super) fn propagator<F: GeneratedModel>(
+    experiment: &Experiment<F>,
+) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError> {
+    match experiment.scheme {
+        Scheme::Splitting => {
+            F::coloured(BySplitting(experiment)).unwrap_or(Err(MonteCarloError::Scheme {
+                scheme: Scheme::Splitting.name(),
+                reason: NoiseError::ColouredStates {
+                    expected: 1,
+                    found: 0,
+                },
+            }))
         }
-    };
+        Scheme::Heun => side_by_side::<F, Heun>(experiment),
+        Scheme::EulerMaruyama => side_by_side::<F, EulerMaruyama>(experiment),
+        Scheme::StratonovichHeun => one_by_one::<F, InStratonovichSense>(experiment),
+        Scheme::Milstein => one_by_one::<F, Milstein>(experiment),
+        Scheme::Sra1 => one_by_one::<F, Sra1>(experiment),
+        Scheme::Dri1 => one_by_one::<F, Dri1>(experiment),
+    }
 }
 
-/// A propagator with the scheme `$scheme`, which has no modes but those of the noise.
-macro_rules! in_doubles {
-    ($experiment:ident, $scheme:ty) => {
-        match $experiment.mode {
-            Mode::Exact | Mode::F32Noise => {
-                BatchPropagator::<Self, $scheme, Called<In<f64>>, In<f64>>::new($experiment)
-            }
-            mode => Err(MonteCarloError::ModeOfScheme {
-                mode: mode.name(),
-                scheme: $experiment.scheme.name(),
-            }),
-        }
-    };
+/// Members by vector instructions.
+fn side_by_side<F, S>(
+    experiment: &Experiment<F>,
+) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError>
+where
+    F: GeneratedModel,
+    S: Steps<F, F::With<Straight<f64>>> + Steps<F, Outlined<F::With<f64>>> + 'static,
+{
+    BatchPropagator::<F, S, In<Straight<f64>>, In<f64>>::new(experiment)
 }
 
-macro_rules! flown {
-    ($($name:ident: $($splitting:ty)?;)+) => {$(
-        impl Flown for $name {
-            fn propagator(
-                experiment: &Experiment<Self>,
-            ) -> Result<Box<dyn Propagator<Self> + '_>, MonteCarloError> {
-                match experiment.scheme {
-                    $(Scheme::Splitting => in_mode!(experiment, $splitting),)?
-                    Scheme::Heun => in_mode!(experiment, Heun),
-                    Scheme::EulerMaruyama => in_mode!(experiment, EulerMaruyama),
-                    Scheme::StratonovichHeun => in_doubles!(experiment, InStratonovichSense),
-                    Scheme::Milstein => in_doubles!(experiment, Milstein),
-                    Scheme::Sra1 => in_doubles!(experiment, Sra1),
-                    Scheme::Dri1 => in_doubles!(experiment, Dri1),
-                    #[allow(unreachable_patterns, reason = "a model with coloured noise has every scheme")]
-                    scheme => Err(MonteCarloError::Scheme {
-                        scheme: scheme.name(),
-                        reason: NoiseError::ColouredStates { expected: 3, found: 0 },
-                    }),
-                }
-            }
-        }
-    )+};
+/// Members one by one: for schemes whose loops take long to compile.
+fn one_by_one<F, S>(
+    experiment: &Experiment<F>,
+) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError>
+where
+    F: GeneratedModel,
+    S: Steps<F, Outlined<F::With<f64>>> + 'static,
+{
+    BatchPropagator::<F, S, Called<In<f64>>, In<f64>>::new(experiment)
 }
 
-flown! {
-    Sdcom: Splitting<3>;
-    Dcom:;
-}
+/// An experiment by the splitting.
+struct BySplitting<'e, F: GeneratedModel>(&'e Experiment<F>);
 
-/// Models of one scheme without vector loops: they are flown beside others, not by the million, and each loop takes long to
-/// compile.
-macro_rules! flown_by_splitting {
-    ($($name:ident: $splitting:ty;)+) => {$(
-        impl Flown for $name {
-            fn propagator(
-                experiment: &Experiment<Self>,
-            ) -> Result<Box<dyn Propagator<Self> + '_>, MonteCarloError> {
-                match experiment.scheme {
-                    Scheme::Splitting => in_doubles!(experiment, $splitting),
-                    scheme => Err(MonteCarloError::SchemeOfModel {
-                        scheme: scheme.name(),
-                        model: Self::NAME,
-                    }),
-                }
-            }
-        }
-    )+};
-}
+impl<'e, F: GeneratedModel> CountVisitor for BySplitting<'e, F> {
+    type Output = Result<Box<dyn Propagator<F> + 'e>, MonteCarloError>;
 
-flown_by_splitting! {
-    SdcomPrinted: Splitting<3>;
-    SdcomGust: Splitting<4>;
+    fn visit<const N: usize>(self) -> Self::Output {
+        side_by_side::<F, Splitting<N>>(self.0)
+    }
 }
 
 /// A propagator with a scheme `S`, fast in the arithmetic `A` and again in `E` where that has no result.
-struct BatchPropagator<'e, F: Family, S, A, E> {
+struct BatchPropagator<'e, F: GeneratedModel, S, A, E> {
     experiment: &'e Experiment<F>,
     /// The model of the experiment's own parameters.
     shared: Dynamics<F, S>,
@@ -167,16 +121,8 @@ struct BatchPropagator<'e, F: Family, S, A, E> {
     arithmetic: PhantomData<fn() -> (A, E)>,
 }
 
-/// Whether this processor multiplies and adds in one rounding.
-fn has_fma() -> bool {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    return std::arch::is_x86_feature_detected!("fma");
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    return cfg!(target_arch = "aarch64");
-}
-
 /// State and input in the validity box, where no noise is 0 by chance.
-fn generic_point<F: Family>() -> (F::State<Packed>, F::Input<Packed>) {
+fn generic_point<F: GeneratedModel>() -> (F::StateOf<Packed>, F::InputOf<Packed>) {
     let between = |bounds: &Bounds| {
         let value = bounds.min + FRACTION * (bounds.max - bounds.min);
         Packed::splat(if value.is_finite() { value } else { FRACTION })
@@ -188,11 +134,11 @@ fn generic_point<F: Family>() -> (F::State<Packed>, F::Input<Packed>) {
 }
 
 /// The model of these parameters, and the scheme for it.
-fn dynamics<F: Family, S: Stepping<F>>(
+fn dynamics<F: GeneratedModel, S: Stepping<F>>(
     experiment: &Experiment<F>,
-    parameters: &[F::Parameters<f64>; LANES],
+    parameters: &[F::ParametersOf<f64>; LANES],
 ) -> Result<Dynamics<F, S>, MonteCarloError> {
-    let model = F::model(parameters);
+    let model = packed::<F>(parameters);
     let (x, u) = generic_point::<F>();
     let scheme =
         S::new(&model, &x, &u, experiment.dt).map_err(|reason| MonteCarloError::Scheme {
@@ -204,7 +150,7 @@ fn dynamics<F: Family, S: Stepping<F>>(
 
 impl<'e, F, S, A, E> BatchPropagator<'e, F, S, A, E>
 where
-    F: Family,
+    F: GeneratedModel,
     A: Member<F> + 'e,
     E: Member<F> + 'e,
     S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model> + 'e,
@@ -214,16 +160,17 @@ where
         reason = "callers need no more than the trait"
     )]
     fn new(experiment: &'e Experiment<F>) -> Result<Box<dyn Propagator<F> + 'e>, MonteCarloError> {
-        if experiment.mode == Mode::Fma && !has_fma() {
-            return Err(MonteCarloError::NoFma);
-        }
         if !(experiment.dt > 0.0 && experiment.dt.is_finite()) {
             return Err(MonteCarloError::StepSize(experiment.dt));
         }
         let shared: Dynamics<F, S> = dynamics(experiment, &[experiment.parameters; LANES])?;
+        let normals = F::NoiseOf::<Packed>::LEN + S::EXTRA;
+        if normals > MOST_NORMALS {
+            return Err(MonteCarloError::Normals { normals });
+        }
         let (x, u) = generic_point::<F>();
         let mut used = [false; MOST_NORMALS];
-        let (wiener, extra) = used.split_at_mut(F::Noise::<Packed>::LEN);
+        let (wiener, extra) = used.split_at_mut(F::NoiseOf::<Packed>::LEN);
         for (channel, used) in wiener.iter_mut().enumerate() {
             *used = S::uses(&shared.model, &column(&shared.model, &x, &u, channel));
         }
@@ -256,14 +203,14 @@ where
                 Cow::Owned(dynamics(experiment, &parameters)?)
             }
         };
-        let mut x = F::State::splat(Packed::ZERO);
-        let mut u = F::Input::splat(Packed::ZERO);
+        let mut x = F::StateOf::splat(Packed::ZERO);
+        let mut u = F::InputOf::splat(Packed::ZERO);
         for (lane, particle) in flying.iter().enumerate() {
             F::update_state(&mut x, particle.x, |numbers, value| numbers.0[lane] = value);
             F::update_input(&mut u, particle.u, |numbers, value| numbers.0[lane] = value);
         }
         let members = flying.map(|particle| particle.member);
-        let single = matches!(experiment.mode, Mode::F32Noise | Mode::F32Drift);
+        let single = experiment.mode == Mode::F32Noise;
         let noise = Noise::new(experiment.seed, members, &self.used, single);
         let law = experiment
             .feedback
@@ -284,7 +231,7 @@ where
 
 impl<F, S, A, E> Propagator<F> for BatchPropagator<'_, F, S, A, E>
 where
-    F: Family,
+    F: GeneratedModel,
     A: Member<F>,
     E: Member<F>,
     S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,

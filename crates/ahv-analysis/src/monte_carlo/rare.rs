@@ -8,7 +8,7 @@
 
 mod passage;
 
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use ahv_integrate::NormalStream;
 use rayon::prelude::*;
 
@@ -16,8 +16,8 @@ pub(super) use passage::{Goal, Particle, Passage, Passed, pass};
 
 use super::MonteCarloError;
 use super::experiment::{Control, Experiment};
-use super::family::LANES;
-use super::propagator::{Flown, Propagator};
+use super::lanes::LANES;
+use super::propagator::{Propagator, propagator};
 use crate::statistics::{Estimate, Z_95, mean_and_std, student_95};
 
 /// Fewest repetitions: from there on, Student's quantile is right to four digits.
@@ -141,7 +141,7 @@ pub struct RareEstimate {
     pub lost: u64,
 }
 
-impl<F: Flown> Experiment<F> {
+impl<F: GeneratedModel> Experiment<F> {
     /// The probability that a state passes a limit before the flight ends, on `threads` threads.
     ///
     /// The same numbers whatever the threads. The limit may be some standard deviations away, and the probability 10⁻¹⁰: the
@@ -163,7 +163,7 @@ impl<F: Flown> Experiment<F> {
             .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
         let mut search = Search {
             experiment: self,
-            propagator: F::propagator(self)?,
+            propagator: propagator(self)?,
             event,
             control,
             goal: event.goal(self),
@@ -183,12 +183,12 @@ impl<F: Flown> Experiment<F> {
 
 impl RareEvent {
     /// Where the members start, in the mean.
-    fn start<F: Flown>(&self, experiment: &Experiment<F>) -> Option<f64> {
+    fn start<F: GeneratedModel>(&self, experiment: &Experiment<F>) -> Option<f64> {
         experiment.state[0].get(self.state)
     }
 
     /// The limit.
-    fn goal<F: Flown>(&self, experiment: &Experiment<F>) -> Goal {
+    fn goal<F: GeneratedModel>(&self, experiment: &Experiment<F>) -> Goal {
         let start = self.start(experiment).unwrap_or(0.0);
         let sign = if self.limit > start { 1.0 } else { -1.0 };
         Goal {
@@ -199,12 +199,15 @@ impl RareEvent {
     }
 
     /// Heights of the levels that are given, that of the limit included.
-    fn check<F: Flown>(&self, experiment: &Experiment<F>) -> Result<Option<Vec<f64>>, RareError> {
+    fn check<F: GeneratedModel>(
+        &self,
+        experiment: &Experiment<F>,
+    ) -> Result<Option<Vec<f64>>, RareError> {
         let (steps, dt) = (experiment.steps(), experiment.dt);
         if steps == 0 || !(dt > 0.0 && dt.is_finite()) {
             return Err(RareError::Flight { steps, dt });
         }
-        let names = F::State::<f64>::NAMES;
+        let names = F::StateOf::<f64>::NAMES;
         let Some((start, name)) = self.start(experiment).zip(names.get(self.state)) else {
             return Err(RareError::State {
                 state: self.state,
@@ -248,7 +251,7 @@ impl RareEvent {
 }
 
 /// Splitting at work.
-struct Search<'e, F: Flown> {
+struct Search<'e, F: GeneratedModel> {
     experiment: &'e Experiment<F>,
     propagator: Box<dyn Propagator<F> + 'e>,
     event: &'e RareEvent,
@@ -261,7 +264,7 @@ struct Search<'e, F: Flown> {
     lost: u64,
 }
 
-impl<F: Flown> Search<'_, F> {
+impl<F: GeneratedModel> Search<'_, F> {
     /// Heights of levels that a fair share of the members passes, that of the limit included.
     ///
     /// Members fly twice with the same noise: to find the level, and to pass it.
@@ -405,7 +408,7 @@ impl<F: Flown> Search<'_, F> {
 }
 
 /// Where a level was passed, by time: those that fly on side by side then have about as long to go.
-fn entrances<F: Flown>(flown: &[Passed<F>]) -> Vec<Particle<F>> {
+fn entrances<F: GeneratedModel>(flown: &[Passed<F>]) -> Vec<Particle<F>> {
     let mut entrances: Vec<_> = flown.iter().filter_map(|passed| passed.at).collect();
     entrances.sort_by_key(|entrance| entrance.step);
     entrances

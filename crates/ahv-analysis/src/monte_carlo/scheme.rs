@@ -1,6 +1,8 @@
 //! The steppers of `ahv-integrate`, each as one way to step a member.
 
-use ahv_core::{ColouredNoise, DifferentiableNoise, ItoCorrected, Real, StochasticModel, Vector};
+use ahv_core::{
+    ColouredNoise, DifferentiableNoise, GeneratedModel, ItoCorrected, Real, StochasticModel, Vector,
+};
 use ahv_integrate::{
     AdditiveChannels, CommutativeChannels, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein,
     ItoSra1, ItoStrangSplitting, NoiseError, StepError, StratonovichHeun, WeakIncrements,
@@ -8,10 +10,10 @@ use ahv_integrate::{
 };
 
 use super::arithmetic::Arithmetic;
-use super::family::{Family, Packed};
+use super::lanes::Packed;
 
 /// Normal numbers that a step of a member takes at most.
-pub(super) const MOST_NORMALS: usize = 16;
+pub(super) const MOST_NORMALS: usize = 32;
 
 /// By which stepper of `ahv-integrate` members are flown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -60,12 +62,12 @@ impl Scheme {
 }
 
 /// A scheme, made ready for the members of a batch.
-pub(super) trait Stepping<F: Family>: Sized + Copy + Send + Sync {
+pub(super) trait Stepping<F: GeneratedModel>: Sized + Copy + Send + Sync {
     /// The scheme for `model` at (x, u), with steps of `dt`, in s.
     fn new(
-        model: &F::Model<Packed>,
-        x: &F::State<Packed>,
-        u: &F::Input<Packed>,
+        model: &F::With<Packed>,
+        x: &F::StateOf<Packed>,
+        u: &F::InputOf<Packed>,
         dt: f64,
     ) -> Result<Self, NoiseError>;
 
@@ -73,7 +75,7 @@ pub(super) trait Stepping<F: Family>: Sized + Copy + Send + Sync {
     const EXTRA: usize;
 
     /// Whether a step uses the number of the Wiener process that moves `column`.
-    fn uses(model: &F::Model<Packed>, column: &F::State<Packed>) -> bool {
+    fn uses(model: &F::With<Packed>, column: &F::StateOf<Packed>) -> bool {
         let _ = (model, column);
         true
     }
@@ -82,7 +84,7 @@ pub(super) trait Stepping<F: Family>: Sized + Copy + Send + Sync {
 /// A scheme that steps a model.
 pub(super) trait Steps<F, M>: Stepping<F>
 where
-    F: Family,
+    F: GeneratedModel,
     M: StochasticModel<Scalar: Arithmetic>,
 {
     /// Steps one member over `dt`, in s; `pick` takes its number from those of the batch, `normal` gives its normal numbers.
@@ -113,11 +115,11 @@ macro_rules! plain {
             root: f64,
         }
 
-        impl<F: Family> Stepping<F> for $name {
+        impl<F: GeneratedModel> Stepping<F> for $name {
             fn new(
-                _: &F::Model<Packed>,
-                _: &F::State<Packed>,
-                _: &F::Input<Packed>,
+                _: &F::With<Packed>,
+                _: &F::StateOf<Packed>,
+                _: &F::InputOf<Packed>,
                 dt: f64,
             ) -> Result<Self, NoiseError> {
                 Ok(Self { root: dt.sqrt() })
@@ -126,7 +128,7 @@ macro_rules! plain {
             const EXTRA: usize = 0;
         }
 
-        impl<F: Family, M: $bound<Scalar: Arithmetic>> Steps<F, M> for $name {
+        impl<F: GeneratedModel, M: $bound<Scalar: Arithmetic>> Steps<F, M> for $name {
             #[inline(always)]
             fn step(
                 &self,
@@ -157,14 +159,11 @@ pub(super) struct Splitting<const N: usize> {
     root: f64,
 }
 
-impl<F: Family, const N: usize> Stepping<F> for Splitting<N>
-where
-    F::Model<Packed>: ColouredNoise,
-{
+impl<F: GeneratedModel, const N: usize> Stepping<F> for Splitting<N> {
     fn new(
-        model: &F::Model<Packed>,
-        x: &F::State<Packed>,
-        u: &F::Input<Packed>,
+        model: &F::With<Packed>,
+        x: &F::StateOf<Packed>,
+        u: &F::InputOf<Packed>,
         dt: f64,
     ) -> Result<Self, NoiseError> {
         Ok(Self {
@@ -175,8 +174,8 @@ where
 
     const EXTRA: usize = 2 * N;
 
-    fn uses(model: &F::Model<Packed>, column: &F::State<Packed>) -> bool {
-        (0..F::State::<Packed>::LEN).any(|state| {
+    fn uses(model: &F::With<Packed>, column: &F::StateOf<Packed>) -> bool {
+        (0..F::StateOf::<Packed>::LEN).any(|state| {
             let moves = column.get(state).is_some_and(is_on);
             moves && model.decay(state).is_none()
         })
@@ -185,8 +184,7 @@ where
 
 impl<F, M, const N: usize> Steps<F, M> for Splitting<N>
 where
-    F: Family,
-    F::Model<Packed>: ColouredNoise,
+    F: GeneratedModel,
     M: ColouredNoise<Scalar: Arithmetic> + ItoCorrected,
 {
     #[inline(always)]
@@ -279,11 +277,11 @@ restricted! {
     Sra1, AdditiveChannels, StochasticModel;
 }
 
-impl<F: Family> Stepping<F> for Milstein {
+impl<F: GeneratedModel> Stepping<F> for Milstein {
     fn new(
-        model: &F::Model<Packed>,
-        x: &F::State<Packed>,
-        u: &F::Input<Packed>,
+        model: &F::With<Packed>,
+        x: &F::StateOf<Packed>,
+        u: &F::InputOf<Packed>,
         _: f64,
     ) -> Result<Self, NoiseError> {
         Self::made(model, x, u)
@@ -292,7 +290,7 @@ impl<F: Family> Stepping<F> for Milstein {
     const EXTRA: usize = 0;
 }
 
-impl<F: Family, M: DifferentiableNoise<Scalar: Arithmetic>> Steps<F, M> for Milstein {
+impl<F: GeneratedModel, M: DifferentiableNoise<Scalar: Arithmetic>> Steps<F, M> for Milstein {
     fn step(
         &self,
         dt: f64,
@@ -307,20 +305,20 @@ impl<F: Family, M: DifferentiableNoise<Scalar: Arithmetic>> Steps<F, M> for Mils
     }
 }
 
-impl<F: Family> Stepping<F> for Sra1 {
+impl<F: GeneratedModel> Stepping<F> for Sra1 {
     fn new(
-        model: &F::Model<Packed>,
-        x: &F::State<Packed>,
-        u: &F::Input<Packed>,
+        model: &F::With<Packed>,
+        x: &F::StateOf<Packed>,
+        u: &F::InputOf<Packed>,
         _: f64,
     ) -> Result<Self, NoiseError> {
         Self::made(model, x, u)
     }
 
-    const EXTRA: usize = <F::Noise<()> as Vector<()>>::LEN;
+    const EXTRA: usize = <F::NoiseOf<()> as Vector<()>>::LEN;
 }
 
-impl<F: Family, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Sra1 {
+impl<F: GeneratedModel, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Sra1 {
     fn step(
         &self,
         dt: f64,
@@ -340,11 +338,11 @@ impl<F: Family, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Sra1 {
 #[derive(Clone, Copy)]
 pub(super) struct Dri1;
 
-impl<F: Family> Stepping<F> for Dri1 {
+impl<F: GeneratedModel> Stepping<F> for Dri1 {
     fn new(
-        _: &F::Model<Packed>,
-        _: &F::State<Packed>,
-        _: &F::Input<Packed>,
+        _: &F::With<Packed>,
+        _: &F::StateOf<Packed>,
+        _: &F::InputOf<Packed>,
         _: f64,
     ) -> Result<Self, NoiseError> {
         Ok(Self)
@@ -353,7 +351,7 @@ impl<F: Family> Stepping<F> for Dri1 {
     const EXTRA: usize = 0;
 }
 
-impl<F: Family, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Dri1 {
+impl<F: GeneratedModel, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Dri1 {
     fn step(
         &self,
         dt: f64,

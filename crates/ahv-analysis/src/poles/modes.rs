@@ -1,58 +1,13 @@
 //! Which pole belongs to which mode.
 
-use std::fmt;
-
+use ahv_core::ModeOfMotion;
 use nalgebra::{Complex, DMatrix};
 
 use super::Pole;
 
-/// A mode of a flexible vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// Angle of attack against pitch rate.
-    ShortPeriod,
-    /// Velocity, flight path and altitude against each other; the pair of the three slow poles.
-    Phugoid,
-    /// The third slow pole, for the air thins with altitude.
-    Height,
-    /// A flexible mode, by number.
-    Flexible(u32),
-    /// The coloured noise that stands for a flexible mode, by number.
-    ColouredNoise(u32),
-    /// The gust.
-    Gust,
-}
-
-impl fmt::Display for Mode {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::ShortPeriod => formatter.write_str("short period"),
-            Self::Phugoid => formatter.write_str("phugoid"),
-            Self::Height => formatter.write_str("height"),
-            Self::Flexible(number) => write!(formatter, "flexible {number}"),
-            Self::ColouredNoise(number) => write!(formatter, "coloured noise {number}"),
-            Self::Gust => formatter.write_str("gust"),
-        }
-    }
-}
-
-/// The mode that a state belongs to; the three slow states all count as of the phugoid.
-fn mode_of(state: &str) -> Option<Mode> {
-    let number = |prefix| state.strip_prefix(prefix)?.parse().ok();
-    match state {
-        "alpha" | "pitch_rate" => Some(Mode::ShortPeriod),
-        "velocity" | "gamma" | "altitude" => Some(Mode::Phugoid),
-        "alpha_gust" => Some(Mode::Gust),
-        _ => number("eta_dot_")
-            .or_else(|| number("eta_"))
-            .map(Mode::Flexible)
-            .or_else(|| number("chi_").map(Mode::ColouredNoise)),
-    }
-}
-
 /// A mode with its states, and the poles that it has not been given yet.
 struct Group {
-    mode: Mode,
+    mode: ModeOfMotion,
     states: Vec<usize>,
     free: usize,
 }
@@ -62,6 +17,7 @@ struct Group {
 /// A mode has as many poles as states. Poles, pairs together, go to the mode whose states participate most, the
 /// clearest cases first.
 pub(super) fn named(
+    modes: &[ModeOfMotion],
     states: &[&str],
     values: &[Complex<f64>],
     participation: Option<&DMatrix<f64>>,
@@ -77,7 +33,7 @@ pub(super) fn named(
     let Some(participation) = participation else {
         return poles;
     };
-    let mut groups = groups(states);
+    let mut groups = groups(modes, states);
     let mut cases = Vec::new();
     for (pole, value) in values
         .iter()
@@ -102,46 +58,47 @@ pub(super) fn named(
             continue;
         }
         for root in &mut untold {
-            root.mode = Some(group.mode);
+            root.mode = Some(group.mode.name);
             root.participation = share;
         }
         group.free -= size;
     }
-    tell_height(states, &mut poles);
+    for mode in modes {
+        tell_slowest(mode, &mut poles);
+    }
     poles
 }
 
-fn groups(states: &[&str]) -> Vec<Group> {
-    let mut groups: Vec<Group> = Vec::new();
-    for (state, mode) in states.iter().enumerate() {
-        let Some(mode) = mode_of(mode) else { continue };
-        match groups.iter_mut().find(|group| group.mode == mode) {
-            Some(group) => {
-                group.states.push(state);
-                group.free += 1;
-            }
-            None => groups.push(Group {
-                mode,
-                states: vec![state],
-                free: 1,
-            }),
+/// The modes whose states are among these.
+fn groups(modes: &[ModeOfMotion], states: &[&str]) -> Vec<Group> {
+    let index = |name: &&str| states.iter().position(|state| state == name);
+    let groups = modes.iter().map(|&mode| {
+        let states: Vec<usize> = mode.states.iter().filter_map(index).collect();
+        Group {
+            mode,
+            free: states.len(),
+            states,
         }
-    }
-    groups
+    });
+    groups.collect()
 }
 
-/// Of the three slow poles the real one beside a pair is the height mode; of three real ones that nearest to 0, for the air
-/// thins slowly with altitude.
-fn tell_height(states: &[&str], poles: &mut [Pole]) {
-    if !states.contains(&"altitude") {
-        return;
-    }
+/// Of an odd number of real poles the slowest may have a name of its own: of three slow poles of a vehicle the real one
+/// beside a pair, or of three real ones that nearest to 0, is the height mode, for the air thins slowly with altitude.
+fn tell_slowest(mode: &ModeOfMotion, poles: &mut [Pole]) {
+    let Some(name) = mode.slowest else { return };
     let real = poles
         .iter_mut()
-        .filter(|pole| pole.mode == Some(Mode::Phugoid) && pole.value.im == 0.0);
-    let height = real.min_by(|a, b| a.value.re.abs().total_cmp(&b.value.re.abs()));
-    if let Some(pole) = height {
-        pole.mode = Some(Mode::Height);
+        .filter(|pole| pole.mode == Some(mode.name) && pole.value.im == 0.0);
+    let real: Vec<&mut Pole> = real.collect();
+    if real.len() % 2 == 0 {
+        return;
+    }
+    let slowest = real
+        .into_iter()
+        .min_by(|a, b| a.value.re.abs().total_cmp(&b.value.re.abs()));
+    if let Some(pole) = slowest {
+        pole.mode = Some(name);
     }
 }
 
@@ -156,13 +113,19 @@ mod tests {
         let values = [7.1e-5, 0.013_75, -0.014_37].map(Complex::from);
         let shares = [0.2, 0.3, 0.3, 0.3, 0.1, 0.1, 0.5, 0.6, 0.6];
         let participation = DMatrix::from_row_slice(3, 3, &shares);
+        let phugoid = ModeOfMotion::new(
+            "phugoid",
+            &["velocity", "altitude", "gamma"],
+            Some("height"),
+        );
         let poles = named(
+            &[phugoid],
             &["velocity", "gamma", "altitude"],
             &values,
             Some(&participation),
         );
         let modes: Vec<_> = poles.iter().map(|pole| pole.mode).collect();
-        let [height, phugoid] = [Some(Mode::Height), Some(Mode::Phugoid)];
+        let [height, phugoid] = [Some("height"), Some("phugoid")];
         assert_eq!(modes, [height, phugoid, phugoid]);
     }
 }

@@ -3,7 +3,7 @@
 use ahv_core::{DifferentiableModel, Model, Vector};
 use nalgebra::DVector;
 
-use super::{Point, SteadyFlight, System, Trim, TrimError};
+use super::{Point, SteadyState, System, Trim, TrimError};
 
 /// A change of a trim.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ type Shifts<M> = Option<Vec<Shift<<M as Model>::State, <M as Model>::Input>>>;
 /// [`TrimError::MissingName`] and [`TrimError::NonFinite`], as [`trim`](super::trim).
 pub fn response<M>(
     model: &M,
-    flight: &SteadyFlight<M::Input>,
+    flight: &SteadyState<M::Input>,
     trim: &Trim<M::State, M::Input>,
     changes: &[M::State],
 ) -> Result<Shifts<M>, TrimError>

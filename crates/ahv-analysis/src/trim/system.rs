@@ -1,18 +1,9 @@
 //! The equations of a trim, and their unknowns.
 
-use ahv_core::{Bounds, DifferentiableModel, Real, Vector};
+use ahv_core::{Bounds, DifferentiableModel, Real, TrimProblem, Vector};
 use nalgebra::{DMatrix, DVector};
 
-use super::{Blocking, Nearest, SOUGHT_INPUTS, SteadyFlight, Trim, TrimError};
-
-/// States that are given, not sought.
-const GIVEN_STATES: [&str; 4] = ["velocity", "altitude", "gamma", "pitch_rate"];
-
-/// Rows of the drift that hold by construction.
-const REDUNDANT_ROWS: [&str; 2] = ["altitude", "alpha"];
-
-/// Weight of the flexible rows: where there is no trim, the rigid body is off balance, not the modes.
-const FLEXIBLE: f64 = 1e2;
+use super::{Blocking, Nearest, SteadyState, Trim, TrimError};
 
 /// A state with its input.
 pub(super) struct Point<M: DifferentiableModel<Scalar = f64>> {
@@ -34,65 +25,73 @@ impl<M: DifferentiableModel<Scalar = f64>> Copy for Point<M> {}
 /// different steps compare.
 pub(super) struct System<'a, M> {
     model: &'a M,
+    problem: TrimProblem,
     states: Vec<usize>,
     inputs: Vec<usize>,
-    bounds: [Bounds; 2],
+    /// Names of the inputs.
+    input_names: Vec<&'static str>,
+    bounds: Vec<Bounds>,
     rows: Vec<usize>,
     column_scale: DVector<f64>,
     row_scale: DVector<f64>,
 }
 
 impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
-    pub(super) fn new(model: &'a M, flight: &SteadyFlight<M::Input>) -> Result<Self, TrimError> {
-        let names = M::State::NAMES;
-        let without = |excluded: &[&str]| -> Vec<usize> {
-            (0..names.len())
-                .filter(|&i| !excluded.contains(&names[i]))
-                .collect()
-        };
-        for name in GIVEN_STATES.into_iter().chain(REDUNDANT_ROWS) {
-            M::State::index_of(name).ok_or(TrimError::MissingName { name })?;
+    pub(super) fn new(model: &'a M, flight: &SteadyState<M::Input>) -> Result<Self, TrimError> {
+        let problem = flight.problem;
+        let (mut states, mut inputs) = (Vec::new(), Vec::new());
+        for name in problem.sought.iter().map(|it| it.name) {
+            match (M::State::index_of(name), M::Input::index_of(name)) {
+                (Some(state), _) => states.push(state),
+                (None, Some(input)) => inputs.push(input),
+                (None, None) => return Err(TrimError::MissingName { name }),
+            }
         }
-        let inputs = SOUGHT_INPUTS
-            .into_iter()
-            .map(|name| M::Input::index_of(name).ok_or(TrimError::MissingName { name }))
-            .collect::<Result<Vec<_>, _>>()?;
-        let states = without(&GIVEN_STATES);
-        let sought = states.iter().map(|&i| names[i]).chain(SOUGHT_INPUTS);
-        let column_scale = DVector::from_iterator(states.len() + inputs.len(), sought.map(scale));
-        let rows = without(&REDUNDANT_ROWS);
+        let row = |name| M::State::index_of(name).ok_or(TrimError::MissingName { name });
+        let rows = problem.equations.iter().map(|it| row(it.name));
+        let rows = rows.collect::<Result<Vec<_>, _>>()?;
+        let scales = problem.sought.iter().map(|it| it.scale);
         let mut system = Self {
             model,
             states,
             inputs,
-            bounds: flight.bounds,
+            input_names: flight.sought_inputs().collect(),
+            bounds: flight.bounds.clone(),
             row_scale: DVector::from_element(rows.len(), 1.0),
             rows,
-            column_scale,
+            column_scale: DVector::from_iterator(problem.sought.len(), scales),
+            problem,
         };
-        system.row_scale = row_scale(&system.jacobian(&system.start(flight)?));
-        let row = |name| system.rows.iter().position(|&row| names[row] == name);
-        let rigid = ["velocity", "gamma", "pitch_rate"].map(row);
-        for (index, scale) in system.row_scale.iter_mut().enumerate() {
-            if !rigid.contains(&Some(index)) {
-                *scale *= FLEXIBLE;
-            }
-        }
-        // Accelerations along and across the path weigh alike: V̇ as V γ̇.
-        if let [Some(along), Some(across), _] = rigid {
-            system.row_scale[along] = system.row_scale[across] / flight.velocity;
-        }
+        let start = system.start(flight)?;
+        system.row_scale = row_scale(&system.jacobian(&start));
+        system.weigh(&start);
         Ok(system)
     }
 
+    /// Gives the rows their weights: first those that have a scale of their own.
+    fn weigh(&mut self, start: &Point<M>) {
+        let equations = self.problem.equations;
+        for (scale, equation) in self.row_scale.iter_mut().zip(equations) {
+            *scale *= equation.weight;
+        }
+        for (index, equation) in equations.iter().enumerate() {
+            let Some((row, state)) = equation.like else {
+                continue;
+            };
+            let other = equations.iter().position(|it| it.name == row);
+            let value = M::State::index_of(state).and_then(|index| start.x.get(index));
+            if let (Some(other), Some(value)) = (other, value) {
+                self.row_scale[index] = equation.weight * self.row_scale[other] / value;
+            }
+        }
+    }
+
     /// Where the search starts, if the drift is finite there.
-    pub(super) fn start(&self, flight: &SteadyFlight<M::Input>) -> Result<Point<M>, TrimError> {
+    pub(super) fn start(&self, flight: &SteadyState<M::Input>) -> Result<Point<M>, TrimError> {
         let mut x = M::State::splat(0.0);
-        for (name, value) in [
-            ("velocity", flight.velocity),
-            ("altitude", flight.altitude),
-            ("gamma", flight.gamma),
-        ] {
+        let sought = self.problem.sought.iter().map(|it| (it.name, it.start));
+        let is_state = |(name, _): &(&str, f64)| M::State::index_of(name).is_some();
+        for (name, value) in sought.filter(is_state).chain(flight.given()) {
             M::State::index_of(name)
                 .and_then(|index| x.set(index, value))
                 .ok_or(TrimError::MissingName { name })?;
@@ -146,9 +145,16 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
         Some(Point { x, u })
     }
 
-    /// Values of [`SOUGHT_INPUTS`].
-    pub(super) fn sought_inputs(&self, point: &Point<M>) -> [f64; 2] {
-        std::array::from_fn(|i| point.u.get(self.inputs[i]).unwrap_or(0.0))
+    /// Values of the sought inputs.
+    pub(super) fn sought_inputs(&self, point: &Point<M>) -> Vec<f64> {
+        let value = |&index: &usize| point.u.get(index).unwrap_or(0.0);
+        self.inputs.iter().map(value).collect()
+    }
+
+    /// The sought inputs by name.
+    pub(super) fn named_inputs(&self, point: &Point<M>) -> Vec<(&'static str, f64)> {
+        let names = self.input_names.iter().copied();
+        names.zip(self.sought_inputs(point)).collect()
     }
 
     /// Whether the sought inputs lie inside their bounds.
@@ -160,8 +166,8 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
     /// The bounds outside which the sought inputs lie.
     pub(super) fn violated(&self, point: &Point<M>) -> Vec<Blocking> {
         let values = self.sought_inputs(point);
-        let inputs = SOUGHT_INPUTS.into_iter().zip(values).zip(&self.bounds);
-        let violated = inputs.filter_map(|((input, value), bounds)| {
+        let inputs = self.input_names.iter().zip(values).zip(&self.bounds);
+        let violated = inputs.filter_map(|((&input, value), bounds)| {
             let upper = value > bounds.max;
             let bound = if upper { bounds.max } else { bounds.min };
             (upper || value < bounds.min).then_some(Blocking {
@@ -187,8 +193,8 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
     /// For each unknown the bound that stops a descent along minus `gradient`.
     pub(super) fn stops(&self, point: &Point<M>, gradient: &DVector<f64>) -> Vec<Option<Blocking>> {
         let values = self.sought_inputs(point);
-        let inputs = SOUGHT_INPUTS.into_iter().zip(values).zip(&self.bounds);
-        let of_inputs = inputs.enumerate().map(|(i, ((input, value), bounds))| {
+        let inputs = self.input_names.iter().zip(values).zip(&self.bounds);
+        let of_inputs = inputs.enumerate().map(|(i, ((&input, value), bounds))| {
             let slope = gradient[self.states.len() + i];
             let (bound, upper) = match slope {
                 _ if slope < 0.0 && value >= bounds.max => (bounds.max, true),
@@ -235,27 +241,17 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
         }
     }
 
-    /// The drift, of `altitude` less V sin γ.
+    /// The drift, 0 for the states that move.
     fn residuals(&self, point: &Point<M>) -> M::State {
-        let mut drift = self.model.drift(&point.x, &point.u);
-        let state = |name| M::State::index_of(name).and_then(|index| point.x.get(index));
-        if let (Some(index), Some(velocity), Some(gamma)) = (
-            M::State::index_of("altitude"),
-            state("velocity"),
-            state("gamma"),
-        ) {
-            let climb = velocity * Real::sin(gamma);
-            drift.set(index, drift.get(index).unwrap_or(0.0) - climb);
-        }
-        drift
-    }
-}
-
-/// Natural size of an unknown: a step of 1 in scaled terms.
-fn scale(name: &str) -> f64 {
-    match name {
-        "alpha" | "delta_e" | "phi" => 0.1,
-        _ => 1.0,
+        let drift = self.model.drift(&point.x, &point.u);
+        let moves = |index: usize| {
+            let name = M::State::NAMES.get(index);
+            name.is_some_and(|name| self.problem.moving.contains(name))
+        };
+        M::State::from_fn(|index| match drift.get(index) {
+            Some(rate) if !moves(index) => rate,
+            _ => 0.0,
+        })
     }
 }
 

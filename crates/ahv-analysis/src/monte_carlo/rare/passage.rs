@@ -2,12 +2,12 @@
 
 use std::sync::atomic::Ordering;
 
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 
 use super::super::arithmetic::Called;
 use super::super::batch::{Batch, Member, NEVER};
 use super::super::experiment::Control;
-use super::super::family::{Family, LANES, Packed};
+use super::super::lanes::{LANES, Packed};
 use super::super::scheme::Steps;
 
 /// Steps between two looks at whether members still have to fly.
@@ -15,7 +15,7 @@ const STRETCH: u64 = 16;
 
 /// A member on its way.
 #[derive(Clone, Copy)]
-pub struct Particle<F: Family> {
+pub struct Particle<F: GeneratedModel> {
     /// Number of the member whose noise it has from here on.
     pub(in super::super) member: u64,
     /// Number of the member whose parameters it has.
@@ -23,9 +23,9 @@ pub struct Particle<F: Family> {
     /// Steps since the start.
     pub(in super::super) step: u64,
     /// State.
-    pub(in super::super) x: F::State<f64>,
+    pub(in super::super) x: F::StateOf<f64>,
     /// Input.
-    pub(in super::super) u: F::Input<f64>,
+    pub(in super::super) u: F::InputOf<f64>,
 }
 
 /// A level of a state, passed where `sign` times the state is beyond `height`.
@@ -41,7 +41,7 @@ pub struct Goal {
 
 /// What became of a member.
 #[derive(Clone, Copy)]
-pub struct Passed<F: Family> {
+pub struct Passed<F: GeneratedModel> {
     /// Greatest height until it passed the goal, was lost, or time was over.
     pub(super) most: f64,
     /// Where it passed the goal.
@@ -53,21 +53,26 @@ pub struct Passed<F: Family> {
 }
 
 /// Where the lanes of a batch pass a goal.
-pub(in super::super) struct Passage<F: Family> {
+pub(in super::super) struct Passage<F: GeneratedModel> {
     goal: Goal,
     /// Step from which on nothing is looked for: time is over, or the lane is done.
     until: [u64; LANES],
     most: [f64; LANES],
     /// Steps after which the goal was passed, with state and input.
     step: [u64; LANES],
-    x: F::State<Packed>,
-    u: F::Input<Packed>,
+    x: F::StateOf<Packed>,
+    u: F::InputOf<Packed>,
 }
 
-impl<F: Family> Passage<F> {
+impl<F: GeneratedModel> Passage<F> {
     /// Looks at the states after `step` steps. Not inlined, so that flights without a goal step as if there were none.
     #[inline(never)]
-    pub(in super::super) fn look(&mut self, x: &F::State<Packed>, u: &F::Input<Packed>, step: u64) {
+    pub(in super::super) fn look(
+        &mut self,
+        x: &F::StateOf<Packed>,
+        u: &F::InputOf<Packed>,
+        step: u64,
+    ) {
         let Some(values) = x.get(self.goal.state) else {
             return;
         };
@@ -111,7 +116,7 @@ pub(in super::super) fn pass<F, S, A, E>(
     control: &Control,
 ) -> Option<Vec<Passed<F>>>
 where
-    F: Family,
+    F: GeneratedModel,
     A: Member<F>,
     E: Member<F>,
     S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,

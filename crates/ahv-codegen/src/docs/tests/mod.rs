@@ -76,7 +76,7 @@ const IR: &str = r#"{
       {"name": "H_V", "group": "strict_feedback", "doc": "Total derivative", "equation": "(2)", "outputs": [{"name": "", "basis": [], "unit": "1", "entries": [{"at": [], "expr": ["*", "x.speed", "d_c_l_d_angle"]}]}]},
       {"name": "delta_f_V", "group": "strict_feedback", "doc": "Difference", "equation": "(2)", "outputs": [{"name": "", "basis": [], "unit": "ft/s^2", "entries": [{"at": [], "expr": ["*", "p.slaving", "x.speed", ["sin", "x.angle"]]}]}]}],
     "noise": {"columns": [{"name": "w_1", "class": "diagonal"}, {"name": "w_2", "class": "constant"}], "commuting": []},
-    "note": null, "trim": {"given": [], "sought": [], "equations": [], "moving": []}, "modes": [],
+    "note": null, "trim": {"given": [], "sought": [], "equations": [], "moving": [], "shown": []}, "modes": [],
     "defaults": {"inputs": [], "outputs": []}, "deviations": {}
   }],
   "rules": []

@@ -1,0 +1,154 @@
+//! Exact derivatives of generated functions, by numbers that carry a slope.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use ahv_core::{GeneratedModel, Real, Vector};
+
+/// A number with its derivative by one variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual {
+    /// The number.
+    pub value: f64,
+    /// Its derivative.
+    pub slope: f64,
+}
+
+impl Dual {
+    /// A constant.
+    pub const fn constant(value: f64) -> Self {
+        Self { value, slope: 0.0 }
+    }
+
+    /// A function of this number, from its value and its derivative.
+    const fn through(self, value: f64, derivative: f64) -> Self {
+        Self {
+            value,
+            slope: derivative * self.slope,
+        }
+    }
+}
+
+impl Add for Dual {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            slope: self.slope + other.slope,
+        }
+    }
+}
+
+impl Sub for Dual {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Dual {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            slope: self.slope * other.value + self.value * other.slope,
+        }
+    }
+}
+
+impl Div for Dual {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self {
+            value,
+            slope: (self.slope - value * other.slope) / other.value,
+        }
+    }
+}
+
+impl Neg for Dual {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        self.through(-self.value, -1.0)
+    }
+}
+
+impl Real for Dual {
+    const ZERO: Self = Self::constant(0.0);
+    const ONE: Self = Self::constant(1.0);
+    const TWO: Self = Self::constant(2.0);
+    const HALF: Self = Self::constant(0.5);
+
+    fn from_f64(value: f64) -> Self {
+        Self::constant(value)
+    }
+
+    fn to_f64(self) -> f64 {
+        self.value
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = Real::sin_cos(self.value);
+        (self.through(sin, cos), self.through(cos, -sin))
+    }
+
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    fn exp(self) -> Self {
+        let value = Real::exp(self.value);
+        self.through(value, value)
+    }
+
+    fn sqrt(self) -> Self {
+        let value = Real::sqrt(self.value);
+        self.through(value, 0.5 / value)
+    }
+
+    fn recip(self) -> Self {
+        Self::ONE / self
+    }
+
+    fn abs(self) -> Self {
+        self.through(self.value.abs(), self.value.signum())
+    }
+
+    fn is_finite(self) -> bool {
+        self.value.is_finite() && self.slope.is_finite()
+    }
+}
+
+/// The derivatives of the outputs of `model` at (x, u) by each state, then by each input: a vector over the outputs each.
+pub fn output_slopes<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
+    x: &M::State,
+    u: &M::Input,
+) -> Vec<M::OutputsOf<f64>> {
+    let model = M::generic(&M::map_parameters(parameters, |&it| Dual::constant(it)));
+    let states = <M::State as Vector<f64>>::LEN;
+    let slopes = (0..states + <M::Input as Vector<f64>>::LEN).map(|variable| {
+        let mut x = M::map_state(x, |&it| Dual::constant(it));
+        let mut u = M::map_input(u, |&it| Dual::constant(it));
+        let seeded = |it: Dual| Dual { slope: 1.0, ..it };
+        match variable.checked_sub(states) {
+            None => x
+                .get(variable)
+                .map(seeded)
+                .and_then(|it| x.set(variable, it)),
+            Some(input) => u.get(input).map(seeded).and_then(|it| u.set(input, it)),
+        };
+        let outputs = M::outputs(&model, &x, &u);
+        M::OutputsOf::<f64>::from_fn(|index| outputs.get(index).map_or(0.0, |it| it.slope))
+    });
+    slopes.collect()
+}
