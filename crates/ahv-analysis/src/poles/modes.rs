@@ -91,7 +91,7 @@ fn tell_slowest(mode: &ModeOfMotion, poles: &mut [Pole]) {
         .iter_mut()
         .filter(|pole| pole.mode == Some(mode.name) && pole.value.im == 0.0);
     let real: Vec<&mut Pole> = real.collect();
-    if real.len() % 2 == 0 {
+    if real.len().is_multiple_of(2) {
         return;
     }
     let slowest = real
