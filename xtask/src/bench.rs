@@ -27,7 +27,7 @@ pub(crate) fn run(peers: bool) -> Result<(), String> {
         .env("RUSTFLAGS", "");
     bench.arg("--out").arg(shell::target().join("bench"));
     if peers {
-        let build = ["build", "--quiet", "--release", "--package", "ahv-cli"];
+        let build = ["build", "--quiet", "--release", "--package", "ahv"];
         shell::run(shell::cargo().args(build))?;
         bench
             .arg("--peers")

@@ -175,7 +175,7 @@ fn build() -> Result<PathBuf, String> {
     cargo.args([
         "build",
         "--package",
-        "ahv-cli",
+        "ahv",
         "--bin",
         "ahv",
         "--no-default-features",
