@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from ahv_generator import ir, models, units
+from ahv_generator import table as table_module
 from ahv_generator.__main__ import main
 from ahv_generator.diagnostics import TableError
 from ahv_generator.family import builders, families
@@ -277,3 +279,20 @@ def test_traits_that_do_not_fit_a_model_are_told(traits: Traits, fault: str) -> 
 def test_traits_that_fit_have_no_fault() -> None:
     trim = Trim((Given("a", 0.0),), (Sought("u"),), (Equation("b", like=None),), ("a",))
     assert Traits(trim, (Mode("one", ("a", "b")),), ("u",), ("a",), {"a": 1.0}).faults(("a", "b"), ("u",)) == []
+
+
+def test_two_coefficients_of_one_name_are_told(tmp_path: Path, pendulum: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A family of variables such as `rate` and `rate_3` has tables in which names in the code meet."""
+    family = next(f for f in families() if "pendulum" in f.models)
+    schema = family.schema(("pendulum",), {})
+    third = replace(schema.variables[0], name="rate_3")
+    (fit,) = schema.quantities
+    fit = replace(fit, variables=("rate", "rate_3"))
+    wide = replace(schema, variables=(*schema.variables, third), quantities=(fit,))
+    monkeypatch.setattr(table_module, "families", lambda: (replace(family, schema=lambda *_: wide),))
+    text = pendulum.read_text(encoding="utf-8") + '[C_F."rate_3"]\nvalue = 1.0\nunit = "slug*ft^2/s/rad"\n'
+    with pytest.raises(TableError) as caught:
+        load_text(tmp_path / "pendulum.toml", text)
+    (fault,) = caught.value.diagnostics
+    assert (fault.rule, fault.path) == ("duplicate-name", ("C_F", "rate_3"))
+    assert "`rate_3` in `C_F` and `rate^3` in `C_F` would both be called `c_f_rate_3`" in fault.message

@@ -21,8 +21,8 @@ from symforce.codegen import CppConfig  # noqa: E402
 from symforce.codegen.codegen_util import print_code  # noqa: E402
 from symforce.values import Values  # noqa: E402
 
-from ahv_generator.model import Model  # noqa: E402
 from ahv_generator.family import builders  # noqa: E402
+from ahv_generator.model import Model  # noqa: E402
 from ahv_generator.table import load  # noqa: E402
 from formulation import Algebra, Formulation, leaves  # noqa: E402
 

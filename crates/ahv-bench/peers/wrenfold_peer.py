@@ -14,8 +14,8 @@ from pathlib import Path
 from wrenfold import FunctionDescription, RustGenerator, sym, transpile
 from wrenfold.type_info import MatrixType
 
-from ahv_generator.model import Model
 from ahv_generator.family import builders
+from ahv_generator.model import Model
 from ahv_generator.table import load
 from formulation import Algebra, Formulation, leaves
 
