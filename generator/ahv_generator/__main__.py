@@ -16,7 +16,7 @@ from pathlib import Path
 
 from . import audit, ir, reference
 from .diagnostics import Diagnostic, TableError
-from .models import BUILDERS
+from .family import builders
 from .table import load
 
 
@@ -29,7 +29,7 @@ def main() -> int:
     derive.add_argument("tables", type=Path, nargs="+")
     evaluate = commands.add_parser("evaluate", help="evaluate a model at the points of an oracle file")
     evaluate.add_argument("--table", type=Path, required=True)
-    evaluate.add_argument("--model", choices=tuple(BUILDERS), required=True)
+    evaluate.add_argument("--model", choices=tuple(builders()), required=True)
     evaluate.add_argument("--points", type=Path, required=True, help="file of reference vectors")
     evaluate.add_argument("--out", type=Path, required=True)
     arguments = parser.parse_args()
@@ -37,7 +37,7 @@ def main() -> int:
         if arguments.command == "derive":
             _derive(arguments.tables, arguments.out)
         else:
-            model = BUILDERS[arguments.model](load(arguments.table))
+            model = builders()[arguments.model](load(arguments.table))
             reference.write(model, arguments.points, arguments.out)
     except TableError as error:
         print(json.dumps({"diagnostics": [d.as_json() for d in error.diagnostics]}))
@@ -62,7 +62,7 @@ def _escaped(error: Exception) -> str:
 
 def _derive(tables: list[Path], out: Path) -> None:
     texts: dict[str, str] = {}
-    printed = False
+    audited = False
     diagnostics: list[Diagnostic] = []
     for path in tables:
         try:
@@ -70,18 +70,19 @@ def _derive(tables: list[Path], out: Path) -> None:
         except TableError as error:
             diagnostics += error.diagnostics
             continue
-        printed = printed or "sdcom_printed" in table.models
         try:
-            texts[table.name] = ir.render(table, [BUILDERS[name](table) for name in table.models])
+            models = table.build()
+            texts[table.name] = ir.render(table, models)
+            audited = audited or any(model.traits.audited for model in models)
         except (MemoryError, OSError):
             raise
         except Exception as error:
             # What the checks of a table let through is a fault of that table all the same.
             message = f"the models cannot be derived from this table: {_escaped(error)}"
-            diagnostics.append(Diagnostic(path.name, ("table", "models"), "value", message))
+            diagnostics.append(Diagnostic("derivation", path.name, ("table", "models"), "value", message))
     if diagnostics:
         raise TableError(diagnostics)
-    if printed:
+    if audited:
         texts["audit"] = audit.render()
     for name, text in texts.items():
         (out / f"{name}.json").write_text(text, encoding="utf-8", newline="\n")

@@ -21,8 +21,9 @@ def _visible(text: str) -> str:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One fault: where it stands (file, key path, key or value), what is wrong, what to do."""
+    """One fault: the rule that is broken, where (file, key path, key or value), what is wrong, what to do."""
 
+    rule: str
     file: str
     path: tuple[str, ...]
     part: str
@@ -32,6 +33,7 @@ class Diagnostic:
     def as_json(self) -> dict[str, object]:
         """The diagnostic as the driver reads it."""
         return {
+            "rule": self.rule,
             "file": self.file,
             "path": list(self.path),
             "part": self.part,
@@ -55,13 +57,13 @@ class Faults:
     file: str
     found: list[Diagnostic] = field(default_factory=list)
 
-    def key(self, path: Iterable[str], message: str, help: str | None = None) -> None:
+    def key(self, rule: str, path: Iterable[str], message: str, help: str | None = None) -> None:
         """Record a fault of the key at `path`."""
-        self.found.append(Diagnostic(self.file, tuple(path), "key", message, help))
+        self.found.append(Diagnostic(rule, self.file, tuple(path), "key", message, help))
 
-    def value(self, path: Iterable[str], message: str, help: str | None = None) -> None:
+    def value(self, rule: str, path: Iterable[str], message: str, help: str | None = None) -> None:
         """Record a fault of the value at `path`."""
-        self.found.append(Diagnostic(self.file, tuple(path), "value", message, help))
+        self.found.append(Diagnostic(rule, self.file, tuple(path), "value", message, help))
 
     def raise_any(self) -> None:
         """Raise `TableError` when a fault was recorded."""

@@ -37,7 +37,7 @@ def render(table: Table, models: list[Model]) -> str:
         "parameters": [_Line(_parameter(p)) for p in table.parameters],
         "validity": [
             _Line({"name": v.name, "symbol": v.symbol, "unit": units.converted(v.unit, table.units), "doc": v.doc})
-            for v in table.validity
+            for v in table.schema.validity
         ],
         "rules": [_Line(_rule(r)) for r in table.schema.rules()],
         "models": [_model(m) for m in models],
@@ -80,7 +80,7 @@ def _choice(choice: Choice) -> dict[str, object]:
 def _units(table: Table, models: list[Model]) -> dict[str, object]:
     """Every unit of the document, with what it is in the other system."""
     other = units.other(table.units)
-    used = {p.unit for p in table.parameters} | {units.converted(v.unit, table.units) for v in table.validity}
+    used = {p.unit for p in table.parameters} | {units.converted(v.unit, table.units) for v in table.schema.validity}
     for m in models:
         used |= {m.unit(v.name) for basis in m.bases.values() for v in basis}
         used |= {q.unit for q in m.graph.quantities.values()}

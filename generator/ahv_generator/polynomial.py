@@ -11,7 +11,7 @@ import casadi as ca
 
 from .diagnostics import shortened
 
-_FACTOR = re.compile(r"([A-Za-z]\w*)(?:\^([1-9]))?")
+_FACTOR = re.compile(r"([A-Za-z]\w*)(?:\^([1-9][0-9]*))?")
 # Of a monomial; derivatives multiply its variables by others.
 HIGHEST_DEGREE = 9
 
@@ -19,11 +19,12 @@ Powers = tuple[tuple[str, int], ...]
 
 
 class MonomialError(Exception):
-    """A key that is not a monomial; `word` is the variable at fault where there is one."""
+    """A key that is not a monomial; `word` is the variable at fault where there is one, else `advice` may help."""
 
-    def __init__(self, message: str, word: str | None = None) -> None:
+    def __init__(self, message: str, word: str | None = None, advice: str | None = None) -> None:
         super().__init__(message)
         self.word = word
+        self.advice = advice
 
 
 def parse_monomial(key: str, allowed: Iterable[str]) -> Powers:
@@ -40,14 +41,16 @@ def parse_monomial(key: str, allowed: Iterable[str]) -> Powers:
         match = _FACTOR.fullmatch(part.strip(" "))
         if match is None:
             message = f"`{shortened(key)}` is not a monomial; write it like `alpha`, `alpha^2` or `phi*alpha^3`"
-            raise MonomialError(message)
+            raise MonomialError(message, advice="the key of the constant part is `1`" if key == "0" else None)
         name = match[1]
         if name not in order:
             raise MonomialError(f"`{shortened(name)}` is not a variable of this quantity", name)
-        powers[name] = powers.get(name, 0) + int(match[2] or 1)
+        # Of a number with many digits its size is enough.
+        powers[name] = powers.get(name, 0) + int((match[2] or "1")[:4])
     degree = sum(powers.values())
     if degree > HIGHEST_DEGREE:
-        raise MonomialError(f"`{shortened(key)}` is of degree {degree}; the highest is {HIGHEST_DEGREE}")
+        shown = degree if degree < 1000 else "1000 or more"
+        raise MonomialError(f"`{shortened(key)}` is of degree {shown}; the highest is {HIGHEST_DEGREE}")
     return tuple((name, powers[name]) for name in order if name in powers)
 
 

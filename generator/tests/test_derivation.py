@@ -18,7 +18,7 @@ from ahv_generator import audit, ir
 from ahv_generator.__main__ import main
 from ahv_generator.diagnostics import TableError
 from ahv_generator.expression import ExpressionError
-from ahv_generator.models import BUILDERS
+from ahv_generator.family import builders
 from ahv_generator.reference import columns, expanded, labels
 from ahv_generator.table import load
 from ahv_oracle import Oracle, sample
@@ -90,7 +90,7 @@ def test_a_monomial_of_the_highest_degree_has_all_its_derivatives(tmp_path: Path
     monomial = '"alpha^5*delta_e^4" = { value = 1.0, unit = "1/rad^9" }'
     path.write_text(re.sub(r"(?m)^(\[C_[LDM]\])$", rf"\1\n{monomial}", text), encoding="utf-8")
     table = load(path)
-    text = ir.render(table, [BUILDERS[name](table) for name in table.models])
+    text = ir.render(table, table.build())
     assert "c_m_alpha_5_delta_e_4" in text
 
 
@@ -101,15 +101,15 @@ def test_a_value_does_not_reach_the_ir(tmp_path: Path) -> None:
 
     def render(path: Path) -> str:
         table = load(path)
-        return ir.render(table, [BUILDERS[name](table) for name in table.models])
+        return ir.render(table, table.build())
 
     assert render(changed) == render(TABLES / "dcom.toml")
 
 
-@pytest.mark.parametrize("name", BUILDERS)
+@pytest.mark.parametrize("name", builders())
 def test_casadi_agrees_with_the_oracle(name: str) -> None:
     path = TABLES / f"{TABLE_OF[name]}.toml"
-    model = BUILDERS[name](load(path))
+    model = builders()[name](load(path))
     oracle = Oracle(path, name)
     function, order, outputs = expanded(model), columns(model), labels(model)
     assert set(outputs) <= set(oracle.labels), set(outputs) - set(oracle.labels)
@@ -136,7 +136,7 @@ def test_new_monomials_reach_the_split(tmp_path: Path) -> None:
     )
     path = tmp_path / "dcom.toml"
     path.write_text(text.replace("[C_M]\n", extra), encoding="utf-8")
-    model = BUILDERS["sdcom"](load(path))
+    model = builders()["sdcom"](load(path))
     oracle = Oracle(path, "sdcom")
     function, order, outputs = expanded(model), columns(model), labels(model)
     for index in range(20):
@@ -150,7 +150,7 @@ def test_new_monomials_reach_the_split(tmp_path: Path) -> None:
 
 
 def test_a_wrong_unit_in_the_derivation_is_refused() -> None:
-    model = BUILDERS["com"](load(TABLES / "com.toml"))
+    model = builders()["com"](load(TABLES / "com.toml"))
     with pytest.raises(ExpressionError, match="declared in"):
         model.graph.define("wrong", model["lift"] * 2, symbol="", unit="ft/s", doc="", equation="", section="")
     with pytest.raises(ExpressionError, match="unlike dimensions"):
@@ -172,7 +172,7 @@ def test_a_polynomial_may_have_many_terms(tmp_path: Path) -> None:
     path.write_text(text.replace("[C_M]\n", f"[C_M]\n{entries}"), encoding="utf-8")
     table = load(path)
     assert len(table.polynomials["C_M"].terms) > 60
-    text = ir.render(table, [BUILDERS[name](table) for name in table.models])
+    text = ir.render(table, table.build())
     depth = deepest = 0
     for character in text:
         depth += (character in "[{") - (character in "]}")

@@ -12,7 +12,7 @@ import casadi as ca
 import pytest
 
 from ahv_generator import ir, units
-from ahv_generator.models import BUILDERS
+from ahv_generator.family import builders
 from ahv_generator.reference import columns, expanded, labels
 from ahv_generator.table import Table, load
 
@@ -104,7 +104,7 @@ def loaded_in_si(tmp_path: Path, name: str) -> Table:
 
 
 def rendered(table: Table) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads(ir.render(table, [BUILDERS[name](table) for name in table.models]))
+    document: dict[str, Any] = json.loads(ir.render(table, table.build()))
     return document
 
 
@@ -122,12 +122,28 @@ def unit_texts(node: object) -> list[str]:
     return found
 
 
+def numbers_of(model: dict[str, Any], factors: dict[str, float]) -> dict[str, float]:
+    """The numbers of a model's trim and deviations times a factor for each variable; they are taken out of it."""
+    found = {f"deviation of {name}": size * factors[name] for name, size in model.pop("deviations").items()}
+    for kind in ("given", "sought"):
+        for line in model["trim"][kind]:
+            for key in set(line) - {"name"}:
+                number = line.pop(key)
+                if number is not None:
+                    found[f"{key} of {line['name']}"] = number * factors[line["name"]]
+    return found
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_a_table_in_si_derives_to_the_same_but_for_units(tmp_path: Path, name: str) -> None:
     imperial, si = rendered(load(TABLES / f"{name}.toml")), rendered(loaded_in_si(tmp_path, name))
     assert (imperial["units"]["system"], imperial["units"]["other"]) == (units.IMPERIAL, units.SI)
     assert (si["units"]["system"], si["units"]["other"]) == (units.SI, units.IMPERIAL)
     blocks = (imperial.pop("units"), si.pop("units"))
+    for ours, theirs in zip(imperial["models"], si["models"], strict=True):
+        units_of = {v["name"]: v["unit"] for basis in ("state", "input") for v in ours["bases"][basis]}
+        expected = numbers_of(ours, {name: units.conversion(unit, units.SI) for name, unit in units_of.items()})
+        assert numbers_of(theirs, dict.fromkeys(units_of, 1.0)) == pytest.approx(expected, rel=1e-15)
     found = [unit_texts(document) for document in (imperial, si)]
     assert imperial == si
     assert len(found[0]) == len(found[1])
@@ -160,7 +176,7 @@ PREFIXES = {"state": "x", "input": "u", "noise": "w", "parameter": "p", "argumen
 def results(path: Path, name: str) -> dict[str, float]:
     """The functions of a model at the point above, in the units of the table."""
     table = load(path)
-    model = BUILDERS[name](table)
+    model = builders()[name](table)
     document = tomllib.loads(path.read_text(encoding="utf-8"))
     values = {f"p.{p.name}": float(document[p.path[0]][p.path[1]]["value"]) for p in table.parameters if p.unit != "1"}
     arguments = []
@@ -181,7 +197,7 @@ def test_the_rates_of_a_table_in_si_are_those_in_si(tmp_path: Path, table: str, 
     loaded_in_si(tmp_path, table)
     theirs = results(tmp_path / f"{table}.toml", name)
     assert list(ours) == list(theirs)
-    model = BUILDERS[name](load(source))
+    model = builders()[name](load(source))
     for row, variable in zip(model.names("state"), model.bases["state"], strict=True):
         factor = units.conversion(variable.unit, units.SI)
         assert theirs[f"drift.{row}"] == pytest.approx(ours[f"drift.{row}"] * factor, rel=1e-11, abs=1e-11), row

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import casadi as ca
 
 from ..derivatives import add_drift_and_derivatives, add_lie_derivatives
+from ..family import Family
 from ..model import Model
-from ..schema import DELTA_E, FLEXIBLE, PHI, RIGID_STATE
+from ..schema import POSITIVE, ParameterSpec, QuantitySpec, Rule, Schema
 from ..table import Table
-from .dcom import define_modal_acceleration, modal_load, modal_state
+from .flexible import (
+    ETA,
+    ETA_DOT,
+    FLEXIBLE,
+    FORCE,
+    define_modal_acceleration,
+    modal_load,
+    modal_parameters,
+    modal_state,
+    modes_of,
+    structural_modes,
+)
+from .flight import DELTA_E, EARTH, ENVIRONMENT, PHI, RIGID_STATE, VEHICLE, vehicle_traits
 from .vehicle import (
     FORCES,
     add_outlooks,
@@ -20,7 +35,6 @@ from .vehicle import (
     define_pitch_acceleration,
     define_polynomial,
     define_rigid_rates,
-    vehicle_traits,
 )
 
 INPUT = (PHI, DELTA_E)
@@ -30,19 +44,20 @@ def build_com_rigid(table: Table) -> Model:
     """The rigid control-oriented model."""
     bases = {"state": RIGID_STATE, "input": INPUT}
     title = "control-oriented model, rigid body"
-    m = Model("com_rigid", title, "(1)-(3)", table, bases, vehicle_traits(bases))
+    m = Model("com_rigid", title, "(1)-(3)", table, bases, vehicle_traits())
     return _finished(m, define_rigid_rates(m, _define_forces(m)))
 
 
 def build_com(table: Table) -> Model:
     """The control-oriented model with a forebody and an aftbody clamped at the centre of mass."""
-    bases = {"state": RIGID_STATE + modal_state(table.schema.modes), "input": INPUT}
+    modes = modes_of(table)
+    bases = {"state": RIGID_STATE + modal_state(modes), "input": INPUT}
     title = "control-oriented model, forebody and aftbody flexible"
-    m = Model("com", title, "(1)-(3)", table, bases, vehicle_traits(bases))
+    m = Model("com", title, "(1)-(3)", table, bases, vehicle_traits(*structural_modes(modes)))
     turn = _define_forces(m)
     variables = {name: m[name] for name in ("alpha", "delta_e")}
     loads = {}
-    for i in range(1, table.schema.modes + 1):
+    for i in modes:
         spec = next(spec for spec in table.schema.quantities if spec.key == f"N_{i}")
         polynomial = table.polynomials[spec.key]
         force = define_polynomial(m, spec, f"generalized_force_{i}", spec.doc, variables, polynomial, "(2)")
@@ -76,7 +91,7 @@ def _define_load(m: Model, i: int, force: ca.SX) -> ca.SX:
         f"modal_load_{i}",
         modal_load(m, i, force),
         symbol=f"r_{i}",
-        unit=f"{FLEXIBLE}/s^2",
+        unit=FORCE,
         doc=f"generalized force of mode {i} less damping and stiffness",
         equation="(1)",
         section="Flexible modes",
@@ -132,3 +147,38 @@ def _finished(m: Model, rates: dict[str, ca.SX], *flexible: str) -> Model:
     add_outlooks(m, *flexible, fits=("c_l", "c_d", "c_m"), forces=FORCES)
     add_lie_derivatives(m, rates, "(1)")
     return m
+
+
+def _schema(models: tuple[str, ...], _document: Mapping[str, object]) -> Schema:
+    """Thrust is fitted in lb/ft; there are two cantilever modes, unless the rigid body alone is wanted."""
+    aero = ("alpha", "delta_e")
+    count = 2 if "com" in models else 0
+    modes = range(1, count + 1)
+    couplings = tuple(
+        ParameterSpec(f"psi_{i}", rf"\psi_{i}", FLEXIBLE, f"inertial coupling of mode {i} with the pitch rate")
+        for i in modes
+    )
+    mass_matrix = Rule(
+        "mass-matrix",
+        ((1.0, ("i_yy",)), *((-1.0, (psi.name, psi.name)) for psi in couplings)),
+        POSITIVE,
+        "`I_yy` must exceed the sum of the squares of `psi_i`: no mass matrix is like this",
+    )
+    flexible = {"modes": (*modal_parameters(count), *couplings)} if modes else {}
+    return Schema(
+        parameters={"vehicle": VEHICLE, "environment": ENVIRONMENT} | flexible,
+        validity=(*RIGID_STATE, *((ETA, ETA_DOT) if modes else ()), PHI, DELTA_E),
+        choices=(EARTH,),
+        quantities=(
+            QuantitySpec("T", "T", "lb/ft", "thrust", ("phi", "alpha")),
+            QuantitySpec("C_L", "C_L", "1", "lift coefficient", aero),
+            QuantitySpec("C_D", "C_D", "1", "drag coefficient", aero),
+            QuantitySpec("C_M", "C_M", "1", "pitching-moment coefficient", aero),
+            *(QuantitySpec(f"N_{i}", f"N_{i}", FORCE, f"generalized force of mode {i}", aero) for i in modes),
+        ),
+        variables=(*RIGID_STATE, PHI, DELTA_E),
+        laws=(mass_matrix,) if modes else (),
+    )
+
+
+FAMILY = Family("COM", {"com": build_com, "com_rigid": build_com_rigid}, _schema)

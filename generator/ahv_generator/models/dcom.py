@@ -9,9 +9,19 @@ import casadi as ca
 from ..derivatives import add_drift_and_derivatives, add_lie_derivatives
 from ..model import Model
 from ..polynomial import Polynomial, Term
-from ..schema import DELTA_C, DELTA_E, FLEXIBLE, PHI, RIGID_STATE, VariableSpec
+from ..schema import Choice, Option, VariableSpec, switch
 from ..stochastic import add_diffusion
 from ..table import Table
+from .flexible import (
+    FORCE,
+    define_modal_acceleration,
+    index,
+    modal_load,
+    modal_state,
+    modes_of,
+    structural_modes,
+)
+from .flight import DELTA_E, PHI, RIGID_STATE, vehicle_traits
 from .noise import PERTURBATIONS, RIGID_INCREMENTS, modal_gains, modal_increments, perturbation_gains
 from .vehicle import (
     FORCES,
@@ -23,30 +33,25 @@ from .vehicle import (
     define_momentum,
     define_polynomial,
     define_rigid_rates,
-    vehicle_traits,
 )
 
+CANARD = Choice(
+    "canard",
+    "Canard",
+    "canard",
+    (
+        switch("canard_command", "s_{cc}", "share of the commanded canard deflection: 1 canard free, else 0"),
+        switch("canard_slaving", "s_c", "share of law (4) in the canard deflection: 1 canard slaved, else 0"),
+    ),
+    (
+        Option("free", "the canard deflection is an input", (1.0, 0.0)),
+        Option("slaved", "the canard follows the elevator by law (4)", (0.0, 1.0)),
+        Option("none", "there is no canard", (0.0, 0.0)),
+    ),
+)
+DELTA_C = VariableSpec("delta_c", r"\delta_c", "rad", "canard deflection", "delta_c")
 INPUT = (PHI, DELTA_E, DELTA_C)
 FITS = ("c_l", "c_d", "c_m", "c_t")
-
-
-def modal_state(modes: int) -> tuple[VariableSpec, ...]:
-    """Coordinate and rate of each mode, in the order of the paper."""
-    found: list[VariableSpec] = []
-    for i in range(1, modes + 1):
-        found.append(
-            VariableSpec(f"eta_{i}", rf"\eta_{i}", FLEXIBLE, f"flexible generalized coordinate of mode {i}", "eta")
-        )
-        found.append(
-            VariableSpec(
-                f"eta_dot_{i}",
-                rf"\dot\eta_{i}",
-                f"{FLEXIBLE}/s",
-                f"rate of the flexible generalized coordinate of mode {i}",
-                "eta_dot",
-            )
-        )
-    return tuple(found)
 
 
 def define_canard(m: Model) -> ca.SX:
@@ -100,8 +105,8 @@ def define_generalized_forces(m: Model, variables: Mapping[str, ca.SX]) -> list[
         m.graph.define(
             f"generalized_force_{mode}",
             m["reference_force"] * coefficient,
-            symbol=f"N_{mode}",
-            unit=f"{FLEXIBLE}/s^2",
+            symbol=f"N_{index(mode)}",
+            unit=FORCE,
             doc=f"generalized force of mode {mode}",
             equation="(2)",
             section="Generalized forces",
@@ -177,13 +182,15 @@ def define_surroundings(m: Model) -> None:
 
 def build_dcom(table: Table) -> Model:
     """The decoupled control-oriented model, with the noise that drives its reduction."""
-    modes = range(1, table.schema.modes + 1)
+    modes = modes_of(table)
     bases = {
-        "state": RIGID_STATE + modal_state(table.schema.modes),
+        "state": RIGID_STATE + modal_state(modes),
         "input": INPUT,
-        "noise": RIGID_INCREMENTS + modal_increments(table.schema.modes),
+        "noise": RIGID_INCREMENTS + modal_increments(modes),
     }
-    m = Model("dcom", "decoupled control-oriented model", "(1)-(4)", table, bases, vehicle_traits(bases))
+    m = Model(
+        "dcom", "decoupled control-oriented model", "(1)-(4)", table, bases, vehicle_traits(*structural_modes(modes))
+    )
     define_surroundings(m)
     variables = control_variables(m)
     turn = define_forces(m, variables | {f"eta_{i}": m[f"eta_{i}"] for i in modes})
@@ -199,40 +206,3 @@ def build_dcom(table: Table) -> Model:
     add_diffusion(m, rates, gains, PERTURBATIONS + "; the modes are driven as in (17)", "(17)")
     add_lie_derivatives(m, rates, "(1)")
     return m
-
-
-def define_modal_acceleration(m: Model, i: int, expr: ca.SX) -> ca.SX:
-    """The second derivative of a flexible coordinate by its name."""
-    return m.graph.define(
-        f"eta_acceleration_{i}",
-        expr,
-        symbol=rf"\ddot\eta_{i}",
-        unit=f"{FLEXIBLE}/s^2",
-        doc=f"acceleration of the flexible generalized coordinate of mode {i}",
-        equation="(1)",
-        section="Flexible modes",
-    )
-
-
-def modal_load(m: Model, i: int, force: ca.SX) -> ca.SX:
-    """N_i less damping and stiffness, (1)."""
-    omega, zeta = m.parameter(f"omega_{i}"), m.parameter(f"zeta_{i}")
-    damping = m.graph.define(
-        f"damping_{i}",
-        2 * zeta * omega,
-        symbol=rf"2\zeta_{i}\omega_{i}",
-        unit="rad/s",
-        doc=f"damping of mode {i}",
-        equation="(1)",
-        section="Flexible modes",
-    )
-    stiffness = m.graph.define(
-        f"stiffness_{i}",
-        omega**2,
-        symbol=rf"\omega_{i}^2",
-        unit="rad^2/s^2",
-        doc=f"stiffness of mode {i}",
-        equation="(1)",
-        section="Flexible modes",
-    )
-    return force - damping * m[f"eta_dot_{i}"] - stiffness * m[f"eta_{i}"]

@@ -9,8 +9,8 @@ import casadi as ca
 from .. import units
 from ..model import Model
 from ..polynomial import Polynomial
-from ..schema import FLEXIBLE
 from .dcom import normal_coefficient, slaved_fits, total_moment
+from .flexible import FLEXIBLE
 from .strict_feedback import GROUP, ROWS, Parts, Row, add_row, define_part
 from .vehicle import Resultants, coefficient_symbols, rigid_rates
 

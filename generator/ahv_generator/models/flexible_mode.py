@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
 
 from ..derivatives import add_drift_and_derivatives
+from ..family import Family
 from ..model import Entry, Model, Output
-from ..schema import FLEXIBLE, FORCE, VariableSpec
+from ..schema import Schema, VariableSpec
 from ..stochastic import add_diffusion
 from ..table import Table
 from ..traits import Equation, Mode, Sought, Traits, Trim
 from . import reduction
+from .flexible import CHI, ETA, ETA_DOT, FLEXIBLE, FORCE, damping, frequency
+from .noise import intensity
 
 GROUP = "moments"
 RESPONSE = "responses"
 SECTION = "Response of the mode"
 VARIANCE = "ft*slug"  # of a flexible coordinate
 
+_INPUT = VariableSpec("force", "N", FORCE, "generalized force", "force")
 _STATES = ("eta", "eta_dot", "chi")
 TRAITS = Traits(
     trim=Trim(sought=tuple(Sought(name) for name in _STATES), equations=tuple(Equation(name) for name in _STATES)),
@@ -39,7 +44,7 @@ def build_flexible_mode(table: Table) -> Model:
             ),
             VariableSpec("chi", r"\chi", FLEXIBLE, "coloured noise in the place of the coordinate", "chi"),
         ),
-        "input": (FORCE,),
+        "input": (_INPUT,),
         "noise": (VariableSpec("xi", r"\xi", "s^0.5", "Wiener increment that drives mode and coloured noise"),),
         "argument": (
             VariableSpec("time", "t", "s", "time from the start, or lag"),
@@ -49,12 +54,12 @@ def build_flexible_mode(table: Table) -> Model:
     title = "a flexible mode and its reduction to coloured noise"
     m = Model("flexible_mode", title, "(5)-(26)", table, bases, TRAITS)
     omega, zeta = m.parameter("omega"), m.parameter("zeta")
-    damping = _define(m, "damping", 2 * zeta * omega, r"2\zeta\omega", "rad/s", "damping of the mode", "(5)")
+    resistance = _define(m, "damping", 2 * zeta * omega, r"2\zeta\omega", "rad/s", "damping of the mode", "(5)")
     stiffness = _define(m, "stiffness", omega**2, r"\omega^2", "rad^2/s^2", "stiffness of the mode", "(5)")
     acceleration = _define(
         m,
         "eta_acceleration",
-        m["force"] - damping * m["eta_dot"] - stiffness * m["eta"],
+        m["force"] - resistance * m["eta_dot"] - stiffness * m["eta"],
         r"\ddot\eta",
         f"{FLEXIBLE}/s^2",
         "acceleration of the flexible generalized coordinate",
@@ -266,3 +271,14 @@ def _add_moments(m: Model, regime: _Regime) -> None:
     m.add_scalar(f"eta_variance_at_{regime.name}", GROUP, doc, "(17)", variance * regime.variance, VARIANCE)
     doc = f"Stationary autocorrelation of the mode at a lag, for {regime.condition}"
     m.add_scalar(f"eta_autocorrelation_{regime.name}", GROUP, doc, "(17)", variance * regime.correlation, VARIANCE)
+
+
+def _schema(_models: tuple[str, ...], _document: Mapping[str, object]) -> Schema:
+    return Schema(
+        parameters={"modes": (frequency(""), damping("")), "noise": (intensity(""),)},
+        validity=(ETA, ETA_DOT, CHI, _INPUT),
+        choices=(reduction.REDUCTION,),
+    )
+
+
+FAMILY = Family("one mode", {"flexible_mode": build_flexible_mode}, _schema)

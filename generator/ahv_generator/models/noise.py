@@ -7,8 +7,20 @@ from collections.abc import Mapping
 import casadi as ca
 
 from ..model import Model
-from ..schema import VariableSpec
+from ..schema import NOT_NEGATIVE, Choice, Option, ParameterSpec, VariableSpec, switch
 from ..stochastic import Gains
+from .flexible import FLEXIBLE, index, of, subscript
+
+NOISE = Choice(
+    "noise",
+    "ModalNoise",
+    "noise of the flexible modes",
+    (switch("shared_noise", r"\rho_\xi", "correlation of the noise of modes 2, 3, ... with that of mode 1"),),
+    (
+        Option("independent", "every mode has a white noise of its own", (0.0,)),
+        Option("shared", "one white noise drives all modes, as (16) has it", (1.0,)),
+    ),
+)
 
 RIGID_INCREMENTS = (
     VariableSpec("w_gamma", r"w_\gamma", "s^0.5", "Wiener increment that perturbs the flight-path angle"),
@@ -20,11 +32,30 @@ PERTURBATIONS = "the columns of w_gamma, w_alpha and w_q are derivatives of the 
 _PERTURBED = {"w_gamma": "x.gamma", "w_alpha": "x.alpha", "w_q": "x.pitch_rate"}
 
 
-def modal_increments(modes: int) -> tuple[VariableSpec, ...]:
+def intensity(suffix: str) -> ParameterSpec:
+    """The intensity of the noise of a mode."""
+    doc = f"intensity of the white noise{of(suffix).replace(' of', ' on')}"
+    return ParameterSpec(f"sigma{suffix}", rf"\sigma{subscript(suffix)}", f"{FLEXIBLE}/s^1.5", doc, NOT_NEGATIVE)
+
+
+def noise_parameters(modes: int) -> tuple[ParameterSpec, ...]:
+    """Noise intensities of the flexible modes, then of the rigid body."""
+    rigid = (
+        ParameterSpec(name, rf"\sigma_{{w_{label}}}", unit, f"intensity of the white noise w_{word}", NOT_NEGATIVE)
+        for name, label, unit, word in (
+            ("w_gamma", r"\gamma", "rad*s^0.5", "gamma"),
+            ("w_alpha", r"\alpha", "rad*s^0.5", "alpha"),
+            ("w_q", "Q", "rad/s^0.5", "Q"),
+        )
+    )
+    return (*(intensity(f"_{i}") for i in range(1, modes + 1)), *rigid)
+
+
+def modal_increments(modes: range) -> tuple[VariableSpec, ...]:
     """One Wiener increment for each flexible mode."""
     return tuple(
-        VariableSpec(f"xi_{i}", rf"\xi_{i}", "s^0.5", f"Wiener increment that drives flexible mode {i}")
-        for i in range(1, modes + 1)
+        VariableSpec(f"xi_{i}", rf"\xi_{index(i)}", "s^0.5", f"Wiener increment that drives flexible mode {i}")
+        for i in modes
     )
 
 

@@ -12,9 +12,11 @@ from ..model import Model
 from ..stochastic import Gains, add_diffusion
 from ..table import Table
 from .dcom import define_surroundings
-from .sdcom import EQUATION, FLEXIBLE_OUTLOOKS, coloured_gains, define_exact_rates, reduced_bases
+from .flexible import modes_of
+from .flight import vehicle_traits
+from .sdcom import EQUATION, FLEXIBLE_OUTLOOKS, coloured_gains, coloured_modes, define_exact_rates, reduced_bases
 from .strict_feedback import ROWS, Parts, Row, add_row, define_part
-from .vehicle import add_outlooks, vehicle_traits
+from .vehicle import add_outlooks
 
 NOTE = (
     "sdcom_printed is the paper's truncated form; what it leaves out (Delta f) can exceed the exact rate itself, see "
@@ -24,16 +26,16 @@ NOTE = (
 
 def build_sdcom_printed(table: Table) -> Model:
     """The stochastic model in the truncated form of the paper, and what it leaves out of the exact one."""
-    modes = table.schema.modes
+    modes = modes_of(table)
     bases = reduced_bases(modes)
     title = "stochastic decoupled control-oriented model as printed, without its misprints"
-    traits = replace(vehicle_traits(bases), note=NOTE, audited=True)
+    traits = replace(vehicle_traits(*coloured_modes(modes)), note=NOTE, audited=True)
     m = Model("sdcom_printed", title, "(24)-(35)", table, bases, traits)
     define_surroundings(m)
     exact, _ = define_exact_rates(m)
     parts = {row.name: _parts(m, row) for row in ROWS}
     rates = {"altitude": exact["altitude"]} | {row.state: _define_rate(m, row, parts[row.name]) for row in ROWS}
-    rates |= {f"chi_{i}": exact[f"chi_{i}"] for i in range(1, modes + 1)}
+    rates |= {f"chi_{i}": exact[f"chi_{i}"] for i in modes}
     add_drift_and_derivatives(m, rates, EQUATION)
     add_outlooks(m, *FLEXIBLE_OUTLOOKS)
     _add_diffusion(m, rates, parts)
@@ -81,7 +83,7 @@ def _parts(m: Model, row: Row) -> Parts:
     texts = corrected_expressions()
     names, unit = _names(m, row), row.rate_unit(m)
     slopes, flexible = [], ca.SX(0)
-    for i in range(1, m.table.schema.modes + 1):
+    for i in modes_of(m.table):
         of_mode = _Names(names)
         of_mode |= {"n": m[f"generalized_force_{i}"], "omega": m.parameter(f"omega_{i}")}
         of_mode |= {f"{fit}_eta": names[f"{fit}_eta_{i}"] for fit in ("c_t", "c_l", "c_d", "c_m")}

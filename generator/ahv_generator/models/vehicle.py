@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -10,8 +9,8 @@ import casadi as ca
 
 from ..model import Model
 from ..polynomial import Polynomial
-from ..schema import RIGID_STATE, QuantitySpec, VariableSpec
-from ..traits import Equation, Given, Mode, Sought, Traits, Trim
+from ..schema import QuantitySpec
+from .flexible import modes_of
 
 
 def define_air(m: Model) -> None:
@@ -268,79 +267,10 @@ def add_outlooks(m: Model, *flexible: str, fits: Iterable[str] = (), forces: Ite
 
     All of them, after the pitch angle, are also the output of one function.
     """
-    modes = range(1, m.table.schema.modes + 1)
-    names = ["density", "dynamic_pressure", *fits, *forces, *(f"{name}_{i}" for i in modes for name in flexible)]
+    of_modes = (f"{name}_{i}" for i in modes_of(m.table) for name in flexible)
+    names = ["density", "dynamic_pressure", *fits, *forces, *of_modes]
     m.add_evaluations(*names)
     m.add_outputs("theta", *names)
 
 
 FORCES = ("thrust", "lift", "drag", "pitching_moment")
-
-
-def vehicle_traits(bases: Mapping[str, tuple[VariableSpec, ...]]) -> Traits:
-    """Steady flight on a straight path, the modes of rigid body and structure, and what a pilot would call a lot.
-
-    Two rows of the drift are no equations: `altitude`, which is V sin(gamma) whatever the unknowns, and `alpha`, which
-    at zero pitch rate is the row `gamma` again. The rate of the velocity weighs as V times that of gamma, for both are
-    accelerations; flexible rows weigh more, so that where there is no trim the rigid body is off balance, not a mode.
-    """
-    states = [v.name for v in bases["state"]]
-    flexible = [name for name in states if name not in RIGID_ROWS]
-    equations = [
-        Equation(name, 1.0 if name in RIGID_ROWS else 100.0, ("gamma", "velocity") if name == "velocity" else None)
-        for name in states
-        if name not in ("altitude", "alpha")
-    ]
-    return Traits(
-        trim=Trim(
-            given=(
-                Given("velocity", 7702.0808, above=0.0),
-                Given("altitude", 85000.0),
-                Given("gamma", 0.0, -math.pi / 2, math.pi / 2),
-            ),
-            sought=(
-                Sought("alpha", scale=0.1),
-                *(Sought(name) for name in flexible),
-                Sought("phi", 0.25, 0.1),
-                Sought("delta_e", 0.2, 0.1),
-            ),
-            equations=tuple(equations),
-            moving=("altitude",),
-            shown=("alpha", "phi", "delta_e", *_coordinates(flexible)),
-        ),
-        modes=(
-            Mode("phugoid", ("velocity", "altitude", "gamma"), "height"),
-            Mode("short period", ("alpha", "pitch_rate")),
-            *_flexible_modes(flexible),
-        ),
-        inputs=("phi", "delta_e"),
-        outputs=("velocity", "gamma"),
-        deviations={
-            "velocity": 10.0,
-            "altitude": 100.0,
-            "gamma": 0.01,
-            "alpha": 0.02,
-            "pitch_rate": 0.05,
-            "phi": 0.2,
-            "delta_e": 0.05,
-        },
-    )
-
-
-RIGID_ROWS = tuple(v.name for v in RIGID_STATE)
-
-
-def _coordinates(states: Iterable[str]) -> list[str]:
-    """The flexible coordinates that the states beyond the rigid body stand for."""
-    parts = [state.rpartition("_") for state in states]
-    return [f"eta_{number}" for kind, _, number in parts if kind in ("eta", "chi")]
-
-
-def _flexible_modes(states: Iterable[str]) -> list[Mode]:
-    """The modes of the states beyond the rigid body, by their names."""
-    found: dict[str, list[str]] = {}
-    for state in states:
-        kind, _, number = state.rpartition("_")
-        words = {"eta": f"flexible {number}", "eta_dot": f"flexible {number}", "chi": f"coloured noise {number}"}
-        found.setdefault(words.get(kind, "gust"), []).append(state)
-    return [Mode(name, tuple(members)) for name, members in found.items()]

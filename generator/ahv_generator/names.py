@@ -1,0 +1,53 @@
+"""Names that the generated code cannot have, or has already."""
+
+from __future__ import annotations
+
+import re
+
+# Of this name is the file beside the IRs that holds the audit of the printed equations.
+_AUDIT = "audit"
+
+# Those of every edition, and those that Rust keeps for later.
+_KEYWORDS = frozenset(
+    "abstract as async await become box break const continue crate do dyn else enum extern false final fn for gen if "
+    "impl in let loop macro match mod move mut override priv pub ref return self static struct super trait true try "
+    "type typeof unsafe unsized use virtual where while yield".split()
+)
+
+# A set becomes a constant of the generated code; these stand beside it. A test holds them against `generated/`.
+_CONSTANTS = frozenset(
+    "nominal provenance sets unit_system validity state_bounds input_bounds noise_class noise_commutes table".split()
+)
+# So end the constants of the functions' compressed outputs, which no set's may: what these are called, the models say.
+_OF_FUNCTIONS = "_pattern"
+
+SET_NAME = re.compile(r"[a-z][a-z0-9._-]*")
+SET_LETTERS = "lower-case letters, digits, `.`, `_`, `-`"
+
+
+def fault_of_table(name: object) -> str | None:
+    """Why a table cannot have this name."""
+    if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+        return "`name` must be a lower-case identifier: letters a to z, digits, `_`"
+    if name in _KEYWORDS:
+        return f"`{name}` is a keyword of Rust; choose another name"
+    if name == _AUDIT:
+        return f"`name` must be other than `{_AUDIT}`, which is the audit of the printed equations"
+    return None
+
+
+def constants(name: str) -> frozenset[str]:
+    """The constants that a set makes, in lower case: `section5.3` makes SECTION5_3 and SECTION5_3_PROVENANCE."""
+    constant = re.sub("[._-]", "_", name)
+    return frozenset((constant, f"{constant}_provenance"))
+
+
+def fault_of_set(name: str, taken: frozenset[str]) -> str | None:
+    """Why a set cannot have this name beside sets that make the constants `taken`."""
+    if not SET_NAME.fullmatch(name):
+        return f"a set has a name of its own, of {SET_LETTERS}"
+    made = constants(name)
+    clash = sorted(c for c in made if c in _CONSTANTS or c in taken or c.endswith(_OF_FUNCTIONS))
+    if clash:
+        return f"a set has a name of its own: `{name}` would make the constant {clash[0].upper()} once more"
+    return None
