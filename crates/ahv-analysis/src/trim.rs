@@ -12,7 +12,7 @@ mod system;
 
 use std::f64::consts::FRAC_PI_2;
 
-use ahv_core::{Bounds, DifferentiableModel, Vector};
+use ahv_core::{Bounds, DifferentiableModel, Shown, Vector};
 
 pub use response::{Shift, response};
 use system::{Point, System};
@@ -153,7 +153,7 @@ pub struct Blocking {
 impl std::fmt::Display for Blocking {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let relation = if self.upper { "<=" } else { ">=" };
-        write!(formatter, "{} {relation} {}", self.input, self.bound)
+        write!(formatter, "{} {relation} {}", self.input, Shown(self.bound))
     }
 }
 
@@ -167,7 +167,7 @@ pub enum TrimError {
         name: &'static str,
     },
     /// A flight condition at which there is no steady flight.
-    #[error("{name} is {value:?}; it must be {must}")]
+    #[error("{name} is {}; it must be {must}", Shown(*value))]
     Domain {
         /// The quantity, a field of [`SteadyFlight`].
         name: &'static str,
@@ -177,7 +177,7 @@ pub enum TrimError {
         must: &'static str,
     },
     /// A derivative is infinite or NaN where the search starts.
-    #[error("the derivative of {name} is {value:?} where the trim starts")]
+    #[error("the derivative of {name} is {} where the trim starts", Shown(*value))]
     NonFinite {
         /// Row of the drift.
         name: &'static str,
@@ -186,10 +186,10 @@ pub enum TrimError {
     },
     /// No trim inside the bounds.
     #[error(
-        "no trim inside {}: at the nearest point the derivative of {} is {:?} per second",
+        "no trim inside {}: at the nearest point the derivative of {} is {} per second",
         list(blocking),
         nearest.worst,
-        nearest.worst_residual()
+        Shown(nearest.worst_residual())
     )]
     Blocked {
         /// The bounds that the search ran into, then others that the trim outside violates; at least one.
@@ -201,10 +201,10 @@ pub enum TrimError {
     },
     /// No trim was found, and no bound is the reason.
     #[error(
-        "no trim after {} iterations: the derivative of {} is still {:?} per second",
+        "no trim after {} iterations: the derivative of {} is still {} per second",
         nearest.iterations,
         nearest.worst,
-        nearest.worst_residual()
+        Shown(nearest.worst_residual())
     )]
     NoConvergence {
         /// The nearest point.

@@ -184,7 +184,7 @@ mod tests {
         assert_eq!(show(0.5_f64.to_radians(), "rad"), "0.5 deg");
         assert_eq!(show(-0.1_f64.to_radians(), "rad/s"), "-0.1 deg/s");
         assert_eq!(show(-1.25e50, "ft/s"), "-1.250000e50 ft/s");
-        assert_eq!(show(f64::NAN, "1"), "not finite");
-        assert_eq!(show(f64::INFINITY, "rad"), "not finite");
+        assert_eq!(show(f64::NAN, "1"), "not a number");
+        assert_eq!(show(f64::INFINITY, "rad"), "infinite");
     }
 }

@@ -23,7 +23,7 @@ use crate::output::{self, Pairs};
 use crate::place::Place;
 use crate::progress::{Progress, Work};
 use crate::signals::Stoppable;
-use crate::simulate::grid::positive;
+use crate::simulate::grid::{MOST_STEPS, allowed, positive};
 use crate::vehicle::{FlightModel, ModelName};
 
 /// Fewest members that have a standard deviation.
@@ -119,6 +119,13 @@ struct Outcome<'a, M: FlightModel> {
     stationary: Option<DMatrix<f64>>,
 }
 
+/// Steps of each part of the flight.
+fn steps(arguments: &Arguments) -> Result<u64, Failure> {
+    let (t_end, dt, parts) = (arguments.t_end, arguments.dt, f64::from(SAMPLES));
+    let steps = parts * (t_end / parts / dt - 1e-9).ceil().max(1.0);
+    Ok(allowed(t_end, dt, steps, MOST_STEPS)? / u64::from(SAMPLES))
+}
+
 fn spread<M, F>(arguments: &Arguments, scheme: Scheme) -> Result<(), Failure>
 where
     M: Pair<F> + StochasticModel,
@@ -128,7 +135,7 @@ where
     let steady = arguments.place.flight(&vehicle)?;
     let trim = vehicle.trim(&steady)?;
     let part = arguments.t_end / f64::from(SAMPLES);
-    let steps = (part / arguments.dt - 1e-9).ceil().max(1.0);
+    let steps = steps(arguments)?;
     let experiment = Experiment::<F> {
         parameters: vehicle.parameters,
         dispersion: None,
@@ -144,9 +151,9 @@ where
         watched: Vec::new(),
         scheme,
         mode: Mode::Exact,
-        dt: part / steps,
+        dt: part / steps as f64,
         snapshots: (1..=u64::from(SAMPLES))
-            .map(|index| index.saturating_mul(steps as u64))
+            .map(|index| index * steps)
             .collect(),
         seed: arguments.seed,
     };

@@ -112,6 +112,22 @@ impl<M: FlightModel> Vehicle<M> {
         Ok(trim)
     }
 
+    /// Whether a state can fly: at no velocity, or backwards, its rates are no numbers, or mean nothing.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, for a person.
+    pub(crate) fn moves(&self, state: &M::State) -> Result<(), String> {
+        let velocity = M::State::index_of("velocity").and_then(|index| state.get(index));
+        match velocity {
+            Some(velocity) if velocity.is_nan() || velocity <= 0.0 => Err(format!(
+                "velocity must be above 0, not {}",
+                show(velocity, self.units.label::<M::State>("velocity"))
+            )),
+            _ => Ok(()),
+        }
+    }
+
     /// Where a steady flight is, for a person.
     pub(crate) fn at(&self, flight: &SteadyFlight<M::Input>) -> String {
         let label = |name| self.units.label::<M::State>(name);

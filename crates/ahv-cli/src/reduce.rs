@@ -19,7 +19,7 @@ use crate::failure::{Failure, print};
 use crate::number::{self, Shown};
 use crate::output;
 use crate::progress::{Progress, Work};
-use crate::simulate::grid::positive;
+use crate::simulate::grid::{allowed, positive};
 
 /// Fewest runs for which the intervals hold.
 const FEWEST_RUNS: u64 = 30;
@@ -153,17 +153,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     fn experiment(&self) -> Result<Experiment, Failure> {
         let steps = (self.t_end / self.dt).round();
-        if !(1.0..=MOST as f64).contains(&steps) {
-            return Err(Failure::Request(format!(
-                "--t-end {} with --dt {} makes {steps} steps; 1 to {MOST} are allowed",
-                self.t_end, self.dt
-            )));
-        }
+        let steps = allowed(self.t_end, self.dt, steps, MOST as f64)?;
         Ok(Experiment {
             reading: Reading::White,
             drive: Drive::Common,
             runs: self.runs,
-            steps: steps as u64,
+            steps,
             dt: self.dt,
             seed: self.seed,
         })

@@ -11,6 +11,7 @@
 //! * [`Bounds`]: an interval of validity.
 //! * [`Pattern`]: where the entries of a compressed matrix stand.
 //! * [`NoiseClass`]: how a column of the diffusion depends on the state.
+//! * [`Shown`]: a number in a text for people.
 //!
 //! No heap and no panic: an index out of range is an [`Option`], never an abort.
 #![no_std]
@@ -31,6 +32,7 @@ mod outlined;
 mod pattern;
 mod provenance;
 mod real;
+mod shown;
 mod straight;
 mod vector;
 
@@ -47,5 +49,6 @@ pub use outlined::Outlined;
 pub use pattern::Pattern;
 pub use provenance::{Provenance, Status};
 pub use real::Real;
+pub use shown::Shown;
 pub use straight::Straight;
 pub use vector::Vector;

@@ -8,7 +8,7 @@
 
 mod passage;
 
-use ahv_core::Vector;
+use ahv_core::{Shown, Vector};
 use ahv_integrate::NormalStream;
 use rayon::prelude::*;
 
@@ -56,9 +56,7 @@ pub enum RareError {
         states: usize,
     },
     /// A limit that is met at the start, or no number.
-    #[error(
-        "the limit {limit:?} of {state} must be a number other than {start:?}, where the flight starts"
-    )]
+    #[error("the limit {} of {state} must be a number other than {}, where the flight starts", Shown(*limit), Shown(*start))]
     Limit {
         /// The state.
         state: &'static str,
@@ -68,7 +66,7 @@ pub enum RareError {
         start: f64,
     },
     /// Levels that do not lie between the start and the limit, in order.
-    #[error("the level {level:?} does not lie between {after:?} and the limit {limit:?}")]
+    #[error("the level {} does not lie between {} and the limit {}", Shown(*level), Shown(*after), Shown(*limit))]
     Level {
         /// The level.
         level: f64,
@@ -89,7 +87,7 @@ pub enum RareError {
         repetitions: u64,
     },
     /// A flight that does not go anywhere.
-    #[error("a flight of {steps} steps of {dt:?} s is none")]
+    #[error("a flight of {steps} steps of {} s is none", Shown(*dt))]
     Flight {
         /// Steps.
         steps: u64,
@@ -97,17 +95,13 @@ pub enum RareError {
         dt: f64,
     },
     /// Members that do not come nearer to the limit.
-    #[error(
-        "the members come no nearer to the limit than {level:?}; more members from each level may"
-    )]
+    #[error("the members come no nearer to the limit than {}; more members from each level may", Shown(*level))]
     OutOfReach {
         /// The level that was not passed, or beyond which none could be set.
         level: f64,
     },
     /// Repetitions that say nothing of their error.
-    #[error(
-        "every repetition gave {value:?}; more members from each level, or more repetitions, tell them apart"
-    )]
+    #[error("every repetition gave {}; more members from each level, or more repetitions, tell them apart", Shown(*value))]
     NoSpread {
         /// What they gave.
         value: f64,
