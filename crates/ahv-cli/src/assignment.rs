@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use ahv_analysis::statistics::OpenEstimate;
 use ahv_core::Vector;
 
 use crate::failure::Failure;
@@ -141,6 +142,14 @@ pub(crate) fn show_beside(value: f64, other: f64, unit: &str) -> String {
         |decimals: &usize| show_with(value, unit, *decimals) != show_with(other, unit, *decimals);
     let decimals = (DECIMALS..MOST_DECIMALS).find(look);
     show_with(value, unit, decimals.unwrap_or(DECIMALS))
+}
+
+/// A value with its interval, each end as `shown` has it; "-" for a value that is not known, "open" for an end that is not.
+pub(crate) fn interval(estimate: &OpenEstimate, shown: impl Fn(f64) -> String) -> String {
+    let OpenEstimate { value, low, high } = *estimate;
+    let value = value.map_or_else(|| "-".to_owned(), &shown);
+    let [low, high] = [low, high].map(|end| end.map_or_else(|| "open".to_owned(), &shown));
+    format!("{value} [{low}, {high}]")
 }
 
 fn show_with(value: f64, unit: &str, decimals: usize) -> String {

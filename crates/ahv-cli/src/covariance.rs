@@ -19,6 +19,7 @@ use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
 use crate::flights::feedback::FeedbackArguments;
 use crate::flights::{Pair, deviations};
+use crate::number::Shown;
 use crate::output::{self, Pairs};
 use crate::place::Place;
 use crate::progress::{Progress, Work};
@@ -245,9 +246,10 @@ fn sample<M: Pair<F>, F: Flown>(
             members: left,
             ..
         }) => Err(Failure::Numeric(format!(
-            "{}: at {time} s {left} of {} flights are left, too few for a standard deviation: the others are no longer \
+            "{}: at {} s {left} of {} flights are left, too few for a standard deviation: the others are no longer \
              finite",
             M::NAME,
+            Shown(*time),
             outcome.members
         ))),
     }

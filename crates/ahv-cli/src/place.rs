@@ -1,7 +1,7 @@
 //! Where the vehicle flies: flags of every command that starts at a trim of the user's choice.
 
 use ahv_analysis::trim::{SOUGHT_INPUTS, SteadyFlight, Trim, TrimError, trim};
-use ahv_core::first_outside;
+use ahv_core::{Vector, first_outside};
 use clap::Args;
 
 use crate::assignment::{Assignments, show, show_beside};
