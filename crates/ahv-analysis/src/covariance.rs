@@ -7,7 +7,7 @@
 
 mod closed_loop;
 
-use ahv_core::{StochasticModel, Vector};
+use ahv_core::{Shown, StochasticModel, Vector};
 use nalgebra::{DMatrix, DVector};
 
 use crate::poles::PolesError;
@@ -39,9 +39,7 @@ pub enum CovarianceError {
         name: &'static str,
     },
     /// The system has no stationary covariance.
-    #[error(
-        "there is no stationary covariance: the pole {real:+} {imaginary:+}i does not lie in the left half plane"
-    )]
+    #[error("there is no stationary covariance: the pole {:+} {:+}i does not lie in the left half plane", Shown(*real), Shown(*imaginary))]
     Unstable {
         /// Real part of the rightmost pole, in 1/s.
         real: f64,
@@ -49,7 +47,7 @@ pub enum CovarianceError {
         imaginary: f64,
     },
     /// The Lyapunov equation is too badly conditioned.
-    #[error("the Lyapunov equation is solved to {residual:?} of its terms only")]
+    #[error("the Lyapunov equation is solved to {} of its terms only", Shown(*residual))]
     Inaccurate {
         /// Residual over the largest term.
         residual: f64,
@@ -66,17 +64,13 @@ pub enum CovarianceError {
         most: usize,
     },
     /// A covariance that no random numbers have.
-    #[error(
-        "the initial covariance has the eigenvalue {least} of its correlations; it must be 0 or more"
-    )]
+    #[error("the initial covariance has the eigenvalue {} of its correlations; it must be 0 or more", Shown(*least))]
     Indefinite {
         /// Least eigenvalue of the correlations.
         least: f64,
     },
     /// The flight does not stay where it starts.
-    #[error(
-        "there is no stationary covariance: the flight is not at rest, {name} changes by {rate} per s"
-    )]
+    #[error("there is no stationary covariance: the flight is not at rest, {name} changes by {} per s", Shown(*rate))]
     NotAtRest {
         /// Name of the state or input.
         name: &'static str,
@@ -84,9 +78,7 @@ pub enum CovarianceError {
         rate: f64,
     },
     /// A mode of the flight does not decay.
-    #[error(
-        "there is no stationary covariance: the {mode} mode has the pole {real:+.6} {imaginary:+.6}i 1/s, which does not decay"
-    )]
+    #[error("there is no stationary covariance: the {mode} mode has the pole {:+.6} {:+.6}i 1/s, which does not decay", Shown(*real), Shown(*imaginary))]
     UndampedMode {
         /// The mode.
         mode: String,
@@ -99,9 +91,7 @@ pub enum CovarianceError {
     #[error(transparent)]
     Poles(#[from] PolesError),
     /// A mode grows by a factor within the step.
-    #[error(
-        "before {time} s a mode grows too fast for the step of {dt} s: shorten it, or end before the flight diverges"
-    )]
+    #[error("before {} s a mode grows too fast for the step of {} s: shorten it, or end before the flight diverges", Shown(*time), Shown(*dt))]
     StepTooLong {
         /// In s.
         time: f64,
@@ -109,7 +99,7 @@ pub enum CovarianceError {
         dt: f64,
     },
     /// State or covariance is not finite: the step is too long, or the flight diverges.
-    #[error("at {time} s the {what} of {name} is {value:?}")]
+    #[error("at {} s the {what} of {name} is {}", Shown(*time), Shown(*value))]
     Diverged {
         /// In s.
         time: f64,

@@ -1,6 +1,6 @@
 //! The linear system about a state and an input.
 
-use ahv_core::{DifferentiableModel, Vector};
+use ahv_core::{DifferentiableModel, Shown, Vector};
 use nalgebra::DMatrix;
 
 /// dx/dt = A x + B u, y = C x + D u, for deviations from a state and an input.
@@ -34,7 +34,7 @@ pub enum LinearizeError {
     #[error("the model has no state called {0}")]
     UnknownOutput(String),
     /// A derivative is infinite or NaN.
-    #[error("the derivative of {row} by {column} is {value:?}")]
+    #[error("the derivative of {row} by {column} is {}", Shown(*value))]
     NonFinite {
         /// Row of the drift.
         row: &'static str,

@@ -5,7 +5,7 @@
 //! comes from the matrix sign function (Roberts 1980) with scaling by the determinant (Byers 1987), which no multiple
 //! eigenvalue disturbs.
 
-use ahv_core::Vector;
+use ahv_core::{Shown, Vector};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Iterations of the sign function; it converges quadratically, in about ten.
@@ -41,7 +41,7 @@ pub enum LqrError {
         name: &'static str,
     },
     /// A weight is not symmetric, Q has a negative or R a non-positive eigenvalue.
-    #[error("the weight {name} must be symmetric and {must}; its least eigenvalue is {least:?}")]
+    #[error("the weight {name} must be symmetric and {must}; its least eigenvalue is {}", Shown(*least))]
     Weight {
         /// The matrix.
         name: &'static str,
@@ -51,9 +51,7 @@ pub enum LqrError {
         least: f64,
     },
     /// No input moves a mode that does not decay.
-    #[error(
-        "not stabilizable: no input moves the mode {real:+?} {imaginary:+?}i, which does not decay"
-    )]
+    #[error("not stabilizable: no input moves the mode {:+} {:+}i, which does not decay", Shown(*real), Shown(*imaginary))]
     NotStabilizable {
         /// Real part of its eigenvalue, in 1/s.
         real: f64,
@@ -61,9 +59,7 @@ pub enum LqrError {
         imaginary: f64,
     },
     /// The weight Q does not see a mode that does not decay.
-    #[error(
-        "not detectable: no weighted state shows the mode {real:+?} {imaginary:+?}i, which does not decay"
-    )]
+    #[error("not detectable: no weighted state shows the mode {:+} {:+}i, which does not decay", Shown(*real), Shown(*imaginary))]
     NotDetectable {
         /// Real part of its eigenvalue, in 1/s.
         real: f64,
@@ -71,9 +67,7 @@ pub enum LqrError {
         imaginary: f64,
     },
     /// The Riccati equation is too badly conditioned.
-    #[error(
-        "the Riccati equation is solved to {residual} of its terms only, and the rightmost pole is {rightmost}"
-    )]
+    #[error("the Riccati equation is solved to {} of its terms only, and the rightmost pole is {}", Shown(*residual), Shown(*rightmost))]
     Inaccurate {
         /// Residual over the largest term.
         residual: f64,

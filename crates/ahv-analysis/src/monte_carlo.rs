@@ -17,6 +17,7 @@ mod rare;
 mod scheme;
 mod spread;
 
+use ahv_core::Shown;
 use ahv_integrate::NoiseError;
 
 pub use arithmetic::Mode;
@@ -50,7 +51,7 @@ pub enum MonteCarloError {
         normals: usize,
     },
     /// A step that is not positive and finite.
-    #[error("the step must be positive and finite, not {0:?} s")]
+    #[error("the step must be positive and finite, not {} s", Shown(*.0))]
     StepSize(f64),
     /// Stopped before a member had flown.
     #[error("stopped before the first members had flown")]

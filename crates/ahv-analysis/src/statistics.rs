@@ -4,6 +4,9 @@
 pub const Z_95: f64 = 1.959_963_984_540_054;
 /// What an interval of 95 % leaves on either side.
 const TAIL: f64 = 0.025;
+/// Fewest numbers that the interval of a standard deviation is made of. The kurtosis of two numbers is 1 and that of three 1.5,
+/// whichever they are: they say nothing of the law.
+pub const FEWEST_OF_STD: f64 = 4.0;
 /// 97.5 % points of Student's distribution with 1 to 8 degrees of freedom.
 const STUDENT_95: [f64; 8] = [
     12.706_204_736,
@@ -39,39 +42,6 @@ impl Estimate {
             low: mean - half,
             high: mean + half,
         }
-    }
-
-    /// A standard deviation (n − 1) of `count` numbers of any law, with its interval of 95 %.
-    ///
-    /// `kurtosis` is m₄/m₂² of the sample, 3 for normal numbers. Bonett's interval of the logarithm (Bonett 2006), about the mean
-    /// in place of a trimmed mean, and with the unbiased estimate of the kurtosis where that is larger. `docs/monte-carlo.md` has
-    /// its measured coverage: with few numbers of a heavy-tailed law it covers less than it says.
-    pub fn of_std(std: f64, kurtosis: f64, count: f64) -> Self {
-        let unbiased = 3.0
-            + (count - 1.0) / ((count - 2.0) * (count - 3.0))
-                * ((count + 1.0) * (kurtosis - 3.0) + 6.0);
-        let kurtosis = if count > 3.0 {
-            kurtosis.max(unbiased)
-        } else {
-            kurtosis
-        };
-        let centre = count / (count - Z_95);
-        let error = centre * ((kurtosis - (count - 3.0) / count) / (count - 1.0)).sqrt();
-        // Half, for it is the interval of a variance.
-        let end = |z: f64| std * (0.5 * (centre.ln() + z * error)).exp();
-        Self {
-            value: std,
-            low: end(-Z_95),
-            high: end(Z_95),
-        }
-    }
-
-    /// A standard deviation of a sample of any law, with its interval of 95 %, as [`Self::of_std`].
-    pub fn of_sample_std(sample: &[f64]) -> Self {
-        let (_, std) = mean_and_std(sample);
-        // Equal numbers have no kurtosis.
-        let kurtosis = if std > 0.0 { kurtosis(sample) } else { 3.0 };
-        Self::of_std(std, kurtosis, sample.len() as f64)
     }
 
     /// A standard deviation of `count` numbers that are exactly normal, with its interval of 95 %.
@@ -135,12 +105,12 @@ impl Estimate {
     }
 }
 
-/// A quantile with an interval of at least 95 %, whatever the law of the numbers.
+/// A value with an interval of 95 % whose sides may be open (`None`): the numbers are too few to say where it ends.
 ///
-/// A side is open (`None`) where the sample is too small to have a rank for it: no number is known to lie beyond.
+/// Of a quantile a side is open that the sample has no rank for, of a standard deviation both are that has no kurtosis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct QuantileEstimate {
-    /// The quantile; `None` where it is not known.
+pub struct OpenEstimate {
+    /// The value; `None` where it is not known.
     pub value: Option<f64>,
     /// Lower end; `None` where the side is open.
     pub low: Option<f64>,
@@ -148,7 +118,59 @@ pub struct QuantileEstimate {
     pub high: Option<f64>,
 }
 
-impl QuantileEstimate {
+impl OpenEstimate {
+    /// A standard deviation (n − 1) of `count` numbers of any law, with its interval of 95 %; of fewer than [`FEWEST_OF_STD`]
+    /// both sides are open.
+    ///
+    /// `kurtosis` is m₄/m₂² of the sample, 3 for normal numbers. Bonett's interval of the logarithm (Bonett 2006), about the mean
+    /// in place of a trimmed mean, and with the unbiased estimate of the kurtosis where that is larger. `docs/monte-carlo.md` has
+    /// its measured coverage: with few numbers of a heavy-tailed law it covers less than it says.
+    pub fn of_std(std: f64, kurtosis: f64, count: f64) -> Self {
+        if count < FEWEST_OF_STD {
+            return Self {
+                value: Some(std),
+                low: None,
+                high: None,
+            };
+        }
+        let unbiased = 3.0
+            + (count - 1.0) / ((count - 2.0) * (count - 3.0))
+                * ((count + 1.0) * (kurtosis - 3.0) + 6.0);
+        let kurtosis = kurtosis.max(unbiased);
+        let centre = count / (count - Z_95);
+        let error = centre * ((kurtosis - (count - 3.0) / count) / (count - 1.0)).sqrt();
+        // Half, for it is the interval of a variance.
+        let end = |z: f64| Some(std * (0.5 * (centre.ln() + z * error)).exp());
+        Self {
+            value: Some(std),
+            low: end(-Z_95),
+            high: end(Z_95),
+        }
+    }
+
+    /// A standard deviation of a sample of any law, with its interval of 95 %, as [`Self::of_std`].
+    pub fn of_sample_std(sample: &[f64]) -> Self {
+        let (_, std) = mean_and_std(sample);
+        // Equal numbers have no kurtosis.
+        let kurtosis = if std > 0.0 { kurtosis(sample) } else { 3.0 };
+        Self::of_std(std, kurtosis, sample.len() as f64)
+    }
+
+    /// The same if no side is open.
+    pub fn closed(&self) -> Option<Estimate> {
+        Some(Estimate {
+            value: self.value?,
+            low: self.low?,
+            high: self.high?,
+        })
+    }
+
+    /// Whether all of its numbers are finite, those that there are.
+    pub fn is_finite(&self) -> bool {
+        let mut numbers = [self.value, self.low, self.high].into_iter().flatten();
+        numbers.all(f64::is_finite)
+    }
+
     /// The `share` quantile of ascending numbers, with its interval by [`ranks`].
     pub fn of_sorted(sorted: &[f64], share: f64) -> Self {
         let [low, high] = ranks(share, sorted.len() as u64);
@@ -173,7 +195,7 @@ impl QuantileEstimate {
     }
 }
 
-impl From<Option<Estimate>> for QuantileEstimate {
+impl From<Option<Estimate>> for OpenEstimate {
     fn from(estimate: Option<Estimate>) -> Self {
         Self {
             value: estimate.map(|it| it.value),

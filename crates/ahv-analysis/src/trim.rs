@@ -9,7 +9,7 @@ mod newton;
 mod response;
 mod system;
 
-use ahv_core::{Bounds, DifferentiableModel, TrimProblem, Vector};
+use ahv_core::{Bounds, DifferentiableModel, Shown, TrimProblem, Vector};
 
 pub use response::{Shift, response};
 use system::{Point, System};
@@ -164,7 +164,7 @@ pub struct Blocking {
 impl std::fmt::Display for Blocking {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let relation = if self.upper { "<=" } else { ">=" };
-        write!(formatter, "{} {relation} {}", self.input, self.bound)
+        write!(formatter, "{} {relation} {}", self.input, Shown(self.bound))
     }
 }
 
@@ -178,7 +178,12 @@ pub enum TrimError {
         name: &'static str,
     },
     /// A given state where there is no steady state.
-    #[error("{name} is {value:?}; it must be finite, above {above:?} and below {below:?}")]
+    #[error(
+        "{name} is {}; it must be finite, above {} and below {}",
+        Shown(*value),
+        Shown(*above),
+        Shown(*below)
+    )]
     Domain {
         /// The state.
         name: &'static str,
@@ -190,7 +195,7 @@ pub enum TrimError {
         below: f64,
     },
     /// A derivative is infinite or NaN where the search starts.
-    #[error("the derivative of {name} is {value:?} where the trim starts")]
+    #[error("the derivative of {name} is {} where the trim starts", Shown(*value))]
     NonFinite {
         /// Row of the drift.
         name: &'static str,
@@ -199,10 +204,10 @@ pub enum TrimError {
     },
     /// No trim inside the bounds.
     #[error(
-        "no trim inside {}: at the nearest point the derivative of {} is {:?} per second",
+        "no trim inside {}: at the nearest point the derivative of {} is {} per second",
         list(blocking),
         nearest.worst,
-        nearest.worst_residual()
+        Shown(nearest.worst_residual())
     )]
     Blocked {
         /// The bounds that the search ran into, then others that the trim outside violates; at least one.
@@ -214,10 +219,10 @@ pub enum TrimError {
     },
     /// No trim was found, and no bound is the reason.
     #[error(
-        "no trim after {} iterations: the derivative of {} is still {:?} per second",
+        "no trim after {} iterations: the derivative of {} is still {} per second",
         nearest.iterations,
         nearest.worst,
-        nearest.worst_residual()
+        Shown(nearest.worst_residual())
     )]
     NoConvergence {
         /// The nearest point.

@@ -10,7 +10,7 @@ use ahv_analysis::disperse::{Distribution, Draws};
 use ahv_analysis::monte_carlo::{
     Control, Dcom, Experiment, Flown, Mode, QUANTILES, Scheme, Sdcom, StateSpread,
 };
-use ahv_analysis::statistics::{Estimate, QuantileEstimate, mean_and_std};
+use ahv_analysis::statistics::{Estimate, OpenEstimate, mean_and_std};
 use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::Vector;
 use ahv_integrate::NormalStream;
@@ -184,7 +184,7 @@ fn intervals_of_samples_cover_as_documented() {
                 let (mean, std) = mean_and_std(&sample);
                 let count = size as f64;
                 means[index].add(Estimate::of_mean(mean, std, count).holds(law.mean));
-                stds[index].add(Estimate::of_sample_std(&sample).holds(law.std));
+                stds[index].add(OpenEstimate::of_sample_std(&sample).holds(law.std));
                 if index == 0 {
                     normal.add(Estimate::of_normal_std(std, count).holds(law.std));
                 }
@@ -200,7 +200,7 @@ fn intervals_of_samples_cover_as_documented() {
             for (count, law) in counts.iter_mut().zip(&LAWS) {
                 for mut sample in samples(law, size) {
                     sample.sort_by(f64::total_cmp);
-                    let estimate = QuantileEstimate::of_sorted(&sample, share);
+                    let estimate = OpenEstimate::of_sorted(&sample, share);
                     count.add(estimate.holds(law.quantiles[place]));
                 }
             }
@@ -265,10 +265,10 @@ fn intervals_of_probabilities_cover_as_documented() {
 }
 
 /// What is looked at of a state, in the order of the table's columns.
-fn estimates(spread: &StateSpread) -> Option<[QuantileEstimate; 4]> {
+fn estimates(spread: &StateSpread) -> Option<[OpenEstimate; 4]> {
     let place = |share| QUANTILES.iter().position(|&it| it == share);
     let [low, middle] = [0.005, 0.5].map(|share| spread.quantiles.get(place(share)?).copied());
-    let moments = [spread.mean?, spread.std?].map(|it| QuantileEstimate::from(Some(it)));
+    let moments = [OpenEstimate::from(spread.mean), spread.std?];
     Some([moments[0], moments[1], low?, middle?])
 }
 

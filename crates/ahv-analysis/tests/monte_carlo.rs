@@ -8,7 +8,7 @@ use ahv_analysis::monte_carlo::{
     Control, Dcom, Experiment, Feedback, Flown, Mode, MonteCarloError, QUANTILES, Scheme, Sdcom,
     SdcomGust, Seen,
 };
-use ahv_analysis::statistics::{Estimate, QuantileEstimate};
+use ahv_analysis::statistics::{Estimate, OpenEstimate};
 use ahv_analysis::trim::{SteadyFlight, trim};
 use ahv_core::{Bounds, ColouredNoise, Vector};
 use ahv_integrate::{ItoEulerMaruyama, ItoHeun, ItoStrangSplitting, NormalStream, WienerSource};
@@ -148,8 +148,9 @@ fn moments_and_quantiles_are_those_of_the_members() {
         let numbers: Vec<u64> = (0..members).collect();
         let batches = numbers.chunks(8).flat_map(|batch| last(&experiment, batch));
         let mut sample: Vec<f64> = batches.map(|x| x.altitude).collect();
-        let expected = Estimate::of_sample_std(&sample);
-        let std = spread.std.expect("a deviation");
+        let expected = OpenEstimate::of_sample_std(&sample).closed();
+        let expected = expected.expect("many members");
+        let std = spread.std.and_then(|it| it.closed()).expect("a deviation");
         for (found, expected) in [
             (std.value, expected.value),
             (std.low, expected.low),
@@ -159,7 +160,7 @@ fn moments_and_quantiles_are_those_of_the_members() {
         }
         sample.sort_by(f64::total_cmp);
         for (found, share) in spread.quantiles.iter().zip(QUANTILES) {
-            let expected = QuantileEstimate::of_sorted(&sample, share);
+            let expected = OpenEstimate::of_sorted(&sample, share);
             // A side is open for both, and bins widen the interval by one at most.
             let near = |found: Option<f64>, expected: Option<f64>, sides: [f64; 2]| {
                 assert_eq!(found.is_some(), expected.is_some(), "{share}");
@@ -364,7 +365,7 @@ fn modes_differ_by_rounding_alone() {
         outcome.snapshots[0]
             .states
             .iter()
-            .filter_map(|state| state.std)
+            .filter_map(|state| state.std?.closed())
             .collect()
     };
     let reference = stds(&mode(Mode::Exact).expect("it goes"));
@@ -468,10 +469,12 @@ fn a_stopped_run_is_a_run_of_the_members_that_were_flown() {
         let whole = experiment.run(stopped.members, 1, &Control::default());
         let whole = whole.expect("it goes");
         assert_eq!(stopped.digest, whole.digest);
+        assert_eq!(stopped.member_steps, stopped.members * steps);
         for (a, b) in stopped.snapshots.iter().zip(&whole.snapshots) {
             assert_eq!((a.members, &a.covariance), (b.members, &b.covariance));
             for (a, b) in a.states.iter().zip(&b.states) {
                 assert_eq!((a.mean, a.std, a.quantiles), (b.mean, b.std, b.quantiles));
+                assert_eq!(a.std_of_stayed, b.std_of_stayed);
             }
         }
         let members: Vec<u64> = (0..stopped.members).collect();

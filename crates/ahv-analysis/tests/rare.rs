@@ -452,6 +452,12 @@ fn what_cannot_be_estimated_is_told() {
         done: AtomicU64::new(0),
         stop: AtomicBool::new(true),
     };
-    assert_eq!(find(&far, &stopped), Err(MonteCarloError::Stopped));
+    let nothing = RareError::Stopped {
+        levels: Vec::new(),
+        repetitions: 0,
+        asked: far.repetitions,
+        member_steps: 0,
+    };
+    assert_eq!(find(&far, &stopped), Err(nothing.into()));
     assert_eq!(stopped.done.load(Ordering::Relaxed), 0);
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use ahv_analysis::statistics::OpenEstimate;
 use ahv_core::Vector;
 
 use crate::failure::Failure;
@@ -143,6 +144,14 @@ pub(crate) fn show_beside(value: f64, other: f64, unit: &str) -> String {
     show_with(value, unit, decimals.unwrap_or(DECIMALS))
 }
 
+/// A value with its interval, each end as `shown` has it; "-" for a value that is not known, "open" for an end that is not.
+pub(crate) fn interval(estimate: &OpenEstimate, shown: impl Fn(f64) -> String) -> String {
+    let OpenEstimate { value, low, high } = *estimate;
+    let value = value.map_or_else(|| "-".to_owned(), &shown);
+    let [low, high] = [low, high].map(|end| end.map_or_else(|| "open".to_owned(), &shown));
+    format!("{value} [{low}, {high}]")
+}
+
 fn show_with(value: f64, unit: &str, decimals: usize) -> String {
     match unit {
         // A unit belongs to a number.
@@ -184,7 +193,7 @@ mod tests {
         assert_eq!(show(0.5_f64.to_radians(), "rad"), "0.5 deg");
         assert_eq!(show(-0.1_f64.to_radians(), "rad/s"), "-0.1 deg/s");
         assert_eq!(show(-1.25e50, "ft/s"), "-1.250000e50 ft/s");
-        assert_eq!(show(f64::NAN, "1"), "not finite");
-        assert_eq!(show(f64::INFINITY, "rad"), "not finite");
+        assert_eq!(show(f64::NAN, "1"), "not a number");
+        assert_eq!(show(f64::INFINITY, "rad"), "infinite");
     }
 }

@@ -19,11 +19,12 @@ use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
 use crate::flights::feedback::FeedbackArguments;
 use crate::flights::{Pair, deviations};
-use crate::number::positive;
+use crate::number::{Shown, positive};
 use crate::output::{self, Pairs};
 use crate::place::Place;
 use crate::progress::{Progress, Work};
 use crate::signals::Stoppable;
+use crate::steps::{MOST_STEPS, allowed};
 use crate::vehicle::{FlightModel, ModelName};
 
 /// Fewest members that have a standard deviation.
@@ -119,6 +120,13 @@ struct Outcome<'a, M: FlightModel> {
     stationary: Option<DMatrix<f64>>,
 }
 
+/// Steps of each part of the flight.
+fn steps(arguments: &Arguments) -> Result<u64, Failure> {
+    let (t_end, dt, parts) = (arguments.t_end, arguments.dt, f64::from(SAMPLES));
+    let steps = parts * (t_end / parts / dt - 1e-9).ceil().max(1.0);
+    Ok(allowed(t_end, dt, steps, MOST_STEPS)? / u64::from(SAMPLES))
+}
+
 fn spread<M, F>(arguments: &Arguments, scheme: Scheme) -> Result<(), Failure>
 where
     M: Pair<F> + StochasticModel,
@@ -128,7 +136,7 @@ where
     let steady = arguments.place.flight(&vehicle)?;
     let trim = vehicle.trim(&steady)?;
     let part = arguments.t_end / f64::from(SAMPLES);
-    let steps = (part / arguments.dt - 1e-9).ceil().max(1.0);
+    let steps = steps(arguments)?;
     let experiment = Experiment::<F> {
         parameters: vehicle.parameters,
         dispersion: None,
@@ -144,9 +152,9 @@ where
         watched: Vec::new(),
         scheme,
         mode: Mode::Exact,
-        dt: part / steps,
+        dt: part / steps as f64,
         snapshots: (1..=u64::from(SAMPLES))
-            .map(|index| index.saturating_mul(steps as u64))
+            .map(|index| index * steps)
             .collect(),
         seed: arguments.seed,
     };
@@ -238,9 +246,10 @@ fn sample<M: Pair<F>, F: Flown>(
             members: left,
             ..
         }) => Err(Failure::Numeric(format!(
-            "{}: at {time} s {left} of {} flights are left, too few for a standard deviation: the others are no longer \
+            "{}: at {} s {left} of {} flights are left, too few for a standard deviation: the others are no longer \
              finite",
             M::NAME,
+            Shown(*time),
             outcome.members
         ))),
     }

@@ -22,7 +22,11 @@ use crate::number::{self, Shown};
 use crate::place::Place;
 use crate::progress::Progress;
 use crate::signals::Stoppable;
+use crate::steps::allowed;
 use crate::vehicle::{FlightModel, ModelName};
+
+/// Most steps of a member: some hours.
+const MOST_STEPS: f64 = 1e12;
 
 /// How members fly.
 #[derive(Args)]
@@ -167,12 +171,7 @@ impl Flights {
         (state, input): (F::State<f64>, F::Input<f64>),
     ) -> Result<Experiment<F>, Failure> {
         let steps = (self.t_end / self.dt).round();
-        if !(1.0..=1e12).contains(&steps) {
-            return Err(Failure::Request(format!(
-                "--dt and --t-end: {} steps; 1 to 1e12 can be flown",
-                Shown(steps)
-            )));
-        }
+        let steps = allowed(self.t_end, self.dt, steps, MOST_STEPS)?;
         let named = |name: &str| Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);
         let default = if F::NAME == Dcom::NAME {
             Scheme::Heun
@@ -192,7 +191,7 @@ impl Flights {
                 .find(|mode| mode.name() == self.mode)
                 .unwrap_or_default(),
             dt: self.dt,
-            snapshots: vec![steps as u64],
+            snapshots: vec![steps],
             seed: self.seed,
         })
     }

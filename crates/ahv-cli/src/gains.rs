@@ -11,6 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use sha2::{Digest, Sha256};
 
 use crate::condition::Vehicle;
+use crate::number::Shown;
 use crate::output::Pairs;
 use crate::table::text_of;
 use crate::vehicle::FlightModel;
@@ -321,7 +322,8 @@ impl Gains {
         pairs.extend(both.map(|((name, own), (_, flown))| (name, (own, flown))));
         for (name, (own, flown)) in pairs {
             if (own - flown).abs() > SAME * own.abs().max(flown.abs()) {
-                differences.push(format!("{name} {own:?}, the flights {flown:?}"));
+                let [own, flown] = [own, flown].map(Shown);
+                differences.push(format!("{name} {own}, the flights {flown}"));
             }
         }
         // The same words may stand for other values.

@@ -27,6 +27,7 @@ pub mod progress;
 mod rare;
 pub mod signals;
 mod simulate;
+pub mod steps;
 mod table;
 mod trim;
 mod units;

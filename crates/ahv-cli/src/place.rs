@@ -1,7 +1,7 @@
 //! Where the vehicle flies: flags of every command that starts at a trim of the user's choice.
 
 use ahv_analysis::trim::{SOUGHT_INPUTS, SteadyFlight, Trim, TrimError, trim};
-use ahv_core::first_outside;
+use ahv_core::{Vector, first_outside};
 use clap::Args;
 
 use crate::assignment::{Assignments, show, show_beside};
@@ -110,6 +110,22 @@ impl<M: FlightModel> Vehicle<M> {
             complain(&format!("warning: {}: {outside}", M::NAME));
         }
         Ok(trim)
+    }
+
+    /// Whether a state can fly: at no velocity, or backwards, its rates are no numbers, or mean nothing.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, for a person.
+    pub(crate) fn moves(&self, state: &M::State) -> Result<(), String> {
+        let velocity = M::State::index_of("velocity").and_then(|index| state.get(index));
+        match velocity {
+            Some(velocity) if velocity.is_nan() || velocity <= 0.0 => Err(format!(
+                "velocity must be above 0, not {}",
+                show(velocity, self.units.label::<M::State>("velocity"))
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// Where a steady flight is, for a person.

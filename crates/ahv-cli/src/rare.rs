@@ -17,13 +17,15 @@ use crate::flights::{Flights, Pair, Ready, Settings, Task, watched, with_model};
 use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
+use crate::signals::interrupted;
 use crate::vehicle::FlightModel;
 
 /// Estimates the probability that a state passes a limit before the flight ends, however small it is.
 ///
 /// By importance splitting: members that pass a level on the way to the limit are copied, and the copies fly on with noise of
 /// their own. A pilot sets the levels. The flights are those of `ahv montecarlo`, which counts what happens often enough to
-/// be counted. The same seed gives the same numbers whatever the threads.
+/// be counted. The same seed gives the same numbers whatever the threads. Ctrl-C or SIGTERM ends the work; the repetitions flown
+/// so far are reported if they make an estimate.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -84,17 +86,25 @@ impl Task for Arguments {
             }
         })?;
         let unit = unit(&ready.vehicle, state);
-        let estimate = found.map_err(|error| failure(&error, unit))?;
+        let estimate = found.map_err(|error| failure(&error, self.effort, unit))?;
         let told = Told {
             ready,
             event,
             estimate,
         };
         if self.json {
-            output::print_json(&told.json())
+            output::print_json(&told.json())?;
         } else {
-            print(&told.text())
+            print(&told.text())?;
         }
+        let flown = told.estimate.repetitions;
+        if told.is_complete() {
+            return Ok(());
+        }
+        Err(Failure::Interrupted(format!(
+            "interrupted: {flown} of {} repetitions were flown, and are reported",
+            self.repetitions
+        )))
     }
 }
 
@@ -104,8 +114,25 @@ fn unit<M: FlightModel>(vehicle: &Vehicle<M>, state: usize) -> &'static str {
     labels.get(state).copied().unwrap_or("")
 }
 
-fn failure(error: &RareError, unit: &str) -> Failure {
+fn failure(error: &RareError, effort: u64, unit: &str) -> Failure {
     match error {
+        RareError::Stopped {
+            levels,
+            repetitions,
+            asked,
+            member_steps,
+        } => {
+            let levels: Vec<String> = levels.iter().map(|level| show(*level, unit)).collect();
+            let pilot = match levels.as_slice() {
+                [] => "the pilot had set no level".to_owned(),
+                levels => format!("the pilot had set the levels {}", levels.join(", ")),
+            };
+            Failure::Interrupted(format!(
+                "interrupted: {pilot}; {repetitions} of {asked} repetitions of {effort} members a level were flown, \
+                 {member_steps} member-steps in all; there is no estimate, which takes {FEWEST_REPETITIONS} repetitions that \
+                 differ"
+            ))
+        }
         RareError::OutOfReach { level } => Failure::Numeric(format!(
             "the members come no nearer to the limit than {}; a greater --effort may",
             show(*level, unit)
@@ -134,7 +161,8 @@ struct Json<'a> {
     estimate: &'a RareEstimate,
     ratio: f64,
     effort: u64,
-    repetitions: u64,
+    asked: u64,
+    complete: bool,
     #[serde(flatten)]
     settings: Settings,
 }
@@ -147,6 +175,11 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
             name.unwrap_or(""),
             unit(&self.ready.vehicle, self.event.state),
         )
+    }
+
+    /// Whether all repetitions were flown that were asked for.
+    fn is_complete(&self) -> bool {
+        self.estimate.repetitions == self.event.repetitions
     }
 
     /// Steps of plain sampling to one of splitting, for an interval as wide.
@@ -165,7 +198,8 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
             estimate: &self.estimate,
             ratio: self.ratio(),
             effort: self.event.effort,
-            repetitions: self.event.repetitions,
+            asked: self.event.repetitions,
+            complete: self.is_complete(),
             settings: self.ready.settings(self.event.effort),
         }
     }
@@ -180,6 +214,12 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
         let (name, unit) = self.state();
         let Estimate { value, low, high } = self.estimate.probability;
         let [value, low, high] = [value, low, high].map(Shown);
+        let (flown, asked) = (self.estimate.repetitions, self.event.repetitions);
+        let repetitions = if self.is_complete() {
+            format!("{flown} repetitions")
+        } else {
+            interrupted(flown, asked, "repetitions")
+        };
         let mut text = format!(
             "{}: {place}, {}\n{name} passes {} within {} s with probability {value:.3e} [{low:.3e}, {high:.3e}]\nlevels, and the share that passes each from the one before",
             M::NAME,
@@ -198,8 +238,7 @@ impl<F: Flown, M: Pair<F>> Told<F, M> {
         }
         let _ = write!(
             text,
-            "\n{} repetitions of {} members a level, {} {} s, {}, seed {}\n{:.3e} member-steps; for an interval as wide, plain sampling takes {:.3e}, {:.2e} times as many\nlost, with a state that was no longer finite: {}",
-            self.event.repetitions,
+            "\n{repetitions} of {} members a level, {} {} s, {}, seed {}\n{:.3e} member-steps; for an interval as wide, plain sampling takes {:.3e}, {:.2e} times as many\nlost, with a state that was no longer finite: {}",
             self.event.effort,
             experiment.scheme.name(),
             Shown(experiment.dt),

@@ -13,6 +13,7 @@
 //! * [`Bounds`]: an interval of validity.
 //! * [`Pattern`]: where the entries of a compressed matrix stand.
 //! * [`NoiseClass`]: how a column of the diffusion depends on the state.
+//! * [`Shown`]: a number in a text for people.
 //!
 //! No heap and no panic: an index out of range is an [`Option`], never an abort.
 #![no_std]
@@ -34,6 +35,7 @@ mod outlined;
 mod pattern;
 mod provenance;
 mod real;
+mod shown;
 mod straight;
 mod table;
 mod vector;
@@ -55,6 +57,7 @@ pub use outlined::Outlined;
 pub use pattern::Pattern;
 pub use provenance::{Provenance, Status};
 pub use real::Real;
+pub use shown::Shown;
 pub use straight::Straight;
 pub use table::{Choice, ChoiceOption, Entry, Interval, ParameterSet, Rule, Sign, Table, Term};
 pub use vector::Vector;

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use ahv_core::{
-    AdditiveNoise, CommutativeNoise, DifferentiableNoise, ItoCorrected, Model, NoiseClass, Real,
+    Shown,    AdditiveNoise, CommutativeNoise, DifferentiableNoise, ItoCorrected, Model, NoiseClass, Real,
     StochasticModel, Vector,
 };
 
@@ -74,6 +74,7 @@ impl fmt::Display for NoiseError {
                 "the splitting is for {expected} states of coloured noise, the model has {found}"
             ),
             Self::StepSize { dt } => {
+                let dt = Shown(*dt);
                 write!(f, "the step size must be positive and finite, not {dt} s")
             }
         }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use ahv_core::{Real, Vector};
+use ahv_core::{Real, Shown, Vector};
 
 use crate::Failure;
 
@@ -44,10 +44,14 @@ impl<R: Real> StepError<R> {
 impl<R: Real> fmt::Display for StepError<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::StepSize { dt } => {
-                write!(f, "the step size must be positive and finite, not {dt} s")
+            Self::StepSize { dt } => write!(
+                f,
+                "the step size must be positive and finite, not {} s",
+                Shown(*dt)
+            ),
+            Self::NonFinite { name, value } => {
+                write!(f, "{name} became {}", Shown(value.to_f64()))
             }
-            Self::NonFinite { name, value } => write!(f, "{name} became {}", value.to_f64()),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use ahv_core::{Bounds, Outside, Real, Vector, first_outside};
+use ahv_core::{Bounds, Outside, Real, Shown, Vector, first_outside};
 
 /// Why a run ended before its time. The progress then holds the last good time and state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,11 +61,14 @@ pub enum Failure {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Setting { name, value } => write!(f, "{name} cannot be {value}"),
-            Self::NonFinite { time, name, value } => {
-                write!(f, "after {time} s {name} or its rate became {value}")
-            }
+        match *self {
+            Self::Setting { name, value } => write!(f, "{name} cannot be {}", Shown(value)),
+            Self::NonFinite { time, name, value } => write!(
+                f,
+                "after {} s {name} or its rate became {}",
+                Shown(time),
+                Shown(value)
+            ),
             Self::StepUnderflow {
                 time,
                 step,
@@ -73,19 +76,36 @@ impl fmt::Display for Failure {
                 value,
             } => write!(
                 f,
-                "at {time} s, where {name} is {value}, its tolerance asks for a step of {step} s"
+                "at {} s, where {name} is {}, its tolerance asks for a step of {} s",
+                Shown(time),
+                Shown(value),
+                Shown(step)
             ),
             Self::TooManySteps { time, steps } => {
+                let time = Shown(time);
                 write!(f, "{steps} steps were not enough; {time} s were reached")
             }
-            Self::OutsideValidity { time, outside } => write!(
+            Self::OutsideValidity {
+                time,
+                outside:
+                    Outside {
+                        name,
+                        value,
+                        bounds,
+                    },
+            } => write!(
                 f,
-                "at {time} s {} is {}, outside {}..{}",
-                outside.name, outside.value, outside.bounds.min, outside.bounds.max
+                "at {} s {name} is {}, outside {}..{}",
+                Shown(time),
+                Shown(value),
+                Shown(bounds.min),
+                Shown(bounds.max)
             ),
             Self::EventNotBracketed { time, event, value } => write!(
                 f,
-                "the event `{event}` cannot be located: its function is {value} at {time} s"
+                "the event `{event}` cannot be located: its function is {} at {} s",
+                Shown(value),
+                Shown(time)
             ),
         }
     }

@@ -3,7 +3,7 @@
 //! The mode η̈ + 2ζω η̇ + ω² η = σ ξ (17) and the Ornstein–Uhlenbeck process dχ = −a χ dt + b dw (18), both from rest, ξ
 //! being white noise of intensity 1. The generated package `flexible_mode` gives the moments; here are their extremes.
 
-use ahv_core::Vector;
+use ahv_core::{Shown, Vector};
 use ahv_integrate::{LinearTransition, StepError};
 use ahv_models::flexible_mode::{self, Input, NOMINAL, Parameters, Prepared, SETS, State, prepare};
 
@@ -44,7 +44,7 @@ pub struct Mode {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ReduceError {
     /// A parameter that must be positive and finite is not.
-    #[error("{name} must be positive and finite, not {value:?}")]
+    #[error("{name} must be positive and finite, not {}", Shown(*value))]
     NotPositive {
         /// Name of the parameter.
         name: &'static str,
@@ -52,7 +52,7 @@ pub enum ReduceError {
         value: f64,
     },
     /// The parameters are so large or small that a moment is not representable.
-    #[error("the {name} of the mode with these parameters is {value:?}")]
+    #[error("the {name} of the mode with these parameters is {}", Shown(*value))]
     OutOfRange {
         /// Name of the moment.
         name: &'static str,

@@ -265,7 +265,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
         };
         let transition =
             LinearTransition::<f64, MOST>::new(padded(&linear.a), padded(&linear.intensity), dt)
-                .map_err(|_| CovarianceError::Times)?;
+                .map_err(|_| CovarianceError::StepTooLong { time, dt })?;
         let trimmed = |matrix: &[[f64; MOST]; MOST]| {
             DMatrix::from_fn(size, size, |row, column| matrix[row][column])
         };

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use ahv_core::Vector;
+use ahv_core::{Shown, Vector};
 use ahv_integrate::NormalStream;
 
 /// Set in the seed, so that parameters have nothing to do with the noise of flights of the same seed.
@@ -62,7 +62,7 @@ pub struct Group {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DrawError {
     /// An uncertainty that is negative or not finite.
-    #[error("the uncertainty of {name} is {value:?}; it must be finite and not negative")]
+    #[error("the uncertainty of {name} is {}; it must be finite and not negative", Shown(*value))]
     Uncertainty {
         /// The parameter.
         name: &'static str,
@@ -70,7 +70,7 @@ pub enum DrawError {
         value: f64,
     },
     /// A correlation outside 0 to 1.
-    #[error("the correlation of group {group} is {value:?}; it must lie between 0 and 1")]
+    #[error("the correlation of group {group} is {}; it must lie between 0 and 1", Shown(*value))]
     Correlation {
         /// The group.
         group: String,

@@ -1,6 +1,6 @@
 //! How a number spreads over members.
 
-use crate::statistics::{Estimate, kurtosis, mean_and_std, quantile};
+use crate::statistics::{OpenEstimate, kurtosis, mean_and_std, quantile};
 
 /// The distribution of a number over members.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -11,12 +11,13 @@ pub struct Spread {
     pub mean: f64,
     /// Standard deviation (n − 1).
     pub std: f64,
-    /// Standard error of the standard deviation, by the fourth moment of the sample: for any distribution.
-    pub std_error: f64,
-    /// Lower end of the interval of 95 % of the standard deviation.
-    pub std_low: f64,
+    /// Standard error of the standard deviation, by the fourth moment of the sample: for any distribution. `None` of numbers
+    /// that are too few to say.
+    pub std_error: Option<f64>,
+    /// Lower end of the interval of 95 % of the standard deviation; `None` as well.
+    pub std_low: Option<f64>,
     /// Its upper end.
-    pub std_high: f64,
+    pub std_high: Option<f64>,
     /// Least value.
     pub min: f64,
     /// 5 % point.
@@ -41,12 +42,13 @@ impl Spread {
         let count = sample.len();
         // Equal numbers have no kurtosis.
         let kurtosis = if std > 0.0 { kurtosis(sample) } else { 3.0 };
-        let interval = Estimate::of_std(std, kurtosis, count as f64);
+        let interval = OpenEstimate::of_std(std, kurtosis, count as f64);
+        let error = 0.5 * std * ((kurtosis - 1.0).max(0.0) / count as f64).sqrt();
         Some(Self {
             count,
             mean,
             std,
-            std_error: 0.5 * std * ((kurtosis - 1.0).max(0.0) / count as f64).sqrt(),
+            std_error: interval.closed().map(|_| error),
             std_low: interval.low,
             std_high: interval.high,
             min: *sorted.first()?,

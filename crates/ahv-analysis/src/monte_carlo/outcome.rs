@@ -1,7 +1,6 @@
 //! What many members show together.
 
 use std::ops::Range;
-use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use ahv_core::{GeneratedModel, Vector};
@@ -14,7 +13,7 @@ use super::propagator::{Propagator, propagator};
 use super::spread::{Bin, QUANTILES, Spread};
 use super::{Loss, MonteCarloError};
 use crate::ordered::in_order;
-use crate::statistics::{Estimate, QuantileEstimate, mean_and_std};
+use crate::statistics::{Estimate, OpenEstimate, mean_and_std};
 
 /// Members whose flights are in memory at a time.
 const GROUP: u64 = 2048;
@@ -51,7 +50,7 @@ pub struct Outcome {
     pub losses: Vec<(u64, Loss)>,
     /// SHA-256 of the bits of the members' last states: component by component, little end first, member by member.
     pub digest: String,
-    /// Steps of members.
+    /// Steps of these members, to the end of the flight also for those that were lost.
     pub member_steps: u64,
     /// Time that it took.
     pub elapsed: Duration,
@@ -72,6 +71,8 @@ pub struct Snapshot {
     pub left: Vec<Vec<u64>>,
     /// For each set of watched intervals, how many members have left any so far.
     pub left_any: Vec<u64>,
+    /// Members that still fly and have stayed in the first set of watched intervals so far.
+    pub stayed: u64,
 }
 
 /// How one state spreads over the members.
@@ -80,9 +81,11 @@ pub struct StateSpread {
     /// Mean with its interval of 95 %; `None` where numbers are too large, or members too few.
     pub mean: Option<Estimate>,
     /// Standard deviation with its interval of 95 %, by the fourth moment; `None` as for the mean.
-    pub std: Option<Estimate>,
+    pub std: Option<OpenEstimate>,
+    /// Standard deviation of those that have stayed in the first of the watched intervals so far; `None` as for the mean.
+    pub std_of_stayed: Option<f64>,
     /// Quantiles of [`QUANTILES`], each with its interval of 95 %.
-    pub quantiles: [QuantileEstimate; QUANTILES.len()],
+    pub quantiles: [OpenEstimate; QUANTILES.len()],
     /// What the bins of the quantiles add to their error, in the unit of the state.
     pub resolution: f64,
     /// Counts between the least and the greatest number.
@@ -148,8 +151,7 @@ impl<F: GeneratedModel> Experiment<F> {
         if next == 0 {
             return Err(MonteCarloError::Stopped);
         }
-        let member_steps = control.done.load(Ordering::Relaxed);
-        Ok(collector.outcome(members, member_steps, started.elapsed()))
+        Ok(collector.outcome(members, started.elapsed()))
     }
 
     /// State and input of one member at the start and after every `stride` steps, as long as it is not lost.
@@ -217,6 +219,28 @@ struct Sums {
     spreads: Vec<Spread>,
     left: Vec<Vec<u64>>,
     left_any: Vec<u64>,
+    stayed: u64,
+    /// Of each state, of those that have stayed.
+    stayed_moments: Vec<RunningMoments>,
+}
+
+/// Mean and sum of squared deviations from it, of numbers that come group by group (Chan, Golub and LeVeque 1979): what
+/// diverges among others does not spoil them.
+#[derive(Clone, Copy, Default)]
+struct RunningMoments {
+    mean: f64,
+    squares: f64,
+}
+
+impl RunningMoments {
+    /// `new` numbers more, after `count`.
+    fn add(&mut self, count: f64, new: &[f64]) {
+        let n = new.len() as f64;
+        let (mean, std) = mean_and_std(new);
+        let (off, all) = (mean - self.mean, count + n);
+        self.squares += std * std * (n - 1.0) + off * off * count * n / all;
+        self.mean += off * n / all;
+    }
 }
 
 /// Sums of powers of a state's deviation from an origin.
@@ -284,6 +308,8 @@ impl<'e, F: GeneratedModel> Collector<'e, F> {
             spreads: Vec::new(),
             left: vec![vec![0; states]; experiment.watched.len()],
             left_any: vec![0; experiment.watched.len()],
+            stayed: 0,
+            stayed_moments: vec![RunningMoments::default(); states],
         });
         Self {
             sums: sums.collect(),
@@ -316,13 +342,18 @@ impl<'e, F: GeneratedModel> Collector<'e, F> {
             let at = seen.iter().filter_map(|seen| seen.at.get(index));
             let values: Vec<_> = at.map(|(x, _)| components(x, states)).collect();
             sums.add(&values);
+            let (mut flying, mut stayed) = (values.iter(), Vec::new());
             for seen in &seen {
-                sums.leave::<F>(&seen.left, step);
+                let left = sums.leave::<F>(&seen.left, step);
+                // Those that are lost before have no values.
+                let values = seen.at.get(index).and_then(|_| flying.next());
+                stayed.extend(values.filter(|_| !left));
             }
+            sums.stay(&stayed);
         });
     }
 
-    fn outcome(self, asked: u64, member_steps: u64, elapsed: Duration) -> Outcome {
+    fn outcome(self, asked: u64, elapsed: Duration) -> Outcome {
         let dt = self.experiment.dt;
         let snapshots = self.sums.into_iter().zip(&self.experiment.snapshots);
         Outcome {
@@ -339,15 +370,20 @@ impl<'e, F: GeneratedModel> Collector<'e, F> {
                 .iter()
                 .map(|byte| format!("{byte:02x}"))
                 .collect(),
-            member_steps,
+            member_steps: self.members.saturating_mul(self.experiment.steps()),
             elapsed,
         }
     }
 }
 
 impl Sums {
-    /// Counts what a member has left after so many steps.
-    fn leave<F: GeneratedModel>(&mut self, left: &[F::StateOf<Option<u64>>], step: u64) {
+    /// Counts what a member has left after so many steps; whether it has left the first of the sets.
+    fn leave<F: GeneratedModel>(
+        &mut self,
+        left: &[F::StateOf<Option<u64>>],
+        step: u64,
+    ) -> bool {
+        let mut first = None;
         let sets = left.iter().zip(&mut self.left).zip(&mut self.left_any);
         for ((left, counts), any) in sets {
             let mut some = false;
@@ -357,7 +393,21 @@ impl Sums {
                 some |= by_then;
             }
             *any += u64::from(some);
+            first.get_or_insert(some);
         }
+        first.unwrap_or(false)
+    }
+
+    /// Members that have stayed in the first of the sets.
+    fn stay(&mut self, members: &[&Vec<f64>]) {
+        if members.is_empty() {
+            return;
+        }
+        for (state, moments) in self.stayed_moments.iter_mut().enumerate() {
+            let values = members.iter().filter_map(|x| x.get(state).copied());
+            moments.add(self.stayed as f64, &values.collect::<Vec<_>>());
+        }
+        self.stayed += members.len() as u64;
     }
 
     fn add(&mut self, members: &[Vec<f64>]) {
@@ -421,10 +471,13 @@ impl Sums {
             let mean = sums.origin + sums.first / n;
             let kurtosis = sums.kurtosis(entry(&self.second), n);
             // One number has no spread.
-            let known = |estimate: Estimate| Some(estimate).filter(|it| n > 1.0 && it.is_finite());
+            let stayed = self.stayed_moments.get(index).filter(|_| self.stayed > 1);
+            let of_stayed = stayed.map(|it| (it.squares / (self.stayed - 1) as f64).sqrt());
             StateSpread {
-                mean: known(Estimate::of_mean(mean, std, n)),
-                std: known(Estimate::of_std(std, kurtosis, n)),
+                mean: Some(Estimate::of_mean(mean, std, n)).filter(|it| n > 1.0 && it.is_finite()),
+                std: Some(OpenEstimate::of_std(std, kurtosis, n))
+                    .filter(|it| n > 1.0 && it.is_finite()),
+                std_of_stayed: of_stayed.filter(|std| std.is_finite()),
                 quantiles: QUANTILES.map(|share| spread.quantile(share)),
                 resolution: spread.resolution(),
                 histogram: spread.histogram(TOLD_BINS),
@@ -437,6 +490,7 @@ impl Sums {
             covariance,
             left: self.left,
             left_any: self.left_any,
+            stayed: self.stayed,
         }
     }
 }

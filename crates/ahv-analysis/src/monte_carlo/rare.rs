@@ -8,7 +8,7 @@
 
 mod passage;
 
-use ahv_core::{GeneratedModel, Vector};
+use ahv_core::{GeneratedModel, Shown, Vector};
 use ahv_integrate::NormalStream;
 use rayon::prelude::*;
 
@@ -56,9 +56,7 @@ pub enum RareError {
         states: usize,
     },
     /// A limit that is met at the start, or no number.
-    #[error(
-        "the limit {limit:?} of {state} must be a number other than {start:?}, where the flight starts"
-    )]
+    #[error("the limit {} of {state} must be a number other than {}, where the flight starts", Shown(*limit), Shown(*start))]
     Limit {
         /// The state.
         state: &'static str,
@@ -68,7 +66,7 @@ pub enum RareError {
         start: f64,
     },
     /// Levels that do not lie between the start and the limit, in order.
-    #[error("the level {level:?} does not lie between {after:?} and the limit {limit:?}")]
+    #[error("the level {} does not lie between {} and the limit {}", Shown(*level), Shown(*after), Shown(*limit))]
     Level {
         /// The level.
         level: f64,
@@ -89,7 +87,7 @@ pub enum RareError {
         repetitions: u64,
     },
     /// A flight that does not go anywhere.
-    #[error("a flight of {steps} steps of {dt:?} s is none")]
+    #[error("a flight of {steps} steps of {} s is none", Shown(*dt))]
     Flight {
         /// Steps.
         steps: u64,
@@ -97,17 +95,27 @@ pub enum RareError {
         dt: f64,
     },
     /// Members that do not come nearer to the limit.
-    #[error(
-        "the members come no nearer to the limit than {level:?}; more members from each level may"
-    )]
+    #[error("the members come no nearer to the limit than {}; more members from each level may", Shown(*level))]
     OutOfReach {
         /// The level that was not passed, or beyond which none could be set.
         level: f64,
     },
-    /// Repetitions that say nothing of their error.
+    /// Stopped before there was an estimate.
     #[error(
-        "every repetition gave {value:?}; more members from each level, or more repetitions, tell them apart"
+        "stopped after {repetitions} of {asked} repetitions, before there was an estimate: it takes {FEWEST_REPETITIONS} at least"
     )]
+    Stopped {
+        /// Levels that the pilot had set, that of the limit included if it came so far.
+        levels: Vec<f64>,
+        /// Repetitions that were flown.
+        repetitions: u64,
+        /// Repetitions that were asked for.
+        asked: u64,
+        /// Steps of members, the pilot's included.
+        member_steps: u64,
+    },
+    /// Repetitions that say nothing of their error.
+    #[error("every repetition gave {}; more members from each level, or more repetitions, tell them apart", Shown(*value))]
     NoSpread {
         /// What they gave.
         value: f64,
@@ -133,6 +141,8 @@ pub struct RareEstimate {
     pub probability: Estimate,
     /// The levels; the limit is the last.
     pub levels: Vec<Level>,
+    /// Repetitions that the estimate is of; fewer than were asked for if the work was stopped.
+    pub repetitions: u64,
     /// Steps of members, the pilot's included.
     pub member_steps: u64,
     /// Steps of members that plain sampling needs for an interval as wide: p (1 − p) (z/half)² flights.
@@ -174,7 +184,12 @@ impl<F: GeneratedModel> Experiment<F> {
         pool.install(|| {
             let heights = match heights {
                 Some(heights) => heights,
-                None => search.pilot()?,
+                None => {
+                    let mut set = Vec::new();
+                    let done = search.pilot(&mut set);
+                    done.map_err(|error| search.told(error, &set, 0))?;
+                    set
+                }
             };
             search.repeat(&heights)
         })
@@ -250,6 +265,26 @@ impl RareEvent {
     }
 }
 
+/// How a level was passed.
+#[derive(Clone, Copy, Default)]
+struct Count {
+    /// Members that started to it.
+    started: u64,
+    /// Those that passed it.
+    passed: u64,
+}
+
+impl Count {
+    fn add(&mut self, other: Self) {
+        self.started += other.started;
+        self.passed += other.passed;
+    }
+
+    fn share(self) -> f64 {
+        self.passed as f64 / self.started.max(1) as f64
+    }
+}
+
 /// Splitting at work.
 struct Search<'e, F: GeneratedModel> {
     experiment: &'e Experiment<F>,
@@ -268,14 +303,14 @@ impl<F: GeneratedModel> Search<'_, F> {
     /// Heights of levels that a fair share of the members passes, that of the limit included.
     ///
     /// Members fly twice with the same noise: to find the level, and to pass it.
-    fn pilot(&mut self) -> Result<Vec<f64>, MonteCarloError> {
+    fn pilot(&mut self, heights: &mut Vec<f64>) -> Result<(), MonteCarloError> {
         let Goal {
             sign,
             height: limit,
             ..
         } = self.goal;
         let start = self.event.start(self.experiment).unwrap_or(0.0);
-        let (mut heights, mut last) = (Vec::new(), sign * start);
+        let mut last = sign * start;
         let mut flying = self.starts();
         while heights.len() < MOST_LEVELS {
             let flown = self.fly(&flying, limit)?;
@@ -286,7 +321,7 @@ impl<F: GeneratedModel> Search<'_, F> {
             if height >= limit {
                 heights.push(limit);
                 self.lost = 0;
-                return Ok(heights);
+                return Ok(());
             }
             if height <= last {
                 break;
@@ -303,40 +338,73 @@ impl<F: GeneratedModel> Search<'_, F> {
         Err(RareError::OutOfReach { level: sign * last }.into())
     }
 
-    /// The estimate by independent repetitions with these levels.
+    /// The estimate by independent repetitions with these levels; stopped, by those that were flown if they are enough.
     fn repeat(mut self, heights: &[f64]) -> Result<RareEstimate, MonteCarloError> {
-        // Those that start to each level, and those that pass it.
-        let mut counts = vec![[0_u64; 2]; heights.len()];
-        let mut values = Vec::new();
+        let (mut counts, mut values) = (vec![Count::default(); heights.len()], Vec::new());
+        let mut stopped = None;
         for _ in 0..self.event.repetitions {
-            let mut flying = self.starts();
-            let mut value = 1.0;
-            for (&height, [started, passed]) in heights.iter().zip(&mut counts) {
-                let entrances = entrances(&self.fly(&flying, height)?);
-                *started += flying.len() as u64;
-                *passed += entrances.len() as u64;
-                value *= entrances.len() as f64 / flying.len() as f64;
-                if entrances.is_empty() {
+            let before = (self.member_steps, self.lost);
+            match self.repetition(heights) {
+                Ok((value, counted)) => {
+                    values.push(value);
+                    let levels = counts.iter_mut().zip(counted);
+                    levels.for_each(|(count, counted)| count.add(counted));
+                }
+                Err(MonteCarloError::Stopped) => {
+                    (self.member_steps, self.lost) = before;
+                    stopped = Some(MonteCarloError::Stopped);
                     break;
                 }
-                flying = self.copies(&entrances);
+                Err(error) => return Err(error),
             }
-            values.push(value);
         }
-        let levels = heights
-            .iter()
-            .zip(&counts)
-            .map(|(height, [started, passed])| Level {
-                value: self.goal.sign * height,
-                share: *passed as f64 / (*started).max(1) as f64,
-            });
+        let flown = values.len() as u64;
+        let enough = flown >= FEWEST_REPETITIONS;
+        match (stopped, self.estimate(heights, &counts, &values)) {
+            (None, estimate) => estimate.map_err(MonteCarloError::from),
+            (Some(_), Ok(estimate)) if enough => Ok(estimate),
+            (Some(stopped), _) => Err(self.told(stopped, heights, flown)),
+        }
+    }
+
+    /// One of them: the product of the shares, and the counts of the levels that it came to.
+    fn repetition(&mut self, heights: &[f64]) -> Result<(f64, Vec<Count>), MonteCarloError> {
+        let (mut value, mut counts) = (1.0, Vec::new());
+        let mut flying = self.starts();
+        for &height in heights {
+            let entrances = entrances(&self.fly(&flying, height)?);
+            let count = Count {
+                started: flying.len() as u64,
+                passed: entrances.len() as u64,
+            };
+            counts.push(count);
+            value *= count.share();
+            if entrances.is_empty() {
+                break;
+            }
+            flying = self.copies(&entrances);
+        }
+        Ok((value, counts))
+    }
+
+    /// What the repetitions give.
+    fn estimate(
+        &self,
+        heights: &[f64],
+        counts: &[Count],
+        values: &[f64],
+    ) -> Result<RareEstimate, RareError> {
+        let levels = heights.iter().zip(counts).map(|(height, count)| Level {
+            value: self.goal.sign * height,
+            share: count.share(),
+        });
         let levels: Vec<Level> = levels.collect();
         if let Some(level) = levels.iter().find(|level| level.share == 0.0) {
-            return Err(RareError::OutOfReach { level: level.value }.into());
+            return Err(RareError::OutOfReach { level: level.value });
         }
-        let (mean, half) = mean_and_half(&values);
+        let (mean, half) = mean_and_half(values);
         if half == 0.0 {
-            return Err(RareError::NoSpread { value: mean }.into());
+            return Err(RareError::NoSpread { value: mean });
         }
         let flights = mean * (1.0 - mean) * (Z_95 / half).powi(2);
         Ok(RareEstimate {
@@ -346,9 +414,24 @@ impl<F: GeneratedModel> Search<'_, F> {
                 high: (mean + half).min(1.0),
             },
             levels,
+            repetitions: values.len() as u64,
             member_steps: self.member_steps,
             plain_member_steps: flights * self.experiment.steps() as f64,
             lost: self.lost,
+        })
+    }
+
+    /// Of work that was stopped, what it came to.
+    fn told(&self, error: MonteCarloError, heights: &[f64], repetitions: u64) -> MonteCarloError {
+        if error != MonteCarloError::Stopped {
+            return error;
+        }
+        let levels = heights.iter().map(|height| self.goal.sign * height);
+        MonteCarloError::from(RareError::Stopped {
+            levels: levels.collect(),
+            repetitions,
+            asked: self.event.repetitions,
+            member_steps: self.member_steps,
         })
     }
 

@@ -1,6 +1,6 @@
 //! How a number spreads over the members, in memory that does not grow with them.
 
-use crate::statistics::{QuantileEstimate, ranks};
+use crate::statistics::{OpenEstimate, ranks};
 
 /// Bins between the outer two.
 const BINS: usize = 2000;
@@ -81,15 +81,15 @@ impl Spread {
     /// The quantile of this share, with its interval of 95 % by the ranks (binomial); the ends are edges where there are bins.
     ///
     /// A value that lies in an outer bin is not known, nor one of no numbers.
-    pub(super) fn quantile(&self, share: f64) -> QuantileEstimate {
+    pub(super) fn quantile(&self, share: f64) -> OpenEstimate {
         if let Some(numbers) = &self.exact {
             let mut sorted = numbers.clone();
             sorted.sort_by(f64::total_cmp);
-            return QuantileEstimate::of_sorted(&sorted, share);
+            return OpenEstimate::of_sorted(&sorted, share);
         }
         let [low, high] = ranks(share, self.count);
         let edges = |rank: Option<u64>| rank.and_then(|rank| self.edges(rank));
-        QuantileEstimate {
+        OpenEstimate {
             value: self.binned(share),
             low: edges(low).map(|[low, _]| low),
             high: edges(high).map(|[_, high]| high),

@@ -1,4 +1,4 @@
-use super::{Estimate, QuantileEstimate, kurtosis, ranks, student_95};
+use super::{Estimate, OpenEstimate, kurtosis, mean_and_std, ranks, student_95};
 
 /// Against the sum of the binomial distribution, term by term.
 #[test]
@@ -45,19 +45,19 @@ fn ranks_leave_at_most_a_tail_on_either_side() {
 #[test]
 fn a_side_without_a_rank_is_open() {
     let sample: Vec<f64> = (0..40).map(f64::from).collect();
-    let low = QuantileEstimate::of_sorted(&sample, 0.005);
+    let low = OpenEstimate::of_sorted(&sample, 0.005);
     assert_eq!((low.low, low.high), (None, Some(1.0)));
-    let high = QuantileEstimate::of_sorted(&sample, 0.995);
+    let high = OpenEstimate::of_sorted(&sample, 0.995);
     assert_eq!((high.low, high.high), (Some(38.0), None));
     // 14 and 27 of 40: the tables of the sign test.
-    let median = QuantileEstimate::of_sorted(&sample, 0.5);
+    let median = OpenEstimate::of_sorted(&sample, 0.5);
     assert_eq!(
         (median.value, median.low, median.high),
         (Some(19.5), Some(13.0), Some(26.0))
     );
     assert_eq!(
-        QuantileEstimate::of_sorted(&[], 0.5),
-        QuantileEstimate::default()
+        OpenEstimate::of_sorted(&[], 0.5),
+        OpenEstimate::default()
     );
 }
 
@@ -79,7 +79,8 @@ fn students_points_are_those_of_his_table() {
 #[test]
 fn the_interval_of_a_deviation_follows_the_kurtosis() {
     let width = |kurtosis| {
-        let it = Estimate::of_std(1.0, kurtosis, 1e6);
+        let it = OpenEstimate::of_std(1.0, kurtosis, 1e6);
+        let it = it.closed().expect("many numbers");
         it.high - it.low
     };
     assert!((width(9.0) / width(3.0) - 2.0).abs() < 1e-4);
@@ -101,8 +102,22 @@ fn a_quantile_lies_in_its_interval_however_few_the_numbers() {
     for count in 1..40_u32 {
         let sorted: Vec<f64> = (0..count).map(f64::from).collect();
         for share in [0.005, 0.05, 0.5, 0.95, 0.995] {
-            let estimate = QuantileEstimate::of_sorted(&sorted, share);
+            let estimate = OpenEstimate::of_sorted(&sorted, share);
             assert!(estimate.value.is_some_and(|value| estimate.holds(value)));
         }
+    }
+}
+
+/// Two numbers have the kurtosis 1 and three 1.5, whichever they are.
+#[test]
+fn two_or_three_numbers_say_nothing_of_a_deviation() {
+    for sample in [&[1.0, 5.0][..], &[1.0, 2.0, 9.0]] {
+        let estimate = OpenEstimate::of_sample_std(sample);
+        assert_eq!((estimate.low, estimate.high), (None, None));
+        assert_eq!(estimate.value, Some(mean_and_std(sample).1));
+    }
+    for sample in [&[1.0, 2.0, 4.0, 9.0][..], &[0.0, 0.0, 0.0, 1.0], &[2.0; 4]] {
+        let it = OpenEstimate::of_sample_std(sample).closed().expect("four");
+        assert!(it.low <= it.value && it.value <= it.high && it.high <= 1e4 * it.value, "{it:?}");
     }
 }

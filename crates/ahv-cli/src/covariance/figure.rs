@@ -25,7 +25,7 @@ fn panel<M: FlightModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel
         .iter()
         .filter_map(|it| Some((it.time, factor * *it.std().get(index)?)));
     let flown = outcome.sampled.iter().filter_map(|it| {
-        let std = it.states.get(index)?.std?;
+        let std = it.states.get(index)?.std?.closed()?;
         Some((it.time, factor * std.low, factor * std.high))
     });
     Some(Panel {

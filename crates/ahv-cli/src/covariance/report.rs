@@ -5,13 +5,13 @@ use std::path::Path;
 
 use ahv_analysis::covariance::Spreading;
 use ahv_analysis::monte_carlo::Snapshot;
-use ahv_analysis::statistics::Estimate;
+use ahv_analysis::statistics::{Estimate, OpenEstimate};
 use ahv_core::Vector;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::Outcome;
-use crate::assignment::show;
+use crate::assignment::{interval, show};
 use crate::condition::Heading;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
@@ -47,7 +47,7 @@ struct JsonTime {
     time: f64,
     members: u64,
     linear_std: Pairs<f64>,
-    sampled_std: Pairs<Option<Estimate>>,
+    sampled_std: Pairs<Option<OpenEstimate>>,
     /// Linear over sampled standard deviation.
     ratio: Pairs<Option<Estimate>>,
     linear_covariance: Vec<Vec<f64>>,
@@ -64,9 +64,9 @@ struct JsonRatio {
     ratio: Estimate,
 }
 
-/// Linear over sampled standard deviation with its interval of 95 %; `None` where nothing spreads.
-fn ratio(linear: f64, sampled: Option<Estimate>) -> Option<Estimate> {
-    let Estimate { value, low, high } = sampled?;
+/// Linear over sampled standard deviation with its interval of 95 %; `None` where nothing spreads, or the interval is open.
+fn ratio(linear: f64, sampled: Option<OpenEstimate>) -> Option<Estimate> {
+    let Estimate { value, low, high } = sampled?.closed()?;
     let ratio = Estimate {
         value: linear / value,
         low: linear / high,
@@ -80,7 +80,7 @@ fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
     (0..matrix.nrows()).map(row).collect()
 }
 
-pub(super) fn stds(snapshot: &Snapshot) -> Vec<Option<Estimate>> {
+pub(super) fn stds(snapshot: &Snapshot) -> Vec<Option<OpenEstimate>> {
     snapshot.states.iter().map(|state| state.std).collect()
 }
 
@@ -217,12 +217,10 @@ impl<M: FlightModel> Outcome<'_, M> {
                 };
                 let _ = write!(
                     text,
-                    "\n  {name:<12} at {:<5} s: {:<16} flown {} [{}, {}]",
+                    "\n  {name:<12} at {:<5} s: {:<16} flown {}",
                     Shown(time(linear.time)),
                     shown(std),
-                    shown(flown.value),
-                    shown(flown.low),
-                    shown(flown.high)
+                    interval(&flown, shown)
                 );
                 if let Some(ratio) = ratio(std, Some(flown)) {
                     let _ = write!(text, "  ratio {:.3}", Shown(ratio.value));
@@ -275,18 +273,14 @@ impl<M: FlightModel> Outcome<'_, M> {
         let first = ["time [s]", "members"].map(str::to_owned).into_iter();
         let last = ["complete".to_owned()];
         file.row(&first.chain(columns).chain(last).collect::<Vec<_>>())?;
-        let cells = |it: Option<Estimate>| {
-            let numbers = [
-                it.map(|it| it.value),
-                it.map(|it| it.low),
-                it.map(|it| it.high),
-            ];
-            numbers.map(|number| number.map_or_else(String::new, cell))
+        let cells = |it: OpenEstimate| {
+            [it.value, it.low, it.high].map(|number| number.map_or_else(String::new, cell))
         };
         for (linear, sampled) in self.pairs() {
             let stds = linear.std().into_iter().zip(stds(sampled));
             let stds = stds.flat_map(|(std, flown)| {
-                let rest = cells(flown).into_iter().chain(cells(ratio(std, flown)));
+                let ratio = cells(ratio(std, flown).into());
+                let rest = cells(flown.unwrap_or_default()).into_iter().chain(ratio);
                 std::iter::once(cell(std)).chain(rest)
             });
             let first = [cell(time(linear.time)), sampled.members.to_string()];

@@ -238,11 +238,12 @@ impl<M: FlightModel> Outcome<'_, M> {
             };
             let linear = self.slopes.std(index, &self.draws);
             let linear = linear.map_or_else(|| "none".to_owned(), |std| number(factor * std));
-            let [nominal, mean, std, error, p05, p50, p95] = [
+            let error = spread.std_error;
+            let error = error.map_or_else(|| "open".to_owned(), |it| number(factor * it));
+            let [nominal, mean, std, p05, p50, p95] = [
                 values[index],
                 spread.mean,
                 spread.std,
-                spread.std_error,
                 spread.p05,
                 spread.p50,
                 spread.p95,

@@ -13,6 +13,7 @@ use crate::assignment::Assignments;
 use crate::condition::Vehicle;
 use crate::failure::{Failure, complain};
 use crate::gains::Gains;
+use crate::number::Shown;
 
 /// Bandwidth of the actuators, in rad/s, unless another is given.
 const BANDWIDTH: f64 = 20.0;
@@ -75,14 +76,16 @@ impl FeedbackArguments {
         };
         let fault = |what: &str| Failure::Request(format!("--feedback {}: {what}", path.display()));
         let gains = Gains::read(path, vehicle, flight).map_err(|what| fault(&what))?;
+        vehicle.moves(&gains.state.vector()).map_err(|why| fault(&why))?;
         let feedback = self.law::<M, F>(vehicle, &gains)?;
         let mut differences = gains.differences(vehicle, flight);
         if let Some(unsteady) = feedback.unsteady(&vehicle.model) {
             let unit = vehicle.units.label::<F::State<f64>>(unsteady.state);
             differences.push(format!(
-                "a reference that is no equilibrium of the flights: {} changes by {:?} {unit} a second, in a steady flight by \
-                 {:?}",
-                unsteady.state, unsteady.rate, unsteady.expected
+                "a reference that is no equilibrium of the flights: {} changes by {} {unit} a second, in a steady flight by {}",
+                unsteady.state,
+                Shown(unsteady.rate),
+                Shown(unsteady.expected)
             ));
         }
         if differences.is_empty() {

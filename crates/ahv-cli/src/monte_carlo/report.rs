@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use ahv_analysis::monte_carlo::{Flown, QUANTILES, Snapshot};
-use ahv_analysis::statistics::{Estimate, QuantileEstimate};
+use ahv_analysis::statistics::{Estimate, OpenEstimate};
 use ahv_core::Vector;
 use serde::Serialize;
 
 use super::Told;
-use crate::assignment::show;
+use crate::assignment::{interval, show};
 use crate::condition::Heading;
 use crate::flights::{Pair, Settings};
 use crate::number::{self, Shown};
@@ -32,6 +32,7 @@ pub(super) struct Json<'a> {
     settings: Settings,
     mean: Pairs<Option<f64>>,
     std: Pairs<Option<f64>>,
+    std_inside_validity_box: Pairs<Option<f64>>,
     digest: &'a str,
     left_validity_box: Estimate,
     snapshots: Vec<JsonSnapshot>,
@@ -49,7 +50,7 @@ struct JsonSnapshot {
     time: f64,
     members: u64,
     mean: Pairs<Option<Estimate>>,
-    std: Pairs<Option<Estimate>>,
+    std: Pairs<Option<OpenEstimate>>,
     quantiles: Pairs<Vec<JsonQuantile>>,
     quantile_resolution: Pairs<f64>,
     covariance: Vec<Vec<Option<f64>>>,
@@ -63,7 +64,7 @@ struct JsonSnapshot {
 struct JsonQuantile {
     share: f64,
     #[serde(flatten)]
-    estimate: QuantileEstimate,
+    estimate: OpenEstimate,
 }
 
 /// Names of the states, each with its value.
@@ -103,7 +104,8 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
             seconds: outcome.elapsed.as_secs_f64(),
             settings: self.ready.settings(outcome.asked),
             mean: by_state::<M::State, _>(last().map(|it| value(&it.mean))),
-            std: by_state::<M::State, _>(last().map(|it| value(&it.std))),
+            std: by_state::<M::State, _>(last().map(|it| it.std?.value)),
+            std_inside_validity_box: by_state::<M::State, _>(last().map(|it| it.std_of_stayed)),
             digest: &outcome.digest,
             left_validity_box: self.left_any(outcome.snapshots.last(), 0),
             snapshots: outcome
@@ -202,27 +204,18 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
         // Writing into a String cannot fail.
         for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(states) {
             let shown = |value: f64| show(value, unit);
-            let range = |estimate: &Option<Estimate>| match estimate {
-                Some(it) => format!(
-                    "{} [{}, {}]",
-                    shown(it.value),
-                    shown(it.low),
-                    shown(it.high)
-                ),
+            let range = |estimate: Option<OpenEstimate>| match estimate {
+                Some(it) => interval(&it, shown),
                 None => "none".to_owned(),
             };
-            let point = |estimate: Option<&QuantileEstimate>| {
-                let it = estimate.copied().unwrap_or_default();
-                let value = it.value.map_or_else(|| "-".to_owned(), shown);
-                let [low, high] =
-                    [it.low, it.high].map(|end| end.map_or_else(|| "open".to_owned(), shown));
-                format!("{value} [{low}, {high}]")
+            let point = |estimate: Option<&OpenEstimate>| {
+                interval(&estimate.copied().unwrap_or_default(), shown)
             };
             let _ = write!(
                 text,
                 "\n  {name:<12} {}; {}; {} .. {}",
-                range(&state.mean),
-                range(&state.std),
+                range(state.mean.map(|it| Some(it).into())),
+                range(state.std),
                 point(state.quantiles.first()),
                 point(state.quantiles.last()),
             );

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ahv_analysis::monte_carlo::{Flown, QUANTILES};
-use ahv_analysis::statistics::QuantileEstimate;
+use ahv_analysis::statistics::OpenEstimate;
 use ahv_core::Vector;
 
 use super::{Told, figure, trajectories};
@@ -17,7 +17,7 @@ use crate::output;
 const COMPLETE: &str = "complete";
 
 /// Cells of an estimate; empty where there is none, or a side is open.
-fn cells(estimate: &QuantileEstimate) -> [String; 3] {
+fn cells(estimate: &OpenEstimate) -> [String; 3] {
     [estimate.value, estimate.low, estimate.high]
         .map(|number| number.map_or_else(String::new, cell))
 }
@@ -67,7 +67,7 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
                     (*name).to_owned(),
                     (*unit).to_owned(),
                 ];
-                let moments = [state.mean, state.std].map(QuantileEstimate::from);
+                let moments = [state.mean.into(), state.std.unwrap_or_default()];
                 row.extend(moments.iter().chain(&state.quantiles).flat_map(cells));
                 row.push(complete.clone());
                 file.row(&row)?;

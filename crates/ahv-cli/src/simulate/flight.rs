@@ -10,6 +10,7 @@ use crate::assignment::Assignments;
 use crate::condition::Vehicle;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::number::Shown;
 use crate::output::describe;
 use crate::progress::{Progress, Work};
 use crate::units::Units;
@@ -91,6 +92,9 @@ impl<M: FlightModel> Flight<'_, M> {
         let (mut x, mut u) = (trim.state, trim.input);
         inputs.apply(&mut u, &[]);
         initial.apply(&mut x, &[]);
+        self.vehicle
+            .moves(&x)
+            .map_err(|why| Failure::Request(format!("--initial: {why}")))?;
         Ok((x, u))
     }
 
@@ -104,7 +108,7 @@ impl<M: FlightModel> Flight<'_, M> {
             "{}: {failure}; {} was not written\nthe last good state, at {} s:\n{}",
             M::NAME,
             out.display(),
-            last_good.time,
+            Shown(last_good.time),
             describe(&last_good.state, self.vehicle.units)
         ))
     }

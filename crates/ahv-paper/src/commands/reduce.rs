@@ -11,6 +11,7 @@ use ahv_cli::failure::{Failure, print};
 use ahv_cli::number::{self, Shown, positive};
 use ahv_cli::output;
 use ahv_cli::progress::{Progress, Work};
+use ahv_cli::steps::allowed;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
@@ -152,17 +153,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     fn experiment(&self) -> Result<Experiment, Failure> {
         let steps = (self.t_end / self.dt).round();
-        if !(1.0..=MOST as f64).contains(&steps) {
-            return Err(Failure::Request(format!(
-                "--t-end {} with --dt {} makes {steps} steps; 1 to {MOST} are allowed",
-                self.t_end, self.dt
-            )));
-        }
+        let steps = allowed(self.t_end, self.dt, steps, MOST as f64)?;
         Ok(Experiment {
             reading: Reading::White,
             drive: Drive::Common,
             runs: self.runs,
-            steps: steps as u64,
+            steps,
             dt: self.dt,
             seed: self.seed,
         })
