@@ -1,7 +1,9 @@
 //! The linear system about a state and an input.
 
-use ahv_core::{DifferentiableModel, Shown, Vector};
+use ahv_core::{DifferentiableModel, GeneratedModel, Shown, Vector};
 use nalgebra::DMatrix;
+
+use crate::dual::output_slopes;
 
 /// dx/dt = A x + B u, y = C x + D u, for deviations from a state and an input.
 ///
@@ -30,8 +32,8 @@ pub enum LinearizeError {
     /// An input that the model does not have.
     #[error("the model has no input called {0}")]
     UnknownInput(String),
-    /// An output that is no state of the model.
-    #[error("the model has no state called {0}")]
+    /// An output that is neither a state nor another quantity of the model.
+    #[error("the model has no state or output called {0}")]
     UnknownOutput(String),
     /// A derivative is infinite or NaN.
     #[error("the derivative of {row} by {column} is {}", Shown(*value))]
@@ -94,13 +96,71 @@ where
     Ok(system)
 }
 
+/// The linear system of a generated model, whose outputs may be states and other quantities.
+///
+/// # Errors
+///
+/// [`LinearizeError`]
+pub fn with_outputs<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
+    x: &M::State,
+    u: &M::Input,
+    inputs: &[String],
+    outputs: &[String],
+) -> Result<LinearSystem, LinearizeError> {
+    let model = M::with_parameters(parameters);
+    let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+    let mut system = linearize(&model, x, u, &inputs, &[])?;
+    let (n, m) = (system.states.len(), system.inputs.len());
+    let slopes = output_slopes::<M>(parameters, x, u);
+    let slope = |output: usize, variable: usize| {
+        let slopes: Option<&M::OutputsOf<f64>> = slopes.get(variable);
+        slopes.and_then(|slopes| slopes.get(output)).unwrap_or(0.0)
+    };
+    let places = system
+        .inputs
+        .iter()
+        .map(|name| M::Input::index_of(name).unwrap_or(0));
+    let places: Vec<usize> = places.collect();
+    (system.c, system.d) = (
+        DMatrix::zeros(outputs.len(), n),
+        DMatrix::zeros(outputs.len(), m),
+    );
+    for (row, name) in outputs.iter().enumerate() {
+        let name = name.as_str();
+        let (known, index) = if let Some(state) = M::State::index_of(name) {
+            system.c[(row, state)] = 1.0;
+            (M::State::NAMES, state)
+        } else if let Some(output) = M::OutputsOf::<f64>::index_of(name) {
+            for state in 0..n {
+                system.c[(row, state)] = slope(output, state);
+            }
+            for (column, &input) in places.iter().enumerate() {
+                system.d[(row, column)] = slope(output, n + input);
+            }
+            (M::OutputsOf::<f64>::NAMES, output)
+        } else {
+            return Err(LinearizeError::UnknownOutput(name.to_owned()));
+        };
+        system.outputs.extend(known.get(index));
+    }
+    system.check()?;
+    Ok(system)
+}
+
 impl LinearSystem {
     fn check(&self) -> Result<(), LinearizeError> {
-        for (matrix, columns) in [(&self.a, &self.states), (&self.b, &self.inputs)] {
-            for (&column, values) in columns.iter().zip(matrix.column_iter()) {
-                let mut rows = self.states.iter().zip(&values);
-                if let Some((&row, &value)) = rows.find(|(_, value)| !value.is_finite()) {
-                    return Err(LinearizeError::NonFinite { row, column, value });
+        let rows = [
+            (&self.a, &self.b, &self.states),
+            (&self.c, &self.d, &self.outputs),
+        ];
+        for (by_state, by_input, rows) in rows {
+            for (matrix, columns) in [(by_state, &self.states), (by_input, &self.inputs)] {
+                for (&column, values) in columns.iter().zip(matrix.column_iter()) {
+                    let mut rows = rows.iter().zip(&values);
+                    if let Some((&row, &value)) = rows.find(|(_, value)| !value.is_finite()) {
+                        return Err(LinearizeError::NonFinite { row, column, value });
+                    }
                 }
             }
         }

@@ -9,7 +9,7 @@ mod newton;
 mod response;
 mod system;
 
-use ahv_core::{Bounds, DifferentiableModel, Shown, TrimProblem, Vector};
+use ahv_core::{Bounds, DifferentiableModel, Equation, Given, Shown, Sought, TrimProblem, Vector};
 
 pub use response::{Shift, response};
 use system::{Point, System};
@@ -17,8 +17,13 @@ use system::{Point, System};
 /// A steady state that is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SteadyState<U> {
-    problem: TrimProblem,
-    given: Vec<(&'static str, f64)>,
+    /// The problem's given and sought, in the model's units.
+    given: Vec<Given>,
+    sought: Vec<Sought>,
+    equations: &'static [Equation],
+    moving: &'static [&'static str],
+    /// Values of the given states by name.
+    values: Vec<(&'static str, f64)>,
     /// Inputs: those that are sought are where the search starts, all others are held.
     pub input: U,
     /// Where the inputs that are sought may lie, in their order.
@@ -29,31 +34,48 @@ impl<U: Vector<f64>> SteadyState<U> {
     /// What the problem gives where nothing else is asked for, in the model's units: all held inputs 0, the others without
     /// bounds.
     pub fn new(problem: &TrimProblem) -> Self {
-        let sought = |name: &str| problem.sought.iter().find(|it| it.name == name);
+        Self::converted(problem, |_| 1.0)
+    }
+
+    /// The same for a model in other units: `factor` gives what each state and input of the problem is multiplied with.
+    pub fn converted(problem: &TrimProblem, factor: impl Fn(&str) -> f64) -> Self {
+        let given = problem.given.iter().map(|it| {
+            let factor = factor(it.name);
+            Given::new(
+                it.name,
+                it.default * factor,
+                it.above * factor,
+                it.below * factor,
+            )
+        });
+        let sought = problem.sought.iter().map(|it| {
+            let factor = factor(it.name);
+            Sought::new(it.name, it.start * factor, it.scale * factor)
+        });
+        let (given, sought): (Vec<_>, Vec<_>) = (given.collect(), sought.collect());
         let start = |index| {
-            let name = U::NAMES.get(index).copied().and_then(sought);
-            name.map_or(0.0, |it| it.start)
-        };
-        let mut flight = Self {
-            problem: *problem,
-            given: problem
-                .given
-                .iter()
-                .map(|it| (it.name, it.default))
-                .collect(),
-            input: U::from_fn(start),
-            bounds: Vec::new(),
+            let name = U::NAMES.get(index);
+            let found = sought.iter().find(|it| Some(&it.name) == name);
+            found.map_or(0.0, |it| it.start)
         };
         let open = Bounds::new(f64::NEG_INFINITY, f64::INFINITY);
-        flight.bounds = flight.sought_inputs().map(|_| open).collect();
-        flight
+        let inputs = sought.iter().filter(|it| U::index_of(it.name).is_some());
+        Self {
+            values: given.iter().map(|it| (it.name, it.default)).collect(),
+            bounds: inputs.map(|_| open).collect(),
+            input: U::from_fn(start),
+            equations: problem.equations,
+            moving: problem.moving,
+            given,
+            sought,
+        }
     }
 
     /// The same with another value of a given state. A name that is none of a given state is an error of [`Self::check`].
     #[must_use]
     pub fn with(mut self, name: &'static str, value: f64) -> Self {
-        self.given.retain(|&(known, _)| known != name);
-        self.given.push((name, value));
+        self.values.retain(|&(known, _)| known != name);
+        self.values.push((name, value));
         self
     }
 
@@ -70,16 +92,15 @@ impl<U: Vector<f64>> SteadyState<U> {
 
     /// The given states by name, in the order of the problem.
     pub fn given(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
-        let value = |name| self.given.iter().find(|(known, _)| *known == name);
-        self.problem
-            .given
+        let value = |name| self.values.iter().find(|(known, _)| *known == name);
+        self.given
             .iter()
             .filter_map(move |it| value(it.name).copied())
     }
 
     /// The inputs that are sought.
-    pub fn sought_inputs(&self) -> impl Iterator<Item = &'static str> + use<U> {
-        let sought = self.problem.sought.iter().map(|it| it.name);
+    pub fn sought_inputs(&self) -> impl Iterator<Item = &'static str> + '_ {
+        let sought = self.sought.iter().map(|it| it.name);
         sought.filter(|name| U::index_of(name).is_some())
     }
 
@@ -89,8 +110,8 @@ impl<U: Vector<f64>> SteadyState<U> {
     ///
     /// [`TrimError::Domain`], [`TrimError::MissingName`].
     pub fn check(&self) -> Result<(), TrimError> {
-        for &(name, value) in &self.given {
-            let known = self.problem.given.iter().find(|it| it.name == name);
+        for &(name, value) in &self.values {
+            let known = self.given.iter().find(|it| it.name == name);
             let given = known.ok_or(TrimError::MissingName { name })?;
             let inside = value > given.above && value < given.below;
             if !(inside && value.is_finite()) {

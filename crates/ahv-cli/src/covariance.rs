@@ -7,25 +7,21 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use ahv_analysis::covariance::{CovarianceError, Flight, Spreading};
-use ahv_analysis::monte_carlo::{
-    Control, Dcom, Experiment, Flown, Mode, Scheme, Sdcom, SdcomGust, SdcomPrinted, Snapshot,
-};
-use ahv_core::StochasticModel;
-use ahv_models::{dcom, sdcom, sdcom_gust, sdcom_printed};
+use ahv_analysis::monte_carlo::{Control, Experiment, Mode, Scheme, Snapshot};
+use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
 
-use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
+use crate::flight_condition::FlightCondition;
 use crate::flights::feedback::FeedbackArguments;
-use crate::flights::{Pair, deviations};
+use crate::flights::{default_scheme, deviations};
 use crate::number::{Shown, positive};
 use crate::output::{self, Pairs};
-use crate::place::Place;
 use crate::progress::{Progress, Work};
 use crate::signals::Stoppable;
 use crate::steps::{MOST_STEPS, allowed};
-use crate::vehicle::{FlightModel, ModelName};
+use crate::vehicle::{Vehicle, VehicleArgs};
 
 /// Fewest members that have a standard deviation.
 const FEWEST: u64 = 2;
@@ -40,10 +36,10 @@ const SAMPLES: u32 = 20;
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    condition: Condition,
+    pub(crate) vehicle: VehicleArgs,
 
     #[command(flatten)]
-    place: Place,
+    condition: FlightCondition,
 
     /// Standard deviations of the states at the start, e.g. altitude=50ft,gamma=0.2deg
     #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
@@ -91,24 +87,18 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim or the
 /// flight diverges.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match arguments.condition.model {
-        ModelName::Dcom => spread::<dcom::Model<f64>, Dcom>(arguments, Scheme::Heun),
-        ModelName::Sdcom => spread::<sdcom::Model<f64>, Sdcom>(arguments, Scheme::Splitting),
-        ModelName::SdcomPrinted => {
-            spread::<sdcom_printed::Model<f64>, SdcomPrinted>(arguments, Scheme::Splitting)
-        }
-        ModelName::SdcomGust => {
-            spread::<sdcom_gust::Model<f64>, SdcomGust>(arguments, Scheme::Splitting)
-        }
-        ModelName::Com | ModelName::ComRigid => Err(Failure::Request(
-            "--model: com and com_rigid have no noise; dcom and the sdcom models have".to_owned(),
-        )),
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    if <M::Noise as Vector<f64>>::LEN == 0 {
+        return Err(Failure::Request(format!(
+            "--model: {} has no noise",
+            M::NAME
+        )));
     }
+    spread::<M>(arguments, default_scheme::<M>())
 }
 
 /// What is printed: the spread to first order and of the ensemble, at the same times.
-struct Outcome<'a, M: FlightModel> {
+struct Outcome<'a, M: GeneratedModel> {
     vehicle: &'a Vehicle<M>,
     arguments: &'a Arguments,
     place: String,
@@ -127,17 +117,13 @@ fn steps(arguments: &Arguments) -> Result<u64, Failure> {
     Ok(allowed(t_end, dt, steps, MOST_STEPS)? / u64::from(SAMPLES))
 }
 
-fn spread<M, F>(arguments: &Arguments, scheme: Scheme) -> Result<(), Failure>
-where
-    M: Pair<F> + StochasticModel,
-    F: Flown,
-{
-    let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
-    let steady = arguments.place.flight(&vehicle)?;
+fn spread<M: GeneratedModel>(arguments: &Arguments, scheme: Scheme) -> Result<(), Failure> {
+    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
+    let steady = arguments.condition.flight(&vehicle)?;
     let trim = vehicle.trim(&steady)?;
     let part = arguments.t_end / f64::from(SAMPLES);
     let steps = steps(arguments)?;
-    let experiment = Experiment::<F> {
+    let experiment = Experiment::<M> {
         parameters: vehicle.parameters,
         dispersion: None,
         state: [
@@ -148,7 +134,7 @@ where
             trim.input,
             deviations("--input-std", &arguments.input_std, &vehicle)?,
         ],
-        feedback: arguments.feedback.read::<M, F>(&vehicle, &steady)?,
+        feedback: arguments.feedback.read::<M>(&vehicle, &steady)?,
         watched: Vec::new(),
         scheme,
         mode: Mode::Exact,
@@ -190,7 +176,7 @@ where
         .then(|| flight.stationary(&vehicle.model).map_err(failed))
         .transpose()?;
     let stoppable = Stoppable::new(progress.control());
-    let sampled = sample::<M, F>(&experiment, arguments.members, progress.control());
+    let sampled = sample::<M>(&experiment, arguments.members, progress.control());
     drop(stoppable);
     drop(progress);
     let (members, sampled) = sampled?;
@@ -225,8 +211,8 @@ where
 }
 
 /// Flies the ensemble: how many members, and their snapshots.
-fn sample<M: Pair<F>, F: Flown>(
-    experiment: &Experiment<F>,
+fn sample<M: GeneratedModel>(
+    experiment: &Experiment<M>,
     members: u64,
     control: &Control,
 ) -> Result<(u64, Vec<Snapshot>), Failure> {

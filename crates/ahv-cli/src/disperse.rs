@@ -7,18 +7,18 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use ahv_analysis::disperse::{
-    Distribution, Draws, Member, Nominal, Slopes, SolutionError, Spread, disperse, slopes, spreads,
+    Distribution, Draws, Member, Nominal, Slopes, SolutionError, Spread, disperse, nominal, slopes,
+    spreads,
 };
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use clap::{Args, ValueEnum};
 
-use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
+use crate::flight_condition::FlightCondition;
 use crate::output;
-use crate::place::Place;
 use crate::progress::{Progress, Work};
 use crate::signals::{Stoppable, interrupted};
-use crate::vehicle::{FlightModel, for_model};
+use crate::vehicle::{Vehicle, VehicleArgs};
 
 /// Draws parameters within their uncertainty and reports how trim, poles and zeros spread.
 ///
@@ -28,10 +28,10 @@ use crate::vehicle::{FlightModel, for_model};
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    condition: Condition,
+    pub(crate) vehicle: VehicleArgs,
 
     #[command(flatten)]
-    place: Place,
+    condition: FlightCondition,
 
     /// Vehicles to draw
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(30..=1_000_000))]
@@ -77,10 +77,10 @@ enum Shape {
 }
 
 /// What came of the draws.
-struct Outcome<'a, M: FlightModel> {
+struct Outcome<'a, M: GeneratedModel> {
     vehicle: &'a Vehicle<M>,
     arguments: &'a Arguments,
-    draws: Draws<M::Parameters>,
+    draws: Draws<M::ParametersOf<f64>>,
     nominal: Nominal<M::State, M::Input>,
     members: Vec<Member<M::State, M::Input>>,
     spreads: Vec<Option<Spread>>,
@@ -93,32 +93,23 @@ struct Outcome<'a, M: FlightModel> {
 ///
 /// [`Failure::Request`] for bad input or files that cannot be written, [`Failure::Numeric`] if the vehicle of the table
 /// does not trim.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for_model!(arguments.condition.model, M => study::<M>(arguments))
-}
-
-fn study<M>(arguments: &Arguments) -> Result<(), Failure>
-where
-    M: FlightModel,
-    M::Parameters: Send + Sync,
-    M::State: Send + Sync,
-    M::Input: Send + Sync,
-{
-    let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
     let draws = draws(&vehicle, arguments)?;
-    let flight = arguments.place.flight(&vehicle)?;
+    let flight = arguments.condition.flight(&vehicle)?;
+    let place = vehicle.at(&flight);
     let failed = |error: SolutionError| {
         let why = match &error {
             SolutionError::Trim(error) => vehicle.no_trim(error),
             other => other.to_string(),
         };
-        Failure::Numeric(format!("{}: {why} ({})", M::NAME, vehicle.at(&flight)))
+        Failure::Numeric(format!("{}: {why} ({place})", M::NAME))
     };
     let folder = arguments.out.as_deref();
     if let Some(folder) = folder {
         output::folder(folder)?;
     }
-    let nominal = Nominal::new::<M>(&vehicle.parameters, flight).map_err(failed)?;
+    let nominal = nominal::<M>(&vehicle.parameters, flight).map_err(failed)?;
     let slopes = slopes::<M>(&draws, &nominal).map_err(failed)?;
     let progress = Progress::start(Work {
         command: "disperse",
@@ -163,18 +154,18 @@ where
 }
 
 /// What is drawn, as the arguments have it.
-fn draws<M: FlightModel>(
+fn draws<M: GeneratedModel>(
     vehicle: &Vehicle<M>,
     arguments: &Arguments,
-) -> Result<Draws<M::Parameters>, Failure> {
+) -> Result<Draws<M::ParametersOf<f64>>, Failure> {
     let mut uncertainty = vehicle.uncertainty;
     if !arguments.vary.is_empty() {
-        let chosen = group::parameters::<M::Parameters>("--vary", &arguments.vary)?;
-        for index in (0..M::Parameters::LEN).filter(|index| !chosen.contains(index)) {
+        let chosen = group::parameters::<M::ParametersOf<f64>>("--vary", &arguments.vary)?;
+        for index in (0..M::ParametersOf::<f64>::LEN).filter(|index| !chosen.contains(index)) {
             uncertainty.set(index, 0.0);
         }
     }
-    let groups = group::parse::<M::Parameters>(&arguments.group)?;
+    let groups = group::parse::<M::ParametersOf<f64>>(&arguments.group)?;
     let distribution = match arguments.distribution {
         Shape::Uniform => Distribution::Uniform,
         Shape::Normal => Distribution::Normal,
@@ -189,7 +180,7 @@ fn draws<M: FlightModel>(
     .map_err(|error| Failure::Request(error.to_string()))
 }
 
-impl<M: FlightModel> Outcome<'_, M> {
+impl<M: GeneratedModel> Outcome<'_, M> {
     /// Whether all members were drawn that were asked for.
     fn is_complete(&self) -> bool {
         self.members.len() as u64 == self.arguments.members

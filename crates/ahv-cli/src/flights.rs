@@ -5,25 +5,22 @@ pub(crate) mod feedback;
 use std::num::NonZeroUsize;
 
 use ahv_analysis::disperse::{Distribution, Draws};
-use ahv_analysis::monte_carlo::{
-    Control, Dcom, Experiment, Family, Flown, LANES, Mode, MonteCarloError, Scheme, Sdcom,
-};
-use ahv_analysis::trim::SteadyFlight;
-use ahv_core::{Bounds, Vector};
+use ahv_analysis::monte_carlo::{Control, Experiment, LANES, Mode, MonteCarloError, Scheme};
+use ahv_analysis::trim::SteadyState;
+use ahv_core::{GeneratedModel, Vector};
+use clap::Args;
 use clap::builder::PossibleValuesParser;
-use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use crate::assignment::Assignments;
-use crate::condition::{Condition, Vehicle};
 use crate::failure::Failure;
+use crate::flight_condition::FlightCondition;
 use crate::number::positive;
 use crate::number::{self, Shown};
-use crate::place::Place;
 use crate::progress::Progress;
 use crate::signals::Stoppable;
 use crate::steps::allowed;
-use crate::vehicle::{FlightModel, ModelName};
+use crate::vehicle::{Vehicle, VehicleArgs};
 
 /// Most steps of a member: some hours.
 const MOST_STEPS: f64 = 1e12;
@@ -32,10 +29,10 @@ const MOST_STEPS: f64 = 1e12;
 #[derive(Args)]
 pub(crate) struct Flights {
     #[command(flatten)]
-    pub(crate) condition: Condition,
+    pub(crate) vehicle: VehicleArgs,
 
     #[command(flatten)]
-    place: Place,
+    condition: FlightCondition,
 
     /// End of the flights in s
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
@@ -45,12 +42,11 @@ pub(crate) struct Flights {
     #[arg(long, value_name = "S", default_value_t = 0.001, value_parser = positive, allow_negative_numbers = true)]
     dt: f64,
 
-    /// Stepper [default: splitting, which steps coloured noise exactly; for dcom, which has none, heun]
+    /// Stepper [default: splitting, which steps coloured noise exactly; for a model that has none heun]
     #[arg(long, value_parser = names(Scheme::ALL.map(Scheme::name)))]
     scheme: Option<String>,
 
-    /// Arithmetic: exact; fma, one rounding for a product and its sum; f32-noise, normal numbers in single precision;
-    /// f32-drift, drift and noise in single precision, states in double
+    /// Arithmetic: exact; f32-noise, normal numbers in single precision
     #[arg(long, default_value = "exact", value_parser = names(Mode::ALL.map(Mode::name)))]
     mode: String,
 
@@ -82,64 +78,20 @@ fn names<const N: usize>(names: [&'static str; N]) -> PossibleValuesParser {
     names.into()
 }
 
-/// A model that the command line knows, and as a family.
-pub(crate) trait Pair<F: Family>:
-    FlightModel<
-        State = F::State<f64>,
-        Input = F::Input<f64>,
-        Parameters = F::Parameters<f64>,
-        StateBounds = F::State<Bounds>,
-        InputBounds = F::Input<Bounds>,
-    >
-{
-}
-
-impl<F: Family, M> Pair<F> for M where
-    M: FlightModel<
-            State = F::State<f64>,
-            Input = F::Input<f64>,
-            Parameters = F::Parameters<f64>,
-            StateBounds = F::State<Bounds>,
-            InputBounds = F::Input<Bounds>,
-        >
-{
-}
-
-/// What a command does with a model, whichever it is.
-pub(crate) trait Task {
-    /// Does it.
-    ///
-    /// # Errors
-    ///
-    /// Those of the command.
-    fn run<M: Pair<F>, F: Flown>(&self) -> Result<(), Failure>;
-}
-
-/// Does the task with the model that is asked for.
-///
-/// # Errors
-///
-/// [`Failure::Request`] for a model that is not flown side by side, those of the task.
-pub(crate) fn with_model(flights: &Flights, task: &impl Task) -> Result<(), Failure> {
-    match flights.condition.model {
-        ModelName::Sdcom => task.run::<ahv_models::sdcom::Model<f64>, Sdcom>(),
-        ModelName::Dcom => task.run::<ahv_models::dcom::Model<f64>, Dcom>(),
-        other => {
-            let name = other.to_possible_value();
-            let name = name.as_ref().map_or("this", |it| it.get_name());
-            Err(Failure::Request(format!(
-                "--model: {name} is not flown side by side; sdcom and dcom are"
-            )))
-        }
+/// The stepper where none is asked for: the splitting steps coloured noise exactly.
+pub(crate) fn default_scheme<M: GeneratedModel>() -> Scheme {
+    match M::coloured_states() {
+        0 => Scheme::Heun,
+        _ => Scheme::Splitting,
     }
 }
 
 /// Flights that are about to start, with no limits but the validity box.
-pub(crate) struct Ready<F: Flown, M: Pair<F>> {
+pub(crate) struct Ready<M: GeneratedModel> {
     pub(crate) vehicle: Vehicle<M>,
     /// Where they start, in words.
     pub(crate) place: String,
-    pub(crate) experiment: Experiment<F>,
+    pub(crate) experiment: Experiment<M>,
     threads: usize,
 }
 
@@ -149,9 +101,9 @@ impl Flights {
     /// # Errors
     ///
     /// [`Failure::Request`] for bad input, [`Failure::Numeric`] if there is no trim.
-    pub(crate) fn ready<F: Flown, M: Pair<F>>(&self) -> Result<Ready<F, M>, Failure> {
-        let vehicle: Vehicle<M> = self.condition.vehicle()?;
-        let flight = self.place.flight(&vehicle)?;
+    pub(crate) fn ready<M: GeneratedModel>(&self) -> Result<Ready<M>, Failure> {
+        let vehicle: Vehicle<M> = self.vehicle.vehicle()?;
+        let flight = self.condition.flight(&vehicle)?;
         let trim = vehicle.trim(&flight)?;
         let experiment = self.experiment(&vehicle, &flight, (trim.state, trim.input))?;
         let most = std::thread::available_parallelism().ok();
@@ -164,28 +116,27 @@ impl Flights {
         })
     }
 
-    fn experiment<M: Pair<F>, F: Flown>(
+    fn experiment<M: GeneratedModel>(
         &self,
         vehicle: &Vehicle<M>,
-        flight: &SteadyFlight<F::Input<f64>>,
-        (state, input): (F::State<f64>, F::Input<f64>),
-    ) -> Result<Experiment<F>, Failure> {
+        flight: &SteadyState<M::Input>,
+        (state, input): (M::State, M::Input),
+    ) -> Result<Experiment<M>, Failure> {
         let steps = (self.t_end / self.dt).round();
         let steps = allowed(self.t_end, self.dt, steps, MOST_STEPS)?;
         let named = |name: &str| Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);
-        let default = if F::NAME == Dcom::NAME {
-            Scheme::Heun
-        } else {
-            Scheme::Splitting
-        };
         Ok(Experiment {
             parameters: vehicle.parameters,
             dispersion: self.dispersion(vehicle)?,
             state: [state, deviations("--state-std", &self.state_std, vehicle)?],
             input: [input, deviations("--input-std", &self.input_std, vehicle)?],
-            feedback: self.feedback.read::<M, F>(vehicle, flight)?,
+            feedback: self.feedback.read::<M>(vehicle, flight)?,
             watched: vec![vehicle.state_bounds],
-            scheme: self.scheme.as_deref().and_then(named).unwrap_or(default),
+            scheme: self
+                .scheme
+                .as_deref()
+                .and_then(named)
+                .unwrap_or_else(default_scheme::<M>),
             mode: Mode::ALL
                 .into_iter()
                 .find(|mode| mode.name() == self.mode)
@@ -196,10 +147,10 @@ impl Flights {
         })
     }
 
-    fn dispersion<M: FlightModel>(
+    fn dispersion<M: GeneratedModel>(
         &self,
         vehicle: &Vehicle<M>,
-    ) -> Result<Option<Draws<M::Parameters>>, Failure> {
+    ) -> Result<Option<Draws<M::ParametersOf<f64>>>, Failure> {
         let draws = self.disperse.then(|| {
             Draws::new(
                 vehicle.parameters,
@@ -228,7 +179,7 @@ pub(crate) struct Settings {
     feedback: bool,
 }
 
-impl<F: Flown, M: Pair<F>> Ready<F, M> {
+impl<M: GeneratedModel> Ready<M> {
     /// Threads for so many members that fly at a time.
     pub(crate) fn threads(&self, members: u64) -> usize {
         let batches = members.div_ceil(LANES as u64);
@@ -264,7 +215,7 @@ impl<F: Flown, M: Pair<F>> Ready<F, M> {
 }
 
 /// Standard deviations, 0 where none is given.
-pub(crate) fn deviations<M: FlightModel, V: Vector<f64>>(
+pub(crate) fn deviations<M: GeneratedModel, V: Vector<f64>>(
     option: &str,
     texts: &[String],
     vehicle: &Vehicle<M>,
@@ -295,10 +246,9 @@ pub(crate) fn watched<T>(
     drop(progress);
     outcome.map_err(|error| match error {
         MonteCarloError::Stopped => Failure::Interrupted(format!("interrupted: {error}")),
-        MonteCarloError::Scheme { .. } | MonteCarloError::ModeOfScheme { .. } => {
+        MonteCarloError::Scheme { .. } | MonteCarloError::Normals { .. } => {
             Failure::Request(format!("--scheme: {error}"))
         }
-        MonteCarloError::NoFma => Failure::Request(format!("--mode: {error}")),
         other => Failure::Request(other.to_string()),
     })
 }

@@ -1,20 +1,18 @@
 //! A file of gains, as `ahv lqr --out` writes it and `--feedback` reads it.
 
-use std::fmt;
-use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-use ahv_analysis::trim::{SOUGHT_INPUTS, SteadyFlight};
-use ahv_core::Vector;
-use serde::de::{Error, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use ahv_analysis::trim::SteadyState;
+use ahv_core::{GeneratedModel, Vector};
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
 use sha2::{Digest, Sha256};
 
-use crate::condition::Vehicle;
+use crate::named::{Named, shown_as};
 use crate::number::Shown;
 use crate::output::Pairs;
 use crate::table::text_of;
-use crate::vehicle::FlightModel;
+use crate::vehicle::Vehicle;
 
 /// The only law that there is; t counts from the start of a flight.
 pub(crate) const LAW: &str = "u = input - gain (x - state - state_rate t)";
@@ -34,9 +32,9 @@ pub(crate) struct Gains {
     pub(crate) unit_system: String,
     /// Of names and values of all parameters.
     pub(crate) parameters_sha256: String,
-    pub(crate) velocity: f64,
-    pub(crate) altitude: f64,
-    pub(crate) gamma_deg: f64,
+    /// What was given of the trim; its names stand beside the other keys of the file.
+    #[serde(skip)]
+    pub(crate) condition: Named<f64>,
     pub(crate) law: String,
     /// Columns of the gain.
     pub(crate) states: Vec<String>,
@@ -49,6 +47,9 @@ pub(crate) struct Gains {
     pub(crate) state_rate: Named<f64>,
     /// Input of the trim.
     pub(crate) input: Named<f64>,
+    /// Other quantities of the trim, for a person to read.
+    #[serde(default)]
+    pub(crate) outputs: Named<f64>,
     /// By rows.
     pub(crate) gain: Vec<Vec<f64>>,
     /// Diagonals of Q and R.
@@ -59,74 +60,16 @@ pub(crate) struct Gains {
     pub(crate) residual: f64,
 }
 
-/// Values by name in their own order, each name once; an object in JSON.
-pub(crate) struct Named<T>(pub(crate) Vec<(String, T)>);
-
-impl<T> Named<T> {
-    pub(crate) fn new<N: ToString>(pairs: impl IntoIterator<Item = (N, T)>) -> Self {
-        let pairs = pairs.into_iter();
-        Self(
-            pairs
-                .map(|(name, value)| (name.to_string(), value))
-                .collect(),
-        )
-    }
-
-    fn names(&self) -> Vec<&str> {
-        self.0.iter().map(|(name, _)| name.as_str()).collect()
-    }
+/// A file of gains: what is given of the trim, then the rest.
+#[derive(Serialize)]
+pub(crate) struct GainsFile<'a> {
+    #[serde(flatten)]
+    pub(crate) condition: &'a Named<f64>,
+    #[serde(flatten)]
+    pub(crate) gains: &'a Gains,
 }
 
-impl Named<f64> {
-    /// The components of a vector by name.
-    pub(crate) fn of<V: Vector<f64>>(vector: &V) -> Self {
-        Self::new(Pairs::of(vector).0)
-    }
-
-    /// The vector whose components these are; what has no name here is 0.
-    pub(crate) fn vector<V: Vector<f64>>(&self) -> V {
-        V::from_fn(|index| {
-            let mut pairs = self.0.iter();
-            let found = pairs.find(|(name, _)| V::NAMES.get(index) == Some(&name.as_str()));
-            found.map_or(0.0, |&(_, value)| value)
-        })
-    }
-}
-
-impl<T: Serialize> Serialize for Named<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
-    }
-}
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Entries<T>(PhantomData<T>);
-
-        impl<'de, T: Deserialize<'de>> Visitor<'de> for Entries<T> {
-            type Value = Named<T>;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("values by name")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Named<T>, A::Error> {
-                let mut pairs: Vec<(String, T)> = Vec::new();
-                while let Some((name, value)) = map.next_entry::<String, T>()? {
-                    if pairs.iter().any(|(known, _)| *known == name) {
-                        return Err(A::Error::custom(format!("`{name}` stands there twice")));
-                    }
-                    pairs.push((name, value));
-                }
-                Ok(Named(pairs))
-            }
-        }
-
-        deserializer.deserialize_map(Entries(PhantomData))
-    }
-}
-
-impl<M: FlightModel> Vehicle<M> {
+impl<M: GeneratedModel> Vehicle<M> {
     /// SHA-256 of names and values of all parameters, in hexadecimal digits.
     pub(crate) fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
@@ -139,7 +82,7 @@ impl<M: FlightModel> Vehicle<M> {
     }
 
     /// The command that writes gains for this vehicle in this flight.
-    fn design(&self, flight: &SteadyFlight<M::Input>) -> String {
+    fn design(&self, flight: &SteadyState<M::Input>) -> String {
         let mut command = format!("ahv lqr --model {}", M::NAME);
         if let Some(table) = &self.table {
             command += &format!(" --table {}", table.display());
@@ -150,12 +93,11 @@ impl<M: FlightModel> Vehicle<M> {
                 command += &format!(" --{name} {option}");
             }
         }
-        let gamma = flight.gamma.to_degrees();
-        command += &format!(
-            " --velocity {} --altitude {} --gamma {gamma}",
-            flight.velocity, flight.altitude
-        );
-        for (name, value) in held(&flight.input) {
+        for (name, value) in flight.given() {
+            let (_, value) = shown_as(name, value, self.units.label::<M::State>(name));
+            command += &format!(" --{} {value}", name.replace('_', "-"));
+        }
+        for (name, value) in held(flight, &flight.input) {
             if value != 0.0 {
                 let unit = self.units.label::<M::Input>(name);
                 let unit = if unit == "1" { "" } else { unit };
@@ -174,10 +116,44 @@ fn sorted<'a>(names: &[&'a str]) -> Vec<&'a str> {
 }
 
 /// The inputs that a trim does not seek.
-fn held<U: Vector<f64>>(input: &U) -> Vec<(&'static str, f64)> {
+fn held<U: Vector<f64>>(flight: &SteadyState<U>, input: &U) -> Vec<(&'static str, f64)> {
+    let sought: Vec<&str> = flight.sought_inputs().collect();
     let mut pairs = Pairs::of(input).0;
-    pairs.retain(|(name, _)| !SOUGHT_INPUTS.contains(name));
+    pairs.retain(|(name, _)| !sought.contains(name));
     pairs
+}
+
+/// The text of a file of gains without what is given of the trim, and that.
+///
+/// # Errors
+///
+/// What is wrong with the file.
+fn split(text: &str, given: &[String]) -> Result<(String, Named<f64>), String> {
+    let fault = |error: serde_json::Error| error.to_string();
+    let keys: Named<Box<RawValue>> = serde_json::from_str(text).map_err(fault)?;
+    let (own, rest): (Vec<_>, Vec<_>) = keys.0.iter().partition(|(name, _)| given.contains(name));
+    let missing = given
+        .iter()
+        .find(|name| own.iter().all(|(known, _)| known != *name));
+    if let Some(name) = missing {
+        return Err(format!("missing field `{name}`"));
+    }
+    let condition = own.into_iter().map(|(name, value)| {
+        let value: f64 = serde_json::from_str(value.get()).map_err(fault)?;
+        Ok((name, value))
+    });
+    let condition = condition.collect::<Result<Vec<_>, String>>()?;
+    let rest: Vec<String> = rest
+        .into_iter()
+        .map(|(name, value)| {
+            format!(
+                "{}: {}",
+                serde_json::Value::from(name.as_str()),
+                value.get()
+            )
+        })
+        .collect();
+    Ok((format!("{{{}}}", rest.join(", ")), Named::new(condition)))
 }
 
 impl Gains {
@@ -186,14 +162,22 @@ impl Gains {
     /// # Errors
     ///
     /// What is wrong with the file, and the command that writes a right one.
-    pub(crate) fn read<M: FlightModel>(
+    pub(crate) fn read<M: GeneratedModel>(
         path: &Path,
         vehicle: &Vehicle<M>,
-        flight: &SteadyFlight<M::Input>,
+        flight: &SteadyState<M::Input>,
     ) -> Result<Self, String> {
         let text = text_of(path).map_err(|error| error.to_string())?;
-        let gains = serde_json::from_str(&text).map_err(|error| error.to_string());
-        let checked = gains.and_then(|gains: Self| gains.check(vehicle).map(|()| gains));
+        let given: Vec<String> = Named::given::<M>(flight)
+            .0
+            .into_iter()
+            .map(|it| it.0)
+            .collect();
+        let gains = split(&text, &given).and_then(|(rest, condition)| {
+            let gains: Self = serde_json::from_str(&rest).map_err(|error| error.to_string())?;
+            Ok(Self { condition, ..gains })
+        });
+        let checked = gains.and_then(|gains: Self| gains.check(vehicle, flight).map(|()| gains));
         checked.map_err(|what| {
             let command = vehicle.design(flight);
             format!("{what}; this command writes gains for these flights: {command}")
@@ -201,7 +185,11 @@ impl Gains {
     }
 
     /// What cannot be gains for this model.
-    fn check<M: FlightModel>(&self, vehicle: &Vehicle<M>) -> Result<(), String> {
+    fn check<M: GeneratedModel>(
+        &self,
+        vehicle: &Vehicle<M>,
+        flight: &SteadyState<M::Input>,
+    ) -> Result<(), String> {
         if self.law != LAW {
             return Err(format!("its law is `{}`; known: `{LAW}`", self.law));
         }
@@ -233,11 +221,12 @@ impl Gains {
                 inputs.join(", ")
             ));
         }
-        self.check_sizes::<M>(vehicle)
+        self.check_sizes(vehicle)?;
+        self.check_condition::<M>(flight)
     }
 
     /// Lists that do not fit the names, and units of other quantities.
-    fn check_sizes<M: FlightModel>(&self, vehicle: &Vehicle<M>) -> Result<(), String> {
+    fn check_sizes<M: GeneratedModel>(&self, vehicle: &Vehicle<M>) -> Result<(), String> {
         let (rows, columns) = (self.inputs.len(), self.states.len());
         let count = |what: &str, found: usize, expected: usize| match found == expected {
             true => Ok(()),
@@ -267,17 +256,6 @@ impl Gains {
                 ));
             }
         }
-        // The trim that the gains are about is of this condition: these states are given, not sought.
-        let condition = [self.velocity, self.altitude, self.gamma_deg.to_radians()];
-        let given = ["velocity", "altitude", "gamma"].into_iter().zip(condition);
-        for (name, value) in given {
-            let own = self.state.0.iter().find(|(own, _)| own == name);
-            if own.is_some_and(|&(_, own)| (own - value).abs() > SAME * value.abs().max(1.0)) {
-                return Err(format!(
-                    "its `state` is not of its flight condition: {name}"
-                ));
-            }
-        }
         let right = Pairs::units_of_both::<M::State, M::Input>(vehicle.units).0;
         let mut units = self.units.0.iter();
         let other = units.find(|(name, unit)| right.iter().any(|it| it.0 == name && it.1 != unit));
@@ -290,11 +268,31 @@ impl Gains {
         }
     }
 
+    /// The trim that the gains are about is of their condition: these states are given, not sought.
+    fn check_condition<M: GeneratedModel>(
+        &self,
+        flight: &SteadyState<M::Input>,
+    ) -> Result<(), String> {
+        for ((name, _), (_, value)) in flight.given().zip(&self.condition.0) {
+            let Some((_, own)) = self.state.0.iter().find(|(own, _)| own == name) else {
+                continue;
+            };
+            let unit = M::State::index_of(name).and_then(|index| M::State::UNITS.get(index));
+            let (_, own) = shown_as(name, *own, unit.copied().unwrap_or("1"));
+            if (own - value).abs() > SAME * value.abs().max(1.0) {
+                return Err(format!(
+                    "its `state` is not of its flight condition: {name}"
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// How these gains were designed for another vehicle or flight than this one; empty if they were not.
-    pub(crate) fn differences<M: FlightModel>(
+    pub(crate) fn differences<M: GeneratedModel>(
         &self,
         vehicle: &Vehicle<M>,
-        flight: &SteadyFlight<M::Input>,
+        flight: &SteadyState<M::Input>,
     ) -> Vec<String> {
         let mut differences = Vec::new();
         let mut text = |what: &str, own: &str, flown: &str| {
@@ -311,15 +309,16 @@ impl Gains {
             let own = own.and_then(|(_, chosen)| chosen.as_deref());
             text(name, &option(own), &option(*chosen));
         }
-        let flown = [flight.velocity, flight.altitude, flight.gamma.to_degrees()];
-        let own = [self.velocity, self.altitude, self.gamma_deg];
-        let mut pairs: Vec<_> = ["velocity", "altitude", "gamma in deg"]
-            .into_iter()
-            .zip(own.into_iter().zip(flown))
-            .collect();
+        let flown = Named::given::<M>(flight);
+        let mut pairs: Vec<(String, (f64, f64))> = Vec::new();
+        for ((name, own), (_, flown)) in self.condition.0.iter().zip(&flown.0) {
+            pairs.push((name.replace("_deg", " in deg"), (*own, *flown)));
+        }
         let input: M::Input = self.input.vector();
-        let both = held(&input).into_iter().zip(held(&flight.input));
-        pairs.extend(both.map(|((name, own), (_, flown))| (name, (own, flown))));
+        let both = held(flight, &input)
+            .into_iter()
+            .zip(held(flight, &flight.input));
+        pairs.extend(both.map(|((name, own), (_, flown))| (name.to_owned(), (own, flown))));
         for (name, (own, flown)) in pairs {
             if (own - flown).abs() > SAME * own.abs().max(flown.abs()) {
                 let [own, flown] = [own, flown].map(Shown);
@@ -344,9 +343,9 @@ impl Gains {
     }
 
     /// What to do about such differences.
-    pub(crate) fn remedy<M: FlightModel>(
+    pub(crate) fn remedy<M: GeneratedModel>(
         vehicle: &Vehicle<M>,
-        flight: &SteadyFlight<M::Input>,
+        flight: &SteadyState<M::Input>,
     ) -> String {
         format!(
             "choose the same for both, or let `{}` write new gains; --feedback-mismatch allow flies them all the same",

@@ -6,11 +6,11 @@
 #![forbid(unsafe_code)]
 
 mod assignment;
-mod condition;
 mod covariance;
 pub mod csv_file;
 mod disperse;
 pub mod failure;
+mod flight_condition;
 mod flights;
 mod gains;
 #[cfg(feature = "generate")]
@@ -18,13 +18,14 @@ mod generate;
 mod linearize;
 mod lqr;
 mod monte_carlo;
+mod named;
 mod names;
 pub mod number;
 pub mod output;
-mod place;
 mod poles;
 pub mod progress;
 mod rare;
+mod registry;
 pub mod signals;
 mod simulate;
 pub mod steps;
@@ -37,7 +38,9 @@ use std::process::ExitCode;
 
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use ahv_core::{GeneratedModel, ModelList};
 use failure::Failure;
+use vehicle::VehicleArgs;
 
 /// Flight models of an air-breathing hypersonic vehicle.
 #[derive(Parser)]
@@ -91,9 +94,10 @@ impl ExtraCommand {
     }
 }
 
-/// The program `ahv` with `extra` commands beside the general ones: reads the command line of this process, runs what it
+/// The program `ahv` over the models `L`, with `extra` commands beside the general ones: reads the command line of this process, runs what it
 /// asks for, and gives the exit code.
-pub fn run(extra: &[ExtraCommand]) -> ExitCode {
+pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
+    registry::register::<L>();
     let mut matches = command(extra).get_matches();
     if let Some((name, matches)) = matches.subcommand()
         && let Some(extra) = extra.iter().find(|it| it.command.get_name() == name)
@@ -105,7 +109,7 @@ pub fn run(extra: &[ExtraCommand]) -> ExitCode {
         // It handles signals itself.
         #[cfg(feature = "generate")]
         Command::Generate(arguments) => generate::run(&arguments),
-        Command::Model(command) => listening(|| command.run()),
+        Command::Model(command) => listening(|| (command.vehicle().registered()?.run)(&command)),
     }
 }
 
@@ -126,17 +130,33 @@ fn listening(run: impl FnOnce() -> Result<(), Failure>) -> ExitCode {
 }
 
 impl ModelCommand {
-    fn run(&self) -> Result<(), Failure> {
+    /// Which vehicle it is about.
+    fn vehicle(&self) -> &VehicleArgs {
         match self {
-            Self::Covariance(arguments) => covariance::run(arguments),
-            Self::Disperse(arguments) => disperse::run(arguments),
-            Self::Linearize(arguments) => linearize::run(arguments),
-            Self::Lqr(arguments) => lqr::run(arguments),
-            Self::MonteCarlo(arguments) => monte_carlo::run(arguments),
-            Self::Poles(arguments) => poles::run(arguments),
-            Self::Rare(arguments) => rare::run(arguments),
-            Self::Simulate(arguments) => simulate::run(arguments),
-            Self::Trim(arguments) => trim::run(arguments),
+            Self::Covariance(arguments) => &arguments.vehicle,
+            Self::Disperse(arguments) => &arguments.vehicle,
+            Self::Linearize(arguments) => &arguments.vehicle,
+            Self::Lqr(arguments) => &arguments.vehicle,
+            Self::MonteCarlo(arguments) => &arguments.flights.vehicle,
+            Self::Poles(arguments) => &arguments.vehicle,
+            Self::Rare(arguments) => &arguments.flights.vehicle,
+            Self::Simulate(arguments) => &arguments.vehicle,
+            Self::Trim(arguments) => &arguments.vehicle,
+        }
+    }
+
+    /// Runs it with the model `M`.
+    fn run<M: GeneratedModel>(&self) -> Result<(), Failure> {
+        match self {
+            Self::Covariance(arguments) => covariance::run::<M>(arguments),
+            Self::Disperse(arguments) => disperse::run::<M>(arguments),
+            Self::Linearize(arguments) => linearize::run::<M>(arguments),
+            Self::Lqr(arguments) => lqr::run::<M>(arguments),
+            Self::MonteCarlo(arguments) => monte_carlo::run::<M>(arguments),
+            Self::Poles(arguments) => poles::run::<M>(arguments),
+            Self::Rare(arguments) => rare::run::<M>(arguments),
+            Self::Simulate(arguments) => simulate::run::<M>(arguments),
+            Self::Trim(arguments) => trim::run::<M>(arguments),
         }
     }
 }

@@ -4,22 +4,21 @@ mod mat;
 
 use std::path::{Path, PathBuf};
 
-use ahv_analysis::linearize::{LinearSystem, LinearizeError, PATH_INPUTS, PATH_OUTPUTS, linearize};
-use ahv_analysis::trim::{SteadyFlight, Trim};
-use ahv_core::Vector;
+use ahv_analysis::linearize::{LinearSystem, LinearizeError, with_outputs};
+use ahv_analysis::trim::{SteadyState, Trim};
+use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
-use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
+use crate::flight_condition::FlightCondition;
+use crate::named::Named;
 use crate::names;
 use crate::number::{Shown, cell};
 use crate::output::{self, Pairs};
-use crate::place::Place;
-use crate::units::Units;
-use crate::vehicle::{FlightModel, for_model};
+use crate::vehicle::{Heading, Vehicle, VehicleArgs};
 
 /// Linearises a model about its trim: dx/dt = A x + B u, y = C x + D u.
 ///
@@ -28,17 +27,17 @@ use crate::vehicle::{FlightModel, for_model};
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    condition: Condition,
+    pub(crate) vehicle: VehicleArgs,
 
     #[command(flatten)]
-    place: Place,
+    condition: FlightCondition,
 
-    /// Inputs, in their order in u
-    #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_INPUTS)]
+    /// Inputs, in their order in u [default: those of the model's path]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
     inputs: Vec<String>,
 
-    /// Outputs, states in their order in y
-    #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_OUTPUTS)]
+    /// Outputs, states or other quantities in their order in y [default: those of the model's path]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
     outputs: Vec<String>,
 
     /// File to write: .json, .csv, or .mat with A, B, C, D and their names for python-control, MATLAB and Octave
@@ -55,17 +54,21 @@ pub(crate) struct Arguments {
 /// # Errors
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for_model!(arguments.condition.model, Model => {
-        let vehicle: Vehicle<Model> = arguments.condition.vehicle()?;
-        about_trim(arguments, &vehicle)
-    })
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    about_trim::<M>(arguments, &arguments.vehicle.vehicle()?)
 }
 
-fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Result<(), Failure> {
-    let flight = arguments.place.flight(vehicle)?;
+fn about_trim<M: GeneratedModel>(
+    arguments: &Arguments,
+    vehicle: &Vehicle<M>,
+) -> Result<(), Failure> {
+    let flight = arguments.condition.flight(vehicle)?;
     let trim = vehicle.trim(&flight)?;
-    let system = vehicle.linear(&trim, &arguments.inputs, &arguments.outputs)?;
+    let system = vehicle.linear(
+        (&trim.state, &trim.input),
+        &arguments.inputs,
+        &arguments.outputs,
+    )?;
     if let Some(path) = &arguments.out {
         write(
             path,
@@ -80,37 +83,50 @@ fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Re
     }
 }
 
-impl<M: FlightModel> Vehicle<M> {
-    /// The linear system about `trim`.
+impl<M: GeneratedModel> Vehicle<M> {
+    /// The linear system about a point; without names from the model's default inputs to its default outputs.
     ///
     /// # Errors
     ///
     /// [`Failure::Request`] for an unknown input or output, [`Failure::Numeric`] for a derivative that is not finite.
-    pub(crate) fn linear<N: AsRef<str>>(
+    pub(crate) fn linear(
         &self,
-        trim: &Trim<M::State, M::Input>,
-        inputs: &[N],
-        outputs: &[N],
+        (state, input): (&M::State, &M::Input),
+        inputs: &[String],
+        outputs: &[String],
     ) -> Result<LinearSystem, Failure> {
-        let [inputs, outputs] =
-            [inputs, outputs].map(|names| names.iter().map(AsRef::as_ref).collect::<Vec<&str>>());
-        let unknown = |option, kind, name: &str, known| {
+        let or_default = |names: &[String], default: &[&'static str]| match names {
+            [] => default.iter().map(ToString::to_string).collect(),
+            names => names.to_vec(),
+        };
+        let inputs: Vec<String> = or_default(inputs, M::DEFAULT_INPUTS);
+        let outputs: Vec<String> = or_default(outputs, M::DEFAULT_OUTPUTS);
+        let unknown = |option, kind, name: &str, known: &[&str]| {
             let problem = names::unknown(kind, name, known);
             Failure::Request(format!("{option}: {problem}"))
         };
-        linearize(&self.model, &trim.state, &trim.input, &inputs, &outputs).map_err(|error| {
-            match &error {
-                LinearizeError::UnknownInput(name) => {
-                    unknown("--inputs", "input", name, M::Input::NAMES)
-                }
-                LinearizeError::UnknownOutput(name) => {
-                    unknown("--outputs", "state", name, M::State::NAMES)
-                }
-                LinearizeError::NonFinite { .. } => {
-                    Failure::Numeric(format!("{}: {error}", M::NAME))
-                }
+        let system = with_outputs::<M>(&self.parameters, state, input, &inputs, &outputs);
+        system.map_err(|error| match &error {
+            LinearizeError::UnknownInput(name) => {
+                unknown("--inputs", "input", name, M::Input::NAMES)
             }
+            LinearizeError::UnknownOutput(name) => {
+                let known = [M::State::NAMES, M::OutputsOf::<f64>::NAMES].concat();
+                unknown("--outputs", "state or output", name, &known)
+            }
+            LinearizeError::NonFinite { .. } => Failure::Numeric(format!("{}: {error}", M::NAME)),
         })
+    }
+
+    /// The unit of a state, an input or another quantity.
+    pub(crate) fn unit(&self, name: &str) -> &'static str {
+        if M::State::index_of(name).is_some() {
+            self.units.label::<M::State>(name)
+        } else if M::Input::index_of(name).is_some() {
+            self.units.label::<M::Input>(name)
+        } else {
+            self.units.label::<M::OutputsOf<f64>>(name)
+        }
     }
 }
 
@@ -119,9 +135,8 @@ impl<M: FlightModel> Vehicle<M> {
 struct Json<'a> {
     #[serde(flatten)]
     heading: Heading<'a>,
-    velocity: f64,
-    altitude: f64,
-    gamma_deg: f64,
+    #[serde(flatten)]
+    condition: Named<f64>,
     states: &'a [&'static str],
     inputs: &'a [&'static str],
     outputs: &'a [&'static str],
@@ -138,17 +153,15 @@ struct Json<'a> {
     d: Vec<Vec<f64>>,
 }
 
-fn json<'a, M: FlightModel>(
+fn json<'a, M: GeneratedModel>(
     vehicle: &'a Vehicle<M>,
-    flight: &SteadyFlight<M::Input>,
+    flight: &SteadyState<M::Input>,
     trim: &Trim<M::State, M::Input>,
     system: &'a LinearSystem,
 ) -> Json<'a> {
     Json {
         heading: vehicle.heading(),
-        velocity: flight.velocity,
-        altitude: flight.altitude,
-        gamma_deg: flight.gamma.to_degrees(),
+        condition: Named::given::<M>(flight),
         states: &system.states,
         inputs: &system.inputs,
         outputs: &system.outputs,
@@ -170,7 +183,7 @@ fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 }
 
 /// Writes the system in the format that the file's name asks for.
-fn write<M: FlightModel>(
+fn write<M: GeneratedModel>(
     path: &Path,
     vehicle: &Vehicle<M>,
     system: &LinearSystem,
@@ -178,7 +191,7 @@ fn write<M: FlightModel>(
 ) -> Result<(), Failure> {
     match path.extension().and_then(|it| it.to_str()) {
         Some("json") => output::write(path, output::json(json)?),
-        Some("csv") => csv::<M>(path, vehicle.units, system, json),
+        Some("csv") => csv(path, vehicle, system, json),
         Some("mat") => {
             let LinearSystem {
                 a,
@@ -202,19 +215,17 @@ fn write<M: FlightModel>(
 }
 
 /// [A, B; C, D] with a label at each row and column.
-fn csv<M: FlightModel>(
+fn csv<M: GeneratedModel>(
     path: &Path,
-    units: Units,
+    vehicle: &Vehicle<M>,
     system: &LinearSystem,
     json: &Json<'_>,
 ) -> Result<(), Failure> {
-    let state = |name: &&str| format!("{name} [{}]", units.label::<M::State>(name));
-    let input = |name: &&str| format!("{name} [{}]", units.label::<M::Input>(name));
-    let rate = |name: &&str| format!("d{name}/dt [{}/s]", units.label::<M::State>(name));
+    let label = |name: &&str| format!("{name} [{}]", vehicle.unit(name));
+    let rate = |name: &&str| format!("d{name}/dt [{}/s]", vehicle.unit(name));
     let mut file = CsvFile::create(path)?;
     let mut header = vec![String::new()];
-    header.extend(system.states.iter().map(state));
-    header.extend(system.inputs.iter().map(input));
+    header.extend(system.states.iter().chain(&system.inputs).map(label));
     file.row(&header)?;
     let rates = system
         .states
@@ -224,7 +235,7 @@ fn csv<M: FlightModel>(
     let outputs = system
         .outputs
         .iter()
-        .map(state)
+        .map(label)
         .zip(json.c.iter().zip(&json.d));
     for (label, (by_state, by_input)) in rates.chain(outputs) {
         let values = by_state.iter().chain(by_input).copied().map(cell);
@@ -234,9 +245,9 @@ fn csv<M: FlightModel>(
     file.finish()
 }
 
-fn text<M: FlightModel>(
+fn text<M: GeneratedModel>(
     vehicle: &Vehicle<M>,
-    flight: &SteadyFlight<M::Input>,
+    flight: &SteadyState<M::Input>,
     system: &LinearSystem,
 ) -> String {
     let LinearSystem {

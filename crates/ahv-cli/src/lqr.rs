@@ -5,33 +5,33 @@ use std::path::PathBuf;
 
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
-use ahv_analysis::trim::{SteadyFlight, Trim};
-use ahv_core::Vector;
+use ahv_analysis::trim::{SteadyState, Trim};
+use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use nalgebra::DMatrix;
 
 use crate::assignment::Assignments;
-use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
-use crate::gains::{Gains, LAW, Named};
+use crate::flight_condition::FlightCondition;
+use crate::gains::{Gains, GainsFile, LAW};
+use crate::named::Named;
 use crate::number::Shown;
 use crate::output::{self, Pairs, describe};
-use crate::place::Place;
-use crate::vehicle::{FlightModel, for_model};
+use crate::vehicle::{Vehicle, VehicleArgs};
 
 /// Designs a linear-quadratic regulator at a trim.
 ///
 /// The law is u = input - gain (x - state - state_rate t): in a climb the altitude of the reference moves with the flight. It
 /// minimises the integral of the squares of the deviations of states and
-/// inputs, each over the deviation that costs 1. Customary are velocity=10ft/s, altitude=100ft, gamma=0.01rad,
-/// alpha=0.02rad, pitch_rate=0.05rad/s, phi=0.2 and delta_e=0.05rad; other states cost nothing, other inputs are held.
+/// inputs, each over the deviation that costs 1. The model says which are customary; other states cost nothing, other inputs
+/// are held.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    condition: Condition,
+    pub(crate) vehicle: VehicleArgs,
 
     #[command(flatten)]
-    place: Place,
+    condition: FlightCondition,
 
     /// Deviations of states that cost 1, e.g. altitude=50ft,gamma=0.5deg; they replace the customary ones
     #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
@@ -55,22 +55,22 @@ pub(crate) struct Arguments {
 /// # Errors
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] without trim or regulator.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for_model!(arguments.condition.model, M => design::<M>(arguments))
-}
-
-fn design<M: FlightModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
-    let flight = arguments.place.flight(&vehicle)?;
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
+    let flight = arguments.condition.flight(&vehicle)?;
     let trim = vehicle.trim(&flight)?;
     let states: M::State = costs("--state-deviation", &arguments.state_deviation, &vehicle)?;
     let inputs: M::Input = costs("--input-deviation", &arguments.input_deviation, &vehicle)?;
     let gains = gains(&vehicle, &flight, &trim, &states, &inputs)?;
+    let file = GainsFile {
+        condition: &gains.condition,
+        gains: &gains,
+    };
     if let Some(path) = &arguments.out {
-        output::write(path, output::json(&gains)? + "\n")?;
+        output::write(path, output::json(&file)? + "\n")?;
     }
     if arguments.json {
-        output::print_json(&gains)
+        output::print_json(&file)
     } else {
         let place = vehicle.at(&flight);
         let trim = format!(
@@ -83,13 +83,13 @@ fn design<M: FlightModel>(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The deviations that cost 1: the customary ones, with those of `texts` in their place.
-fn costs<M: FlightModel, V: Vector<f64>>(
+fn costs<M: GeneratedModel, V: Vector<f64>>(
     option: &str,
     texts: &[String],
     vehicle: &Vehicle<M>,
 ) -> Result<V, Failure> {
     let given = Assignments::parse::<V>(option, texts, vehicle.units)?;
-    let mut costs: V = vehicle.units.convert(deviations());
+    let mut costs: V = vehicle.units.convert(deviations(M::DEVIATIONS));
     given.apply(&mut costs, &[]);
     match costs.find(|deviation| deviation <= 0.0) {
         Some((name, value)) => Err(Failure::Request(format!(
@@ -100,9 +100,9 @@ fn costs<M: FlightModel, V: Vector<f64>>(
 }
 
 /// The gains at a trim for deviations of states and inputs that cost 1.
-fn gains<M: FlightModel>(
+fn gains<M: GeneratedModel>(
     vehicle: &Vehicle<M>,
-    flight: &SteadyFlight<M::Input>,
+    flight: &SteadyState<M::Input>,
     trim: &Trim<M::State, M::Input>,
     states: &M::State,
     inputs: &M::Input,
@@ -125,7 +125,8 @@ fn gains<M: FlightModel>(
     };
     let drift = Pairs::of(&vehicle.model.drift(&trim.state, &trim.input)).0;
     // Of all other states the trim leaves no more than rounding.
-    let rate = |(name, rate)| (name, if name == "altitude" { rate } else { 0.0 });
+    let moves = |name| M::TRIM.moving.contains(&name);
+    let rate = |(name, rate)| (name, if moves(name) { rate } else { 0.0 });
     let choices = vehicle.choices.iter();
     let text = |names: &[&str]| names.iter().map(ToString::to_string).collect();
     Ok(Gains {
@@ -135,9 +136,7 @@ fn gains<M: FlightModel>(
         choices: Named::new(choices.map(|(name, chosen)| (name, chosen.map(str::to_owned)))),
         unit_system: vehicle.units.name().to_owned(),
         parameters_sha256: vehicle.fingerprint(),
-        velocity: flight.velocity,
-        altitude: flight.altitude,
-        gamma_deg: flight.gamma.to_degrees(),
+        condition: Named::given::<M>(flight),
         law: LAW.to_owned(),
         states: text(&system.states),
         inputs: text(&names),
@@ -150,6 +149,7 @@ fn gains<M: FlightModel>(
         state: Named::of(&trim.state),
         state_rate: Named::new(drift.into_iter().map(rate)),
         input: Named::of(&trim.input),
+        outputs: Named::of(&vehicle.outputs(&trim.state, &trim.input)),
         gain: regulator
             .gain
             .row_iter()

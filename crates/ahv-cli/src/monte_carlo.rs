@@ -8,17 +8,17 @@ mod trajectories;
 
 use std::path::PathBuf;
 
-use ahv_analysis::monte_carlo::{Flown, Outcome};
-use ahv_core::{Bounds, Vector};
+use ahv_analysis::monte_carlo::Outcome;
+use ahv_core::{Bounds, GeneratedModel, Vector};
 use clap::Args;
 
 use crate::assignment::Assignments;
-use crate::condition::Vehicle;
 use crate::failure::{Failure, print};
-use crate::flights::{Flights, Pair, Ready, Task, watched, with_model};
+use crate::flights::{Flights, Ready, watched};
 use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
+use crate::vehicle::Vehicle;
 use members::MemberList;
 use trajectories::Format;
 
@@ -31,7 +31,7 @@ use trajectories::Format;
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    flights: Flights,
+    pub(crate) flights: Flights,
 
     /// Flights
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000_000))]
@@ -73,25 +73,25 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim,
 /// [`Failure::Interrupted`] once the part is reported that was flown.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    with_model(&arguments.flights, arguments)
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.run::<M>()
 }
 
 /// What was flown, and what came of it.
-struct Told<'a, F: Flown, M: Pair<F>> {
+struct Told<'a, M: GeneratedModel> {
     arguments: &'a Arguments,
-    ready: Ready<F, M>,
+    ready: Ready<M>,
     outcome: Outcome,
 }
 
-impl Task for Arguments {
-    fn run<M: Pair<F>, F: Flown>(&self) -> Result<(), Failure> {
-        let mut ready: Ready<F, M> = self.flights.ready()?;
+impl Arguments {
+    fn run<M: GeneratedModel>(&self) -> Result<(), Failure> {
+        let mut ready: Ready<M> = self.flights.ready()?;
         let experiment = &mut ready.experiment;
         experiment.snapshots = snapshots(experiment.steps(), self.snapshots);
         experiment
             .watched
-            .extend(limits::<M, F>(&self.limit, &ready.vehicle)?);
+            .extend(limits::<M>(&self.limit, &ready.vehicle)?);
         // Before the work: what cannot be written is not found out after it.
         trajectories::check(self)?;
         if let Some(folder) = &self.out {
@@ -149,10 +149,10 @@ fn snapshots(steps: u64, parts: u64) -> Vec<u64> {
 }
 
 /// Limits of the user's; `None` if there are none. States without are not limited.
-fn limits<M: Pair<F>, F: Flown>(
+fn limits<M: GeneratedModel>(
     texts: &[String],
     vehicle: &Vehicle<M>,
-) -> Result<Option<F::State<Bounds>>, Failure> {
+) -> Result<Option<M::StateOf<Bounds>>, Failure> {
     let (mut low, mut high) = (Vec::new(), Vec::new());
     for text in texts {
         let form = || {
@@ -168,17 +168,17 @@ fn limits<M: Pair<F>, F: Flown>(
     if texts.is_empty() {
         return Ok(None);
     }
-    let parse = |texts: &[String], infinite: f64| -> Result<F::State<f64>, Failure> {
-        let mut ends = F::State::splat(infinite);
-        Assignments::parse::<F::State<f64>>("--limit", texts, vehicle.units)?.apply(&mut ends, &[]);
+    let parse = |texts: &[String], infinite: f64| -> Result<M::State, Failure> {
+        let mut ends = M::State::splat(infinite);
+        Assignments::parse::<M::State>("--limit", texts, vehicle.units)?.apply(&mut ends, &[]);
         Ok(ends)
     };
     let (low, high) = (
         parse(&low, f64::NEG_INFINITY)?,
         parse(&high, f64::INFINITY)?,
     );
-    let bounds = F::State::from_fn(|index| {
-        let end = |ends: &F::State<f64>| ends.get(index).unwrap_or(f64::NAN);
+    let bounds = M::StateOf::from_fn(|index| {
+        let end = |ends: &M::State| ends.get(index).unwrap_or(f64::NAN);
         Bounds::new(end(&low), end(&high))
     });
     match bounds.find(|it| it.min >= it.max) {

@@ -4,40 +4,38 @@ mod figure;
 
 use std::path::{Path, PathBuf};
 
-use ahv_analysis::linearize::{PATH_INPUTS, PATH_OUTPUTS};
 use ahv_analysis::poles::{
     Decoupling, Pole, PolesError, Zero, Zeros, damping, frequency, poles, zeros,
 };
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use nalgebra::Complex;
 use serde::Serialize;
 
-use crate::condition::{Condition, Heading, Vehicle};
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
+use crate::flight_condition::FlightCondition;
 use crate::number::{Shown, cell};
 use crate::output;
-use crate::place::Place;
-use crate::vehicle::{FlightModel, for_model};
+use crate::vehicle::{Heading, Vehicle, VehicleArgs};
 
-/// Poles of a model about its trim, with their modes, and zeros from u = (phi, delta_e) to y = (velocity, gamma).
+/// Poles of a model about its trim, with their modes, and zeros from inputs to outputs.
 ///
 /// Zeros are the invariant zeros, by a staircase reduction of the system pencil. Participation factors name the modes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    condition: Condition,
+    pub(crate) vehicle: VehicleArgs,
 
     #[command(flatten)]
-    place: Place,
+    condition: FlightCondition,
 
-    /// Inputs of the zeros
-    #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_INPUTS)]
+    /// Inputs of the zeros [default: those of the model's path]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
     inputs: Vec<String>,
 
-    /// Outputs of the zeros, states
-    #[arg(long, value_name = "NAME", value_delimiter = ',', default_values = PATH_OUTPUTS)]
+    /// Outputs of the zeros, states or other quantities [default: those of the model's path]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
     outputs: Vec<String>,
 
     /// Folder for poles.csv and poles.svg
@@ -55,15 +53,12 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim or the
 /// eigenvalues do not converge.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for_model!(arguments.condition.model, Model => {
-        let vehicle: Vehicle<Model> = arguments.condition.vehicle()?;
-        about_trim(arguments, &vehicle)
-    })
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    about_trim::<M>(arguments, &arguments.vehicle.vehicle()?)
 }
 
 /// Poles and zeros with where they belong to.
-struct Roots<'a, M: FlightModel> {
+struct Roots<'a, M: GeneratedModel> {
     vehicle: &'a Vehicle<M>,
     place: String,
     inputs: Vec<&'static str>,
@@ -106,19 +101,26 @@ struct JsonZero {
     decoupling: Option<&'static str>,
 }
 
-fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Result<(), Failure> {
-    let flight = arguments.place.flight(vehicle)?;
+fn about_trim<M: GeneratedModel>(
+    arguments: &Arguments,
+    vehicle: &Vehicle<M>,
+) -> Result<(), Failure> {
+    let flight = arguments.condition.flight(vehicle)?;
     let folder = arguments.out.as_deref();
     if let Some(folder) = folder {
         output::folder(folder)?;
     }
     let trim = vehicle.trim(&flight)?;
-    let system = vehicle.linear(&trim, &arguments.inputs, &arguments.outputs)?;
+    let system = vehicle.linear(
+        (&trim.state, &trim.input),
+        &arguments.inputs,
+        &arguments.outputs,
+    )?;
     let failed = |error: PolesError| Failure::Numeric(format!("{}: {error}", M::NAME));
     let roots = Roots {
         vehicle,
         place: vehicle.at(&flight),
-        poles: poles(&system).map_err(failed)?,
+        poles: poles(&system, M::MODES).map_err(failed)?,
         zeros: zeros(&system).map_err(failed)?,
         inputs: system.inputs,
         outputs: system.outputs,
@@ -140,7 +142,7 @@ fn pair(root: Complex<f64>) -> [f64; 2] {
 }
 
 fn name(pole: &Pole) -> Option<String> {
-    pole.mode.map(|mode| mode.to_string())
+    pole.mode.map(str::to_owned)
 }
 
 fn decoupling(zero: &Zero) -> Option<&'static str> {
@@ -150,7 +152,7 @@ fn decoupling(zero: &Zero) -> Option<&'static str> {
     })
 }
 
-impl<M: FlightModel> Roots<'_, M> {
+impl<M: GeneratedModel> Roots<'_, M> {
     /// How many finite zeros there are, and why.
     fn count(&self) -> String {
         let Zeros {

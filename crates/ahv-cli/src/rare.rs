@@ -3,22 +3,21 @@
 use std::fmt::Write;
 
 use ahv_analysis::monte_carlo::{
-    FEWEST_REPETITIONS, Flown, MonteCarloError, RareError, RareEstimate, RareEvent,
+    FEWEST_REPETITIONS, MonteCarloError, RareError, RareEstimate, RareEvent,
 };
 use ahv_analysis::statistics::Estimate;
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use serde::Serialize;
 
 use crate::assignment::{Assignments, show};
-use crate::condition::{Heading, Vehicle};
 use crate::failure::{Failure, print};
-use crate::flights::{Flights, Pair, Ready, Settings, Task, watched, with_model};
+use crate::flights::{Flights, Ready, Settings, watched};
 use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
 use crate::signals::interrupted;
-use crate::vehicle::FlightModel;
+use crate::vehicle::{Heading, Vehicle};
 
 /// Estimates the probability that a state passes a limit before the flight ends, however small it is.
 ///
@@ -29,7 +28,7 @@ use crate::vehicle::FlightModel;
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    flights: Flights,
+    pub(crate) flights: Flights,
 
     /// State and limit, above or below where the flights start, e.g. alpha=4deg
     #[arg(long, value_name = "NAME=VALUE")]
@@ -54,17 +53,17 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input, [`Failure::Numeric`] if there is no trim or no member comes near the limit,
 /// [`Failure::Interrupted`].
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    with_model(&arguments.flights, arguments)
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.run::<M>()
 }
 
-impl Task for Arguments {
-    fn run<M: Pair<F>, F: Flown>(&self) -> Result<(), Failure> {
-        let mut ready: Ready<F, M> = self.flights.ready()?;
+impl Arguments {
+    fn run<M: GeneratedModel>(&self) -> Result<(), Failure> {
+        let mut ready: Ready<M> = self.flights.ready()?;
         // The validity box is not reported.
         ready.experiment.watched.clear();
         let (state, limit) =
-            Assignments::one::<F::State<f64>>("--passes", &self.passes, ready.vehicle.units)?;
+            Assignments::one::<M::State>("--passes", &self.passes, ready.vehicle.units)?;
         let event = RareEvent {
             state,
             limit,
@@ -109,7 +108,7 @@ impl Task for Arguments {
 }
 
 /// Unit of a state.
-fn unit<M: FlightModel>(vehicle: &Vehicle<M>, state: usize) -> &'static str {
+fn unit<M: GeneratedModel>(vehicle: &Vehicle<M>, state: usize) -> &'static str {
     let labels = vehicle.units.labels::<M::State>();
     labels.get(state).copied().unwrap_or("")
 }
@@ -143,8 +142,8 @@ fn failure(error: &RareError, effort: u64, unit: &str) -> Failure {
 }
 
 /// What was asked, and what came of it.
-struct Told<F: Flown, M: Pair<F>> {
-    ready: Ready<F, M>,
+struct Told<M: GeneratedModel> {
+    ready: Ready<M>,
     event: RareEvent,
     estimate: RareEstimate,
 }
@@ -167,7 +166,7 @@ struct Json<'a> {
     settings: Settings,
 }
 
-impl<F: Flown, M: Pair<F>> Told<F, M> {
+impl<M: GeneratedModel> Told<M> {
     /// Name and unit of the state.
     fn state(&self) -> (&'static str, &'static str) {
         let name = M::State::NAMES.get(self.event.state).copied();

@@ -6,14 +6,13 @@ mod report;
 
 use std::path::PathBuf;
 
-use ahv_core::StochasticModel;
-use ahv_integrate::{ItoEulerMaruyama, Rk4, WienerSource};
-use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust, sdcom_printed};
+use ahv_core::{GeneratedModel, Vector};
+use ahv_integrate::{ItoEulerMaruyama, NormalStream, Rk4};
 use clap::Args;
 
-use crate::condition::{Condition, Vehicle};
 use crate::failure::Failure;
-use crate::vehicle::{FlightModel, ModelName};
+use crate::flight_condition::FlightCondition;
+use crate::vehicle::{Vehicle, VehicleArgs};
 use flight::Flight;
 use grid::grid;
 
@@ -22,14 +21,13 @@ const MEMBER: u64 = 0;
 
 /// Simulates a model with held inputs and writes the trajectory as CSV.
 ///
-/// The run starts at the trim of level flight at 7702.0808 ft/s and 85000 ft in the chosen condition,
-/// and holds the trim's inputs. com, com_rigid and dcom are deterministic (Runge-Kutta of order 4),
-/// sdcom, sdcom_printed and sdcom_gust stochastic (Euler-Maruyama, Ito).
-/// The airframe is unstable: off its trim it diverges within seconds.
+/// The run starts at the trim of the flight condition and holds the trim's inputs. Models with coloured noise are stochastic
+/// (Euler-Maruyama, Ito), others deterministic (Runge-Kutta of order 4) unless asked otherwise. An unstable vehicle diverges
+/// within seconds once it is off its trim.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    condition: Condition,
+    pub(crate) vehicle: VehicleArgs,
 
     /// End of the simulation in s; the last step is shortened to end there
     #[arg(long, value_name = "S", value_parser = crate::number::positive, allow_negative_numbers = true)]
@@ -39,7 +37,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "S", value_parser = crate::number::positive, allow_negative_numbers = true)]
     dt: f64,
 
-    /// Drive dcom with its noise too (Euler-Maruyama, Ito)
+    /// Drive a model without coloured noise with its noise too (Euler-Maruyama, Ito)
     #[arg(long)]
     stochastic: bool,
 
@@ -47,13 +45,11 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0)]
     seed: u64,
 
-    /// Held inputs, e.g. phi=0.28,delta_e=13.1deg; those of the trim where not given.
-    /// The trim itself is sought over phi and delta_e with delta_c as given
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    input: Vec<String>,
+    #[command(flatten)]
+    condition: FlightCondition,
 
-    /// Components of the initial state, e.g. alpha=1.5deg: they replace those of the trim,
-    /// which stays the one at the standard velocity and altitude
+    /// Components of the initial state, e.g. alpha=1.5deg: they replace those of the trim, which stays the one of the flight
+    /// condition
     #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
     initial: Vec<String>,
 
@@ -72,34 +68,18 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if the
 /// trim or the simulation fails. The output file is then as it was.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match arguments.condition.model {
-        ModelName::Com => calm::<com::Model<f64>>(arguments),
-        ModelName::ComRigid => calm::<com_rigid::Model<f64>>(arguments),
-        ModelName::Dcom if arguments.stochastic => {
-            noisy::<dcom::Model<f64>, { dcom::Noise::<()>::LEN }>(arguments)
-        }
-        ModelName::Dcom => calm::<dcom::Model<f64>>(arguments),
-        ModelName::Sdcom => noisy::<sdcom::Model<f64>, { sdcom::Noise::<()>::LEN }>(arguments),
-        ModelName::SdcomPrinted => {
-            noisy::<sdcom_printed::Model<f64>, { sdcom_printed::Noise::<()>::LEN }>(arguments)
-        }
-        ModelName::SdcomGust => {
-            noisy::<sdcom_gust::Model<f64>, { sdcom_gust::Noise::<()>::LEN }>(arguments)
-        }
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.stochastic || M::coloured_states() > 0 {
+        noisy::<M>(arguments)
+    } else {
+        calm::<M>(arguments)
     }
 }
 
 /// Without noise, by Runge-Kutta.
-fn calm<M: FlightModel>(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.stochastic {
-        return Err(Failure::Request(format!(
-            "--stochastic: {} has no noise; dcom has, and the sdcom models always fly with theirs",
-            M::NAME
-        )));
-    }
+fn calm<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
     let grid = grid(arguments.t_end, arguments.dt)?;
-    let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
+    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
     let flight = Flight {
         vehicle: &vehicle,
         seed: None,
@@ -109,19 +89,29 @@ fn calm<M: FlightModel>(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// With noise of `N` channels, by Euler-Maruyama.
-fn noisy<M: FlightModel + StochasticModel, const N: usize>(
-    arguments: &Arguments,
-) -> Result<(), Failure> {
+/// With noise, by Euler-Maruyama.
+fn noisy<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    let channels = <M::Noise as Vector<f64>>::LEN;
+    if channels == 0 {
+        return Err(Failure::Request(format!(
+            "--stochastic: {} has no noise",
+            M::NAME
+        )));
+    }
     let grid = grid(arguments.t_end, arguments.dt)?;
-    let vehicle: Vehicle<M> = arguments.condition.vehicle()?;
-    let mut wiener = WienerSource::<N>::new(arguments.seed, MEMBER);
+    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
+    let normals =
+        (0..channels as u64).map(|channel| NormalStream::new(arguments.seed, MEMBER, channel));
+    let mut normals: Vec<NormalStream> = normals.collect();
     let flight = Flight {
         vehicle: &vehicle,
         seed: Some(arguments.seed),
     };
     flight.simulate(arguments, &grid, |x, u, step, dt| {
-        let dw = wiener.increments(step.into(), dt);
+        let mut normals = normals
+            .iter_mut()
+            .map(|normals| normals.normal(step.into()));
+        let dw = M::Noise::from_fn(|_| normals.next().unwrap_or(0.0) * dt.sqrt());
         ItoEulerMaruyama::new(dt).step(&vehicle.model, x, u, &dw)
     })
 }

@@ -3,33 +3,33 @@
 mod map;
 mod report;
 
+use ahv_core::GeneratedModel;
 use std::path::PathBuf;
 
 use ahv_analysis::trim::trim;
 use clap::Args;
 
-use crate::condition::{Condition, Vehicle};
 use crate::failure::{Failure, print};
+use crate::flight_condition::FlightCondition;
 use crate::output;
-use crate::place::Place;
-use crate::vehicle::{FlightModel, for_model};
+use crate::vehicle::{Vehicle, VehicleArgs};
 use map::{Map, Size};
 use report::Report;
 
 /// Finds the state and input of steady flight.
 ///
-/// A damped Newton method with the model's own Jacobian, from a cold start, phi and delta_e inside their validity box.
+/// A damped Newton method with the model's own Jacobian, from a cold start, the sought inputs inside their validity box.
 /// Where there is no trim, it reports the nearest point and the bounds that block, and ends with code 3.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    condition: Condition,
+    pub(crate) vehicle: VehicleArgs,
 
     #[command(flatten)]
-    place: Place,
+    condition: FlightCondition,
 
-    /// Trim at VxH points over the validity box of velocity and altitude, e.g. 20x20
-    #[arg(long, value_name = "VxH", requires = "out", conflicts_with_all = ["velocity", "altitude"])]
+    /// Trim at VxH points over the validity box of the first two given states, e.g. 20x20 of velocity and altitude
+    #[arg(long, value_name = "VxH", requires = "out")]
     map: Option<Size>,
 
     /// Folder for trim_map.csv and trim_map.svg
@@ -47,27 +47,28 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim; the
 /// JSON is printed then all the same.
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for_model!(arguments.condition.model, Model => {
-        let vehicle: Vehicle<Model> = arguments.condition.vehicle()?;
-        match (arguments.map, &arguments.out) {
-            (Some(size), Some(folder)) => {
-                let flight = arguments.place.flight(&vehicle)?;
-                output::folder(folder)?;
-                let map = Map::new(&vehicle, &flight, size);
-                // Whatever fails, the rest is reported; the picture comes last.
-                let written = map.write(folder);
-                let printed =
-                    if arguments.json { output::print_json(&map.json()) } else { print(&map.text(folder)) };
-                written.and(printed).and(map.draw(folder))
-            }
-            _ => at_a_point(arguments, &vehicle),
-        }
-    })
+pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
+    let (Some(size), Some(folder)) = (arguments.map, &arguments.out) else {
+        return at_a_point(arguments, &vehicle);
+    };
+    let flight = arguments.condition.flight(&vehicle)?;
+    let map = Map::new(&vehicle, &flight, size, arguments.condition.names())?;
+    output::folder(folder)?;
+    // Whatever fails, the rest is reported; the picture comes last.
+    let written = map.write(folder);
+    let printed = match arguments.json {
+        true => output::print_json(&map.json()),
+        false => print(&map.text(folder)),
+    };
+    written.and(printed).and(map.draw(folder))
 }
 
-fn at_a_point<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Result<(), Failure> {
-    let flight = arguments.place.flight(vehicle)?;
+fn at_a_point<M: GeneratedModel>(
+    arguments: &Arguments,
+    vehicle: &Vehicle<M>,
+) -> Result<(), Failure> {
+    let flight = arguments.condition.flight(vehicle)?;
     let result = trim(&vehicle.model, &flight);
     let report = Report::new(vehicle, &flight, &result);
     if arguments.json {

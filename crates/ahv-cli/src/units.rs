@@ -3,9 +3,6 @@
 use ahv_core::{Bounds, Vector};
 use clap::ValueEnum;
 
-/// A foot in metres.
-const FOOT: f64 = 0.3048;
-
 /// A system of units, for inputs, results, and the model itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Units {
@@ -51,12 +48,9 @@ impl Units {
             .unwrap_or("1")
     }
 
-    /// A length, or a velocity, that is known in feet.
-    pub(crate) const fn feet(self, value: f64) -> f64 {
-        match self {
-            Self::FootSlug => value,
-            Self::Si => value * FOOT,
-        }
+    /// The factor of a number in the units of `own` to this system, `si` being that of its unit to the International System.
+    pub(crate) fn factor_from(self, own: Self, si: f64) -> f64 {
+        if self == own { 1.0 } else { si }
     }
 
     /// A vector of a table, in this system.

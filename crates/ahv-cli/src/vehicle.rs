@@ -1,133 +1,335 @@
-//! The generated models behind one trait, so that a command is written once for all of them.
+//! Which vehicle: model, parameters, choices and units, which every command that flies or studies a model lets choose.
 
-use ahv_analysis::parametric::Parametric;
-use ahv_core::{Bounds, Vector};
-use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust, sdcom_printed};
-use clap::ValueEnum;
+use std::borrow::Cow;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
-/// A model by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-pub(crate) enum ModelName {
-    /// Control-oriented model with a flexible forebody and aftbody
-    Com,
-    /// Control-oriented model, rigid
-    #[value(alias = "com-rigid")]
-    ComRigid,
-    /// Decoupled control-oriented model
-    Dcom,
-    /// Its stochastic reduction, exact
-    Sdcom,
-    /// Its stochastic reduction as the paper prints it: truncated, far from the exact one
-    #[value(alias = "sdcom-printed")]
-    SdcomPrinted,
-    /// Its stochastic reduction with a band-limited gust
-    #[value(alias = "sdcom-gust")]
-    SdcomGust,
+use ahv_core::{Bounds, Choice, ChoiceOption, GeneratedModel, Vector};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Arg, ArgMatches, Command, Error, FromArgMatches, value_parser};
+use serde::Serialize;
+
+use crate::failure::{Failure, complain};
+use crate::names;
+use crate::output::Pairs;
+use crate::registry::{Registered, heeded, models};
+use crate::table::Table;
+use crate::units::Units;
+
+/// Model, parameters, choices and units. What is not given is as the table has it.
+pub(crate) struct VehicleArgs {
+    model: String,
+    table: Option<PathBuf>,
+    set: Option<String>,
+    /// Choices that are made.
+    choices: Vec<(&'static str, String)>,
+    units: Option<Units>,
 }
 
-/// Evaluates an expression with `$model` standing for the generated model called `$name`.
-macro_rules! for_model {
-    ($name:expr, $model:ident => $run:expr) => {
-        for_model!(@match $name, $model => $run;
-            Com: com, ComRigid: com_rigid, Dcom: dcom, Sdcom: sdcom, SdcomPrinted: sdcom_printed, SdcomGust: sdcom_gust)
-    };
-    (@match $name:expr, $model:ident => $run:expr; $($variant:ident: $module:ident),+) => {
-        match $name {
-            $($crate::vehicle::ModelName::$variant => {
-                type $model = ::ahv_models::$module::Model<f64>;
-                $run
-            })+
+/// A name as flags have it, for as long as the program runs: clap takes no other text than a static one.
+pub(crate) fn hyphenated(name: &'static str) -> &'static str {
+    match name.contains('_') {
+        true => Box::leak(name.replace('_', "-").into_boxed_str()),
+        false => name,
+    }
+}
+
+/// The choices of all models, each once, with all that some model has to choose from.
+fn all_choices() -> Vec<(&'static Choice, Vec<&'static ChoiceOption>)> {
+    let mut all: Vec<(&Choice, Vec<&ChoiceOption>)> = Vec::new();
+    for choice in models().iter().flat_map(|model| model.table.choices) {
+        let known = all.iter().position(|(known, _)| known.name == choice.name);
+        let known = known.unwrap_or_else(|| {
+            all.push((choice, Vec::new()));
+            all.len() - 1
+        });
+        let (_, options) = &mut all[known];
+        for option in choice.options {
+            if options.iter().all(|known| known.name != option.name) {
+                options.push(option);
+            }
         }
-    };
-}
-pub(crate) use for_model;
-
-/// What can be chosen by name.
-pub(crate) struct Choice<P> {
-    /// Its name in tables and on command lines.
-    pub(crate) name: &'static str,
-    /// Names of what there is to choose from.
-    pub(crate) options: fn() -> Vec<&'static str>,
-    /// The parameters with the option of this name; `None` if there is no such option.
-    pub(crate) make: fn(P, &str) -> Option<P>,
+    }
+    all
 }
 
-/// A generated model that can fly, with what its table says of it.
-pub(crate) trait FlightModel:
-    Parametric<Parameters: PartialEq + 'static> + PartialEq
-{
-    /// Intervals of the states.
-    type StateBounds: Vector<Bounds>;
-    /// Intervals of the inputs.
-    type InputBounds: Vector<Bounds>;
+impl FromArgMatches for VehicleArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let chosen = all_choices().into_iter().filter_map(|(choice, _)| {
+            let option = matches.get_one::<String>(choice.name)?;
+            Some((choice.name, option.clone()))
+        });
+        Ok(Self {
+            // It is required.
+            model: matches
+                .get_one::<String>("model")
+                .cloned()
+                .unwrap_or_default(),
+            table: matches.get_one("table").cloned(),
+            set: matches.get_one("set").cloned(),
+            choices: chosen.collect(),
+            units: matches.get_one("units").copied(),
+        })
+    }
 
-    /// Its name on command lines.
-    const NAME: &'static str;
-    /// Units of its table.
-    const UNIT_SYSTEM: &'static str;
-    /// Sets of parameters by name, the table's own first.
-    const SETS: &'static [(&'static str, Self::Parameters)];
-    /// Relative uncertainties of the parameters, in the order of [`Self::SETS`].
-    const UNCERTAINTIES: &'static [fn() -> Self::Parameters];
-    /// What its table lets choose. A model may ignore some of it.
-    const CHOICES: &'static [Choice<Self::Parameters>];
-    /// Where its curve fits are meant to be used.
-    const STATE_BOUNDS: Self::StateBounds;
-    /// Where its curve fits are meant to be used.
-    const INPUT_BOUNDS: Self::InputBounds;
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
 
-    /// Whether `choice` changes anything in this model: DCOM has no coloured noise to reduce a mode to.
-    fn heeds(choice: &Choice<Self::Parameters>) -> bool {
-        let Some(&(_, nominal)) = Self::SETS.first() else {
-            return false;
+impl clap::Args for VehicleArgs {
+    fn augment_args(command: Command) -> Command {
+        let names = models().iter().map(|model| {
+            let value = PossibleValue::new(model.name).help(model.title);
+            value.alias(hyphenated(model.name))
+        });
+        let model = Arg::new("model").long("model").required(true);
+        let model = model.help("Model").value_name("MODEL");
+        let table = Arg::new("table").long("table").value_name("FILE");
+        let table = table.value_parser(value_parser!(PathBuf)).help(
+            "Table whose values, choices, sets and validity box take the place of those that the models were generated with",
+        );
+        let set = Arg::new("set").long("set").value_name("NAME");
+        let set = set.help("Set of parameters [default: the table's own]");
+        let choices = all_choices().into_iter().map(|(choice, options)| {
+            let values = options
+                .iter()
+                .map(|it| PossibleValue::new(it.name).help(it.doc));
+            Arg::new(choice.name)
+                .long(choice.name)
+                .value_name("OPTION")
+                .value_parser(PossibleValuesParser::new(values))
+                .help(format!(
+                    "What is chosen as {} [default: as the table has it]",
+                    choice.doc
+                ))
+        });
+        let units = Arg::new("units").long("units").value_name("UNITS");
+        let units = units.value_parser(value_parser!(Units)).help(
+            "Units of inputs and results, and those in which the model is run [default: those of the table]",
+        );
+        command
+            .arg(model.value_parser(PossibleValuesParser::new(names)))
+            .arg(table)
+            .arg(set)
+            .args(choices)
+            .arg(units)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+/// A model in its condition.
+pub(crate) struct Vehicle<M: GeneratedModel> {
+    pub(crate) model: M,
+    pub(crate) units: Units,
+    /// Table that the values come from, if they are not those that the model was generated with.
+    pub(crate) table: Option<PathBuf>,
+    /// Set of parameters.
+    pub(crate) set: Cow<'static, str>,
+    /// Choices that the model has, each with what is chosen; a table may hold a mixture that has no name.
+    pub(crate) choices: Vec<(&'static str, Option<&'static str>)>,
+    /// The parameters of the model.
+    pub(crate) parameters: M::ParametersOf<f64>,
+    /// Their relative uncertainties.
+    pub(crate) uncertainty: M::ParametersOf<f64>,
+    pub(crate) state_bounds: M::StateOf<Bounds>,
+    pub(crate) input_bounds: M::InputOf<Bounds>,
+}
+
+/// Which model an outcome is of: what the JSON of every command that takes a vehicle begins with.
+#[derive(Serialize)]
+pub(crate) struct Heading<'a> {
+    pub(crate) model: &'static str,
+    table: Option<&'a Path>,
+    set: &'a str,
+    choices: Pairs<Option<&'static str>>,
+    unit_system: &'static str,
+}
+
+/// A point of a flight, by name.
+#[derive(Serialize)]
+pub(crate) struct PointJson {
+    state: Pairs<f64>,
+    input: Pairs<f64>,
+    outputs: Pairs<f64>,
+    units: Pairs<&'static str>,
+}
+
+/// What a table says of a model, in the units that the model was generated with.
+pub(crate) struct Values<M: GeneratedModel> {
+    /// Set of parameters.
+    pub(crate) set: Cow<'static, str>,
+    pub(crate) parameters: M::ParametersOf<f64>,
+    /// Relative uncertainties of the parameters.
+    pub(crate) uncertainty: M::ParametersOf<f64>,
+    pub(crate) state_bounds: M::StateOf<Bounds>,
+    pub(crate) input_bounds: M::InputOf<Bounds>,
+}
+
+impl VehicleArgs {
+    /// The model that is asked for.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] if there is none; the command line has refused such a name before.
+    pub(crate) fn registered(&self) -> Result<&'static Registered, Failure> {
+        let name = self.model.replace('-', "_");
+        let found = models().iter().find(|model| model.name == name);
+        found.ok_or_else(|| Failure::Request(format!("--model: there is no model {name}")))
+    }
+
+    /// The model `M`, which must be the one that is asked for.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] for a set, choice or system of units that the model does not have.
+    pub(crate) fn vehicle<M: GeneratedModel>(&self) -> Result<Vehicle<M>, Failure> {
+        let units = self.units::<M>()?;
+        let Values {
+            set,
+            mut parameters,
+            uncertainty,
+            state_bounds,
+            input_bounds,
+        } = self.values::<M>()?;
+        let heeded = heeded::<M>();
+        let own = || {
+            M::TABLE
+                .choices
+                .iter()
+                .filter(|choice| heeded.contains(&choice.name))
         };
-        let model = Self::with_parameters(&nominal);
-        (choice.options)()
-            .into_iter()
-            .filter_map(|option| (choice.make)(nominal, option))
-            .any(|parameters| Self::with_parameters(&parameters) != model)
-    }
-
-    /// The choice called `name`, if this model has it.
-    fn choice(name: &str) -> Option<&'static Choice<Self::Parameters>> {
-        let choice = Self::CHOICES.iter().find(|choice| choice.name == name)?;
-        Self::heeds(choice).then_some(choice)
-    }
-}
-
-/// Implements [`FlightModel`] for the models of a table with these choices.
-macro_rules! flight_models {
-    ($($module:ident),+ => $choices:tt) => {
-        $(flight_models!(@one $module $choices);)+
-    };
-    (@one $module:ident { $($name:literal: $with:ident($choice:ident)),+ $(,)? }) => {
-        impl FlightModel for $module::Model<f64> {
-            type StateBounds = $module::State<Bounds>;
-            type InputBounds = $module::Input<Bounds>;
-
-            const NAME: &'static str = stringify!($module);
-            const UNIT_SYSTEM: &'static str = $module::UNIT_SYSTEM;
-            const SETS: &'static [(&'static str, Self::Parameters)] = &$module::SETS;
-            const UNCERTAINTIES: &'static [fn() -> Self::Parameters] = &[
-                || $module::PROVENANCE.map_into(|it| it.uncertainty),
-                || $module::SECTION5_3_PROVENANCE.map_into(|it| it.uncertainty),
-            ];
-            const CHOICES: &'static [Choice<Self::Parameters>] = &[$(Choice {
-                name: $name,
-                options: || $module::$choice::ALL.map($module::$choice::name).to_vec(),
-                make: |parameters, name| Some(parameters.$with($module::$choice::from_name(name)?)),
-            }),+];
-            const STATE_BOUNDS: Self::StateBounds = $module::STATE_BOUNDS;
-            const INPUT_BOUNDS: Self::InputBounds = $module::INPUT_BOUNDS;
+        for (name, option) in &self.choices {
+            let choice = own().find(|choice| choice.name == *name);
+            let choice = choice.ok_or_else(|| lacks::<M>(name))?;
+            let chosen = choice.option(option).ok_or_else(|| {
+                let known: Vec<_> = choice.options.iter().map(|option| option.name).collect();
+                let problem = names::unknown(name, option, &known);
+                Failure::Request(format!("--{name}: {problem}"))
+            })?;
+            parameters = chosen.apply(parameters);
         }
-    };
+        let choices = own().map(|choice| {
+            let mut options = choice.options.iter();
+            let chosen = options.find(|option| same(&option.apply(parameters), &parameters));
+            (choice.name, chosen.map(|option| option.name))
+        });
+        if let Some(note) = M::NOTE {
+            complain(&format!("note: {note}"));
+        }
+        let choices = choices.collect();
+        let parameters = units.convert(parameters);
+        Ok(Vehicle {
+            model: M::with_parameters(&parameters),
+            units,
+            table: self.table.clone(),
+            set,
+            choices,
+            parameters,
+            uncertainty,
+            state_bounds: units.convert_bounds(state_bounds),
+            input_bounds: units.convert_bounds(input_bounds),
+        })
+    }
+
+    fn units<M: GeneratedModel>(&self) -> Result<Units, Failure> {
+        let own = Units::of_table(M::TABLE.unit_system);
+        match self.units {
+            Some(Units::FootSlug) if own == Units::Si => Err(Failure::Request(format!(
+                "--units: the table of {} is in {}, and is not converted to {}",
+                M::NAME,
+                own.name(),
+                Units::FootSlug.name()
+            ))),
+            chosen => Ok(chosen.unwrap_or(own)),
+        }
+    }
+
+    /// The values of the table, or those that the model was generated with.
+    fn values<M: GeneratedModel>(&self) -> Result<Values<M>, Failure> {
+        if let Some(path) = &self.table {
+            return Table::read(path)?.values(self.set.as_deref());
+        }
+        let name = self.set.as_deref();
+        let mut sets = M::SETS.iter();
+        let found = sets.find(|set| name.is_none_or(|name| name == set.name));
+        let set = found.ok_or_else(|| {
+            let known: Vec<_> = M::SETS.iter().map(|set| set.name).collect();
+            let problem = names::unknown("set of parameters", name.unwrap_or_default(), &known);
+            Failure::Request(format!("--set: {problem}"))
+        })?;
+        Ok(Values {
+            set: set.name.into(),
+            parameters: set.parameters,
+            uncertainty: set.uncertainty(),
+            state_bounds: M::STATE_BOUNDS,
+            input_bounds: M::INPUT_BOUNDS,
+        })
+    }
 }
 
-flight_models!(com, com_rigid => { "earth": with_earth(Earth) });
-flight_models!(dcom, sdcom, sdcom_printed, sdcom_gust => {
-    "canard": with_canard(Canard),
-    "earth": with_earth(Earth),
-    "noise": with_noise(ModalNoise),
-    "reduction": with_reduction(Reduction),
-});
+/// Whether two vectors have the same components.
+fn same<V: Vector<f64>>(a: &V, b: &V) -> bool {
+    (0..V::LEN).all(|index| a.get(index) == b.get(index))
+}
+
+fn lacks<M: GeneratedModel>(choice: &str) -> Failure {
+    let having = models()
+        .iter()
+        .filter(|model| (model.choices)().contains(&choice));
+    let having: Vec<_> = having.map(|model| model.name).collect();
+    Failure::Request(format!(
+        "--{choice}: {} has no such choice; {} have it",
+        M::NAME,
+        names::list(&having)
+    ))
+}
+
+impl<M: GeneratedModel> Vehicle<M> {
+    /// Model, parameters and choices, for a program.
+    pub(crate) fn heading(&self) -> Heading<'_> {
+        Heading {
+            model: M::NAME,
+            table: self.table.as_deref(),
+            set: &self.set,
+            choices: Pairs(self.choices.clone()),
+            unit_system: self.units.name(),
+        }
+    }
+
+    /// State, input and outputs by name with their units, for a program.
+    pub(crate) fn point(&self, state: &M::State, input: &M::Input) -> PointJson {
+        let mut units = Pairs::units_of_both::<M::State, M::Input>(self.units);
+        let outputs = M::OutputsOf::<f64>::NAMES.iter().copied();
+        let labels = self.units.labels::<M::OutputsOf<f64>>().iter().copied();
+        units.0.extend(outputs.zip(labels));
+        PointJson {
+            state: Pairs::of(state),
+            input: Pairs::of(input),
+            outputs: Pairs::of(&self.outputs(state, input)),
+            units,
+        }
+    }
+
+    /// The quantities that people look at.
+    pub(crate) fn outputs(&self, state: &M::State, input: &M::Input) -> M::OutputsOf<f64> {
+        M::outputs(&M::generic(&self.parameters), state, input)
+    }
+
+    /// Parameters and choices, for a person.
+    pub(crate) fn described(&self) -> String {
+        let mut text = match &self.table {
+            Some(path) => format!("table {}, set {}", path.display(), self.set),
+            None => format!("set {}", self.set),
+        };
+        for (name, chosen) in &self.choices {
+            // Writing into a String cannot fail.
+            let _ = write!(text, ", {name} {}", chosen.unwrap_or("of the table"));
+        }
+        text
+    }
+}

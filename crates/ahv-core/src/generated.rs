@@ -98,6 +98,21 @@ pub trait GeneratedModel:
     /// Shows the visitor how many states are coloured noise; `None`, and no visit, if none is.
     fn coloured<V: CountVisitor>(visitor: V) -> Option<V::Output>;
 
+    /// How many states are coloured noise.
+    fn coloured_states() -> usize {
+        struct Count;
+
+        impl CountVisitor for Count {
+            type Output = usize;
+
+            fn visit<const N: usize>(self) -> usize {
+                N
+            }
+        }
+
+        Self::coloured(Count).unwrap_or(0)
+    }
+
     /// ∂f/∂p at (x, u): a vector over the rows of f, each a vector over the parameters. The unit of an entry is that of its
     /// row per second, over that of its column.
     fn parameter_jacobian(

@@ -378,11 +378,7 @@ impl<'e, F: GeneratedModel> Collector<'e, F> {
 
 impl Sums {
     /// Counts what a member has left after so many steps; whether it has left the first of the sets.
-    fn leave<F: GeneratedModel>(
-        &mut self,
-        left: &[F::StateOf<Option<u64>>],
-        step: u64,
-    ) -> bool {
+    fn leave<F: GeneratedModel>(&mut self, left: &[F::StateOf<Option<u64>>], step: u64) -> bool {
         let mut first = None;
         let sets = left.iter().zip(&mut self.left).zip(&mut self.left_any);
         for ((left, counts), any) in sets {

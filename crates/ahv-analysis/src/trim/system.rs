@@ -1,6 +1,6 @@
 //! The equations of a trim, and their unknowns.
 
-use ahv_core::{Bounds, DifferentiableModel, Real, TrimProblem, Vector};
+use ahv_core::{Bounds, DifferentiableModel, Equation, Real, Sought, Vector};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Blocking, Nearest, SteadyState, Trim, TrimError};
@@ -25,7 +25,10 @@ impl<M: DifferentiableModel<Scalar = f64>> Copy for Point<M> {}
 /// different steps compare.
 pub(super) struct System<'a, M> {
     model: &'a M,
-    problem: TrimProblem,
+    equations: &'static [Equation],
+    moving: &'static [&'static str],
+    /// Unknowns.
+    sought: Vec<Sought>,
     states: Vec<usize>,
     inputs: Vec<usize>,
     /// Names of the inputs.
@@ -38,9 +41,8 @@ pub(super) struct System<'a, M> {
 
 impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
     pub(super) fn new(model: &'a M, flight: &SteadyState<M::Input>) -> Result<Self, TrimError> {
-        let problem = flight.problem;
         let (mut states, mut inputs) = (Vec::new(), Vec::new());
-        for name in problem.sought.iter().map(|it| it.name) {
+        for name in flight.sought.iter().map(|it| it.name) {
             match (M::State::index_of(name), M::Input::index_of(name)) {
                 (Some(state), _) => states.push(state),
                 (None, Some(input)) => inputs.push(input),
@@ -48,9 +50,9 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
             }
         }
         let row = |name| M::State::index_of(name).ok_or(TrimError::MissingName { name });
-        let rows = problem.equations.iter().map(|it| row(it.name));
+        let rows = flight.equations.iter().map(|it| row(it.name));
         let rows = rows.collect::<Result<Vec<_>, _>>()?;
-        let scales = problem.sought.iter().map(|it| it.scale);
+        let scales = flight.sought.iter().map(|it| it.scale);
         let mut system = Self {
             model,
             states,
@@ -59,8 +61,10 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
             bounds: flight.bounds.clone(),
             row_scale: DVector::from_element(rows.len(), 1.0),
             rows,
-            column_scale: DVector::from_iterator(problem.sought.len(), scales),
-            problem,
+            column_scale: DVector::from_iterator(flight.sought.len(), scales),
+            equations: flight.equations,
+            moving: flight.moving,
+            sought: flight.sought.clone(),
         };
         let start = system.start(flight)?;
         system.row_scale = row_scale(&system.jacobian(&start));
@@ -70,7 +74,7 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
 
     /// Gives the rows their weights: first those that have a scale of their own.
     fn weigh(&mut self, start: &Point<M>) {
-        let equations = self.problem.equations;
+        let equations = self.equations;
         for (scale, equation) in self.row_scale.iter_mut().zip(equations) {
             *scale *= equation.weight;
         }
@@ -89,7 +93,7 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
     /// Where the search starts, if the drift is finite there.
     pub(super) fn start(&self, flight: &SteadyState<M::Input>) -> Result<Point<M>, TrimError> {
         let mut x = M::State::splat(0.0);
-        let sought = self.problem.sought.iter().map(|it| (it.name, it.start));
+        let sought = self.sought.iter().map(|it| (it.name, it.start));
         let is_state = |(name, _): &(&str, f64)| M::State::index_of(name).is_some();
         for (name, value) in sought.filter(is_state).chain(flight.given()) {
             M::State::index_of(name)
@@ -246,7 +250,7 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
         let drift = self.model.drift(&point.x, &point.u);
         let moves = |index: usize| {
             let name = M::State::NAMES.get(index);
-            name.is_some_and(|name| self.problem.moving.contains(name))
+            name.is_some_and(|name| self.moving.contains(name))
         };
         M::State::from_fn(|index| match drift.get(index) {
             Some(rate) if !moves(index) => rate,

@@ -1,22 +1,21 @@
 //! The picture of `ahv covariance`: a panel a state.
 
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
 
 use super::Outcome;
 use crate::output::readable;
-use crate::vehicle::FlightModel;
 
 /// Panels in a row.
 const COLUMNS: usize = 3;
 
 /// Standard deviations over time.
-pub(super) fn draw<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
+pub(super) fn draw<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
     let panels = (0..M::State::LEN).filter_map(|index| panel(outcome, index));
     Figure::new(outcome.mark(), COLUMNS, panels.collect()).svg()
 }
 
-fn panel<M: FlightModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel> {
+fn panel<M: GeneratedModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel> {
     let name = M::State::NAMES.get(index)?;
     let unit = outcome.vehicle.units.labels::<M::State>().get(index)?;
     let (unit, factor) = readable(unit);

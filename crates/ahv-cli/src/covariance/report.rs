@@ -6,19 +6,18 @@ use std::path::Path;
 use ahv_analysis::covariance::Spreading;
 use ahv_analysis::monte_carlo::Snapshot;
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::Outcome;
 use crate::assignment::{interval, show};
-use crate::condition::Heading;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::number::{Shown, cell, time};
 use crate::output::Pairs;
 use crate::signals::interrupted;
-use crate::vehicle::FlightModel;
+use crate::vehicle::Heading;
 
 /// Of the times, every so many is printed.
 const STRIDE: usize = 5;
@@ -95,7 +94,7 @@ fn named<X: Vector<f64>, V: Clone>(values: &[V]) -> Pairs<V> {
     )
 }
 
-impl<M: FlightModel> Outcome<'_, M> {
+impl<M: GeneratedModel> Outcome<'_, M> {
     pub(super) fn pairs(&self) -> impl Iterator<Item = (&Spreading<M::State>, &Snapshot)> {
         self.linear.iter().zip(&self.sampled)
     }

@@ -2,12 +2,12 @@
 
 use ahv_analysis::disperse::{Contribution, Kind, Part, Quantity};
 use ahv_analysis::statistics::densities;
+use ahv_core::GeneratedModel;
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError, Shape};
 use nalgebra::Complex;
 
 use super::Outcome;
 use super::report::parameter;
-use crate::vehicle::FlightModel;
 
 /// Half the height of a bar, in rows.
 const BAR: f64 = 0.32;
@@ -22,7 +22,7 @@ const ZEROS: (Colour, Colour) = (Colour::Orange, Colour::Vermillion);
 const DRAWN: usize = 400;
 
 /// Inputs and flexible deflection over the angle of attack, a dot a member.
-pub(super) fn trim<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
+pub(super) fn trim<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
     let quantities = &outcome.nominal.quantities;
     let place = |name: &str| {
         quantities
@@ -36,7 +36,7 @@ pub(super) fn trim<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, P
     Figure::new(outcome.mark(), 3, panels.collect()).svg()
 }
 
-fn scatter<M: FlightModel>(outcome: &Outcome<'_, M>, x: usize, y: usize) -> Panel {
+fn scatter<M: GeneratedModel>(outcome: &Outcome<'_, M>, x: usize, y: usize) -> Panel {
     let labels = [x, y].map(|index| outcome.label(&outcome.nominal.quantities[index]));
     let [(x_label, x_factor), (y_label, y_factor)] = labels;
     let members = outcome.members.iter().filter_map(|it| {
@@ -67,7 +67,7 @@ fn scatter<M: FlightModel>(outcome: &Outcome<'_, M>, x: usize, y: usize) -> Pane
 }
 
 /// Poles and zeros of the members about the nominal ones, those of the upper half plane, and how the fast real ones spread.
-pub(super) fn roots<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
+pub(super) fn roots<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
     let nominal = &outcome.nominal.solution;
     let solved = outcome
         .members
@@ -117,7 +117,7 @@ fn cloud(
 }
 
 /// How the poles of the short period and the real zeros off the origin spread.
-fn histograms<M: FlightModel>(outcome: &Outcome<'_, M>) -> Panel {
+fn histograms<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Panel {
     let values = outcome.nominal.values();
     let quantities = &outcome.nominal.quantities;
     let real = |it: &Quantity| {
@@ -178,7 +178,7 @@ fn bins(sample: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
 }
 
 /// The parameters that matter most to each of the headline quantities, as bars.
-pub(super) fn sensitivities<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<String, String> {
+pub(super) fn sensitivities<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, String> {
     let panels = outcome.headline().into_iter().filter_map(|index| {
         let quantity = outcome.nominal.quantities.get(index)?;
         let mut ranked = outcome.ranked(index);
@@ -195,7 +195,7 @@ pub(super) fn sensitivities<M: FlightModel>(outcome: &Outcome<'_, M>) -> Result<
         .map_err(|error| error.to_string())
 }
 
-fn tornado<M: FlightModel>(
+fn tornado<M: GeneratedModel>(
     outcome: &Outcome<'_, M>,
     quantity: &Quantity,
     ranked: &[Contribution],

@@ -10,16 +10,15 @@ use ahv_analysis::disperse::{
 use ahv_analysis::linearize::LinearizeError;
 use ahv_analysis::statistics::Estimate;
 use ahv_analysis::trim::TrimError;
-use ahv_core::{Vector, first_outside};
+use ahv_core::{GeneratedModel, Vector, first_outside};
 use serde::Serialize;
 
 use super::Outcome;
-use crate::condition::Heading;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::number::{Shown, cell};
 use crate::output::Pairs;
-use crate::vehicle::FlightModel;
+use crate::vehicle::Heading;
 
 #[derive(Serialize)]
 pub(super) struct Json<'a> {
@@ -85,7 +84,7 @@ fn reason(error: &SolutionError) -> String {
     }
 }
 
-impl<M: FlightModel> Outcome<'_, M> {
+impl<M: GeneratedModel> Outcome<'_, M> {
     pub(super) fn json(&self) -> Json<'_> {
         let values = self.nominal.values();
         let quantity = |(index, quantity): (usize, &Quantity)| JsonQuantity {
@@ -329,10 +328,13 @@ impl<M: FlightModel> Outcome<'_, M> {
     pub(super) fn csv(&self, path: &Path) -> Result<(), Failure> {
         let varied = || self.slopes.parameters.iter();
         let parameters = varied().map(|&index| {
-            let name = M::Parameters::NAMES.get(index).copied().unwrap_or_default();
+            let name = M::ParametersOf::<f64>::NAMES
+                .get(index)
+                .copied()
+                .unwrap_or_default();
             format!(
                 "{name} [{}]",
-                self.vehicle.units.label::<M::Parameters>(name)
+                self.vehicle.units.label::<M::ParametersOf<f64>>(name)
             )
         });
         let quantities = self.nominal.quantities.iter().map(|quantity| {
@@ -380,8 +382,8 @@ fn number(value: f64) -> String {
 }
 
 /// Name of the parameter of a contribution.
-pub(super) fn parameter<M: FlightModel>(contribution: &Contribution) -> &'static str {
-    M::Parameters::NAMES
+pub(super) fn parameter<M: GeneratedModel>(contribution: &Contribution) -> &'static str {
+    M::ParametersOf::<f64>::NAMES
         .get(contribution.parameter)
         .copied()
         .unwrap_or_default()

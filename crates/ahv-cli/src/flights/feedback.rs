@@ -3,17 +3,16 @@
 use std::path::PathBuf;
 
 use ahv_analysis::actuator::Actuator;
-use ahv_analysis::monte_carlo::{Feedback, Flown};
-use ahv_analysis::trim::SteadyFlight;
-use ahv_core::Vector;
+use ahv_analysis::monte_carlo::Feedback;
+use ahv_analysis::trim::SteadyState;
+use ahv_core::{GeneratedModel, Vector};
 use clap::{Args, ValueEnum};
 
-use super::Pair;
 use crate::assignment::Assignments;
-use crate::condition::Vehicle;
 use crate::failure::{Failure, complain};
 use crate::gains::Gains;
 use crate::number::Shown;
+use crate::vehicle::Vehicle;
 
 /// Bandwidth of the actuators, in rad/s, unless another is given.
 const BANDWIDTH: f64 = 20.0;
@@ -66,21 +65,23 @@ impl FeedbackArguments {
     ///
     /// [`Failure::Request`] for a file that is no file of gains for this model, or was designed for another vehicle or
     /// flight.
-    pub(crate) fn read<M: Pair<F>, F: Flown>(
+    pub(crate) fn read<M: GeneratedModel>(
         &self,
         vehicle: &Vehicle<M>,
-        flight: &SteadyFlight<F::Input<f64>>,
-    ) -> Result<Option<Feedback<F>>, Failure> {
+        flight: &SteadyState<M::Input>,
+    ) -> Result<Option<Feedback<M>>, Failure> {
         let Some(path) = &self.feedback else {
             return Ok(None);
         };
         let fault = |what: &str| Failure::Request(format!("--feedback {}: {what}", path.display()));
         let gains = Gains::read(path, vehicle, flight).map_err(|what| fault(&what))?;
-        vehicle.moves(&gains.state.vector()).map_err(|why| fault(&why))?;
-        let feedback = self.law::<M, F>(vehicle, &gains)?;
+        vehicle
+            .moves(&gains.state.vector())
+            .map_err(|why| fault(&why))?;
+        let feedback = self.law::<M>(vehicle, &gains)?;
         let mut differences = gains.differences(vehicle, flight);
         if let Some(unsteady) = feedback.unsteady(&vehicle.model) {
-            let unit = vehicle.units.label::<F::State<f64>>(unsteady.state);
+            let unit = vehicle.units.label::<M::State>(unsteady.state);
             differences.push(format!(
                 "a reference that is no equilibrium of the flights: {} changes by {} {unit} a second, in a steady flight by {}",
                 unsteady.state,
@@ -103,28 +104,28 @@ impl FeedbackArguments {
     }
 
     /// The law of gains that fit the model.
-    fn law<M: Pair<F>, F: Flown>(
+    fn law<M: GeneratedModel>(
         &self,
         vehicle: &Vehicle<M>,
         gains: &Gains,
-    ) -> Result<Feedback<F>, Failure> {
-        let mut rates = F::Input::splat(RATE);
-        Assignments::parse::<F::Input<f64>>("--actuator-rate", &self.actuator_rate, vehicle.units)?
+    ) -> Result<Feedback<M>, Failure> {
+        let mut rates = M::Input::splat(RATE);
+        Assignments::parse::<M::Input>("--actuator-rate", &self.actuator_rate, vehicle.units)?
             .apply(&mut rates, &[]);
         if let Some((name, _)) = rates.find(|rate| rate <= 0.0) {
             return Err(Failure::Request(format!(
                 "--actuator-rate: the rate of {name} must be above 0"
             )));
         }
-        let mut gain = F::Input::splat(F::State::splat(0.0));
-        let mut actuators = F::Input::splat(None);
+        let mut gain = M::InputOf::splat(M::State::splat(0.0));
+        let mut actuators = M::InputOf::splat(None);
         for (name, row) in gains.inputs.iter().zip(&gains.gain) {
-            let Some(input) = F::Input::<f64>::index_of(name) else {
+            let Some(input) = M::Input::index_of(name) else {
                 continue;
             };
             gain.set(
                 input,
-                F::State::from_fn(|state| row.get(state).copied().unwrap_or(0.0)),
+                M::State::from_fn(|state| row.get(state).copied().unwrap_or(0.0)),
             );
             let bounds = vehicle.input_bounds.get(input);
             actuators.set(

@@ -1,11 +1,10 @@
 //! The picture of `ahv montecarlo`: for each state a fan of quantiles over time, and its distribution at the end.
 
-use ahv_analysis::monte_carlo::{Flown, QUANTILES, StateSpread};
-use ahv_core::Vector;
+use ahv_analysis::monte_carlo::{QUANTILES, StateSpread};
+use ahv_core::{GeneratedModel, Vector};
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
 
 use super::Told;
-use crate::flights::Pair;
 use crate::output::readable;
 use crate::signals::interrupted;
 
@@ -13,7 +12,7 @@ use crate::signals::interrupted;
 const COLUMNS: usize = 4;
 
 /// Fans and distributions.
-pub(super) fn draw<F: Flown, M: Pair<F>>(told: &Told<'_, F, M>) -> Result<String, PlotError> {
+pub(super) fn draw<M: GeneratedModel>(told: &Told<'_, M>) -> Result<String, PlotError> {
     let panels = (0..M::State::LEN).flat_map(|index| {
         let name = M::State::NAMES.get(index).copied().unwrap_or_default();
         let unit = told
@@ -33,8 +32,8 @@ pub(super) fn draw<F: Flown, M: Pair<F>>(told: &Told<'_, F, M>) -> Result<String
     Figure::new(title, COLUMNS, panels.collect()).svg()
 }
 
-fn fan<F: Flown, M: Pair<F>>(
-    told: &Told<'_, F, M>,
+fn fan<M: GeneratedModel>(
+    told: &Told<'_, M>,
     index: usize,
     name: &str,
     unit: &str,
@@ -71,8 +70,8 @@ fn fan<F: Flown, M: Pair<F>>(
     }
 }
 
-fn distribution<F: Flown, M: Pair<F>>(
-    told: &Told<'_, F, M>,
+fn distribution<M: GeneratedModel>(
+    told: &Told<'_, M>,
     index: usize,
     name: &str,
     unit: &str,

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use ahv_analysis::monte_carlo::{Flown, Seen};
-use ahv_core::Vector;
+use ahv_analysis::monte_carlo::Seen;
+use ahv_core::{GeneratedModel, Vector};
 
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, complain};
-use crate::flights::{Pair, Ready};
+use crate::flights::Ready;
 use crate::number::cell;
 
 /// Members that are listed at most: the file grows with them, and nothing else does.
@@ -17,21 +17,17 @@ const MOST_LISTED: u64 = 1_000_000;
 const INTERVALS: [&str; 2] = ["validity_box", "limits"];
 
 /// The list of the members, which is written while they fly.
-pub(super) struct MemberList<'r, F: Flown, M: Pair<F>> {
-    ready: &'r Ready<F, M>,
+pub(super) struct MemberList<'r, M: GeneratedModel> {
+    ready: &'r Ready<M>,
     /// Indices of the parameters that are drawn.
     drawn: Vec<usize>,
     /// The file, or why it cannot be written.
     file: Result<CsvFile, Failure>,
 }
 
-impl<'r, F: Flown, M: Pair<F>> MemberList<'r, F, M> {
+impl<'r, M: GeneratedModel> MemberList<'r, M> {
     /// Starts the list of `asked` members.
-    pub(super) fn create(
-        ready: &'r Ready<F, M>,
-        folder: &Path,
-        asked: u64,
-    ) -> Result<Self, Failure> {
+    pub(super) fn create(ready: &'r Ready<M>, folder: &Path, asked: u64) -> Result<Self, Failure> {
         if asked > MOST_LISTED {
             complain(&format!(
                 "note: members.csv lists members 0 to {}",
@@ -63,8 +59,11 @@ impl<'r, F: Flown, M: Pair<F>> MemberList<'r, F, M> {
         let states = M::State::NAMES.iter().zip(units.labels::<M::State>());
         let states = states.map(|(name, unit)| format!("last_{name} [{unit}]"));
         let parameters = self.drawn.iter().filter_map(|&index| {
-            let name = M::Parameters::NAMES.get(index)?;
-            Some(format!("{name} [{}]", units.label::<M::Parameters>(name)))
+            let name = M::ParametersOf::<f64>::NAMES.get(index)?;
+            Some(format!(
+                "{name} [{}]",
+                units.label::<M::ParametersOf<f64>>(name)
+            ))
         });
         let first = ["member", "outcome", "lost [s]", "lost_state"].map(str::to_owned);
         first
@@ -76,7 +75,7 @@ impl<'r, F: Flown, M: Pair<F>> MemberList<'r, F, M> {
     }
 
     /// Lists members from number `first` on.
-    pub(super) fn add(&mut self, first: u64, seen: &[Seen<F>]) {
+    pub(super) fn add(&mut self, first: u64, seen: &[Seen<M>]) {
         for (member, seen) in (first..MOST_LISTED).zip(seen) {
             if self.file.is_err() {
                 return;
@@ -86,7 +85,7 @@ impl<'r, F: Flown, M: Pair<F>> MemberList<'r, F, M> {
         }
     }
 
-    fn member(&self, member: u64, seen: &Seen<F>) -> Vec<String> {
+    fn member(&self, member: u64, seen: &Seen<M>) -> Vec<String> {
         let time = |steps: u64| cell(self.ready.time(steps));
         let (outcome, lost, lost_state) = match &seen.lost {
             Some(loss) => ("lost", time(loss.step), loss.state),

@@ -2,17 +2,17 @@
 
 use std::fmt::Write;
 
-use ahv_analysis::monte_carlo::{Flown, QUANTILES, Snapshot};
+use ahv_analysis::monte_carlo::{QUANTILES, Snapshot};
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use serde::Serialize;
 
 use super::Told;
 use crate::assignment::{interval, show};
-use crate::condition::Heading;
-use crate::flights::{Pair, Settings};
+use crate::flights::Settings;
 use crate::number::{self, Shown};
 use crate::output::Pairs;
+use crate::vehicle::Heading;
 
 /// The outcome as JSON. Means, standard deviations and quantiles are of the members that fly at the end.
 #[derive(Serialize)]
@@ -72,7 +72,7 @@ fn by_state<X: Vector<f64>, V>(values: impl Iterator<Item = V>) -> Pairs<V> {
     Pairs(X::NAMES.iter().copied().zip(values).collect())
 }
 
-impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
+impl<M: GeneratedModel> Told<'_, M> {
     pub(super) fn json(&self) -> Json<'_> {
         let outcome = &self.outcome;
         let value = |estimate: &Option<Estimate>| estimate.map(|it| it.value);

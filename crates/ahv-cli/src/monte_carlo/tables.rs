@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
-use ahv_analysis::monte_carlo::{Flown, QUANTILES};
+use ahv_analysis::monte_carlo::QUANTILES;
 use ahv_analysis::statistics::OpenEstimate;
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 
 use super::{Told, figure, trajectories};
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
-use crate::flights::Pair;
 use crate::number::{cell, time};
 use crate::output;
 
@@ -22,7 +21,7 @@ fn cells(estimate: &OpenEstimate) -> [String; 3] {
         .map(|number| number.map_or_else(String::new, cell))
 }
 
-impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
+impl<M: GeneratedModel> Told<'_, M> {
     /// Writes all files of numbers.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
         let json = output::json(&self.json())?;

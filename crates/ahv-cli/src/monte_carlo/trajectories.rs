@@ -3,8 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use ahv_analysis::monte_carlo::Flown;
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, Vector};
 use clap::ValueEnum;
 use parquet::basic::{Repetition, Type as Physical};
 use parquet::data_type::{DoubleType, Int64Type};
@@ -15,7 +14,6 @@ use parquet::schema::types::Type;
 use super::Told;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
-use crate::flights::Pair;
 use crate::number::{cell, time};
 use crate::output::Output;
 
@@ -58,10 +56,7 @@ pub(super) fn check(arguments: &super::Arguments) -> Result<(), Failure> {
 }
 
 /// Writes the flights that were asked for; none is no file.
-pub(super) fn write<F: Flown, M: Pair<F>>(
-    told: &Told<'_, F, M>,
-    folder: &Path,
-) -> Result<(), Failure> {
+pub(super) fn write<M: GeneratedModel>(told: &Told<'_, M>, folder: &Path) -> Result<(), Failure> {
     let chosen = &told.arguments.trajectories;
     if chosen.is_empty() {
         return Ok(());

@@ -1,24 +1,20 @@
 //! Poles and zeros in the complex plane, whole and near the origin.
 
-use ahv_analysis::poles::{Mode, frequency};
+use ahv_analysis::poles::frequency;
+use ahv_core::GeneratedModel;
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, Shape};
 use nalgebra::Complex;
 
 use super::Roots;
-use crate::vehicle::FlightModel;
 
 /// Share of an axis that is left free around the roots.
 const MARGIN: f64 = 1.15;
 
+/// Ratio of two frequencies from which on the slower one is hard to see.
+const HIDING: f64 = 3.0;
+
 /// The picture of `roots`.
-pub(super) fn figure<M: FlightModel>(roots: &Roots<'_, M>) -> Figure {
-    let flexible = roots
-        .poles
-        .iter()
-        .filter(|pole| matches!(pole.mode, Some(Mode::Flexible(_) | Mode::ColouredNoise(_))));
-    let slowest = flexible
-        .map(|pole| frequency(pole.value))
-        .fold(f64::INFINITY, f64::min);
+pub(super) fn figure<M: GeneratedModel>(roots: &Roots<'_, M>) -> Figure {
     let all = panel("All".to_owned(), roots, f64::INFINITY);
     let title = format!(
         "Poles and zeros of {}, set {}, {}",
@@ -26,16 +22,26 @@ pub(super) fn figure<M: FlightModel>(roots: &Roots<'_, M>) -> Figure {
         roots.vehicle.set,
         roots.place
     );
-    if slowest.is_finite() {
-        let near = panel("Rigid body".to_owned(), roots, 0.9 * slowest);
-        Figure::new(title, 2, vec![all, near])
-    } else {
-        Figure::new(title, 1, vec![all])
-    }
+    let panels = match gap(roots.poles.iter().map(|pole| frequency(pole.value))) {
+        Some(limit) => vec![all, panel("Near the origin".to_owned(), roots, limit)],
+        None => vec![all],
+    };
+    Figure::new(title, panels.len(), panels)
+}
+
+/// A frequency in the widest gap among the poles', where one is wide enough to hide the slow ones in a picture of all.
+fn gap(frequencies: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = frequencies.filter(|&frequency| frequency > 0.0).collect();
+    sorted.sort_by(f64::total_cmp);
+    let gaps = sorted
+        .windows(2)
+        .map(|pair| (pair[1] / pair[0], (pair[0] * pair[1]).sqrt()));
+    let widest = gaps.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (widest.0 > HIDING).then_some(widest.1)
 }
 
 /// The roots whose frequency is below `limit`.
-fn panel<M: FlightModel>(title: String, roots: &Roots<'_, M>, limit: f64) -> Panel {
+fn panel<M: GeneratedModel>(title: String, roots: &Roots<'_, M>, limit: f64) -> Panel {
     let near = |roots: Vec<Complex<f64>>| -> Vec<(f64, f64)> {
         let near = roots.into_iter().filter(|&root| frequency(root) < limit);
         near.map(|root| (root.re, root.im)).collect()

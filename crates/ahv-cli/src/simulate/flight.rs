@@ -1,29 +1,28 @@
 //! One simulation, for any model.
 
-use ahv_core::{Vector, first_outside};
+use ahv_core::{GeneratedModel, Vector, first_outside};
 use ahv_integrate::{self as integrate, StepError, TimeGrid};
 
 use super::Arguments;
 use super::report::{Departure, Report};
 
 use crate::assignment::Assignments;
-use crate::condition::Vehicle;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::number::Shown;
 use crate::output::describe;
 use crate::progress::{Progress, Work};
 use crate::units::Units;
-use crate::vehicle::FlightModel;
+use crate::vehicle::Vehicle;
 
 /// A vehicle with how it is to fly.
-pub(super) struct Flight<'a, M: FlightModel> {
+pub(super) struct Flight<'a, M: GeneratedModel> {
     pub(super) vehicle: &'a Vehicle<M>,
     /// `None` without noise.
     pub(super) seed: Option<u64>,
 }
 
-impl<M: FlightModel> Flight<'_, M> {
+impl<M: GeneratedModel> Flight<'_, M> {
     /// Simulates over `grid`; `advance` takes the step of the number and the length in s that it is given.
     ///
     /// # Errors
@@ -86,9 +85,9 @@ impl<M: FlightModel> Flight<'_, M> {
     /// Initial state and held input: the trim, with what the arguments put in its place.
     fn start(&self, arguments: &Arguments) -> Result<(M::State, M::Input), Failure> {
         let units = self.vehicle.units;
-        let inputs = Assignments::parse::<M::Input>("--input", &arguments.input, units)?;
         let initial = Assignments::parse::<M::State>("--initial", &arguments.initial, units)?;
-        let trim = self.vehicle.trim(&self.vehicle.standard(&inputs)?)?;
+        let (flight, inputs) = arguments.condition.flight_and_inputs(self.vehicle)?;
+        let trim = self.vehicle.trim(&flight)?;
         let (mut x, mut u) = (trim.state, trim.input);
         inputs.apply(&mut u, &[]);
         initial.apply(&mut x, &[]);

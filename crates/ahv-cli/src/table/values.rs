@@ -1,53 +1,18 @@
 //! The values of a table for a model.
 
-use ahv_core::{Bounds, Vector};
+use std::collections::BTreeMap;
+
+use ahv_core::{Bounds, Entry, GeneratedModel, ParameterSet, Vector};
 use toml_edit::{Item, TableLike};
 
 use super::Table;
-use crate::condition::Values;
 use crate::failure::Failure;
 use crate::names;
 use crate::units::Units;
-use crate::vehicle::FlightModel;
+use crate::vehicle::Values;
 
 /// Sections that hold no values of parameters.
 const OTHER_SECTIONS: [&str; 5] = ["table", "sources", "choices", "validity", "sets"];
-
-/// Sections whose keys are parameters, with these; a name without its number stands for all modes. Keys of all other
-/// sections are monomials.
-const PARAMETERS: [(&str, &[&str]); 4] = [
-    ("vehicle", &["m", "i_yy", "s", "c_bar", "z_t"]),
-    ("environment", &["rho_0", "h_0", "h_s", "g", "r_e"]),
-    ("modes", &["omega", "zeta", "psi"]),
-    (
-        "noise",
-        &[
-            "sigma",
-            "w_gamma",
-            "w_alpha",
-            "w_q",
-            "gust_rms",
-            "gust_time",
-        ],
-    ),
-];
-
-/// Order of the variables in the name of a monomial's coefficient; flexible coordinates follow by number.
-const VARIABLES: [&str; 4] = ["phi", "alpha", "delta_e", "delta_c"];
-
-/// Parameters that a model divides by, or takes the root of; `omega` and `zeta` stand for those of all modes.
-const POSITIVE: [&str; 10] = [
-    "m",
-    "i_yy",
-    "s",
-    "c_bar",
-    "rho_0",
-    "h_s",
-    "r_e",
-    "gust_time",
-    "omega",
-    "zeta",
-];
 
 /// Parameters as they are read.
 struct Reading<'a, P> {
@@ -55,6 +20,7 @@ struct Reading<'a, P> {
     units: Units,
     /// Whether values are divided by their factor to SI.
     from_si: bool,
+    entries: &'static [Entry],
     parameters: P,
     uncertainty: P,
     given: Vec<bool>,
@@ -66,9 +32,12 @@ impl Table {
     /// # Errors
     ///
     /// [`Failure::Request`] with the place of what the model cannot take.
-    pub(crate) fn values<M: FlightModel>(&self, set: Option<&str>) -> Result<Values<M>, Failure> {
+    pub(crate) fn values<M: GeneratedModel>(
+        &self,
+        set: Option<&str>,
+    ) -> Result<Values<M>, Failure> {
         self.check_model::<M>()?;
-        let (units, built_in) = (self.units()?, Units::of_table(M::UNIT_SYSTEM));
+        let (units, built_in) = (self.units()?, Units::of_table(M::TABLE.unit_system));
         if units == Units::FootSlug && built_in == Units::Si {
             let message = "the models were generated in si, and take no table in ft-slug-s-rad";
             return Err(self.fault(&["table", "units"], message));
@@ -77,9 +46,10 @@ impl Table {
             table: self,
             units,
             from_si: units != built_in,
-            parameters: M::Parameters::splat(0.0),
-            uncertainty: M::Parameters::splat(0.0),
-            given: vec![false; M::Parameters::LEN],
+            entries: M::TABLE.entries,
+            parameters: M::ParametersOf::<f64>::splat(0.0),
+            uncertainty: M::ParametersOf::<f64>::splat(0.0),
+            given: vec![false; M::ParametersOf::<f64>::LEN],
         };
         reading.sections(&[], self.document.as_table())?;
         reading.check_complete::<M>()?;
@@ -97,9 +67,7 @@ impl Table {
             reading.sections(&["sets", set], self.further_set(set, own)?)?;
         }
         let parameters = self.chosen::<M>(reading.parameters)?;
-        if let Some(contradiction) = M::contradiction(&parameters) {
-            return Err(Failure::Request(format!("{}: {contradiction}", self.shown)));
-        }
+        self.check_rules::<M>(&parameters, set, own)?;
         let from_si = reading.from_si;
         Ok(Values {
             set: set.to_owned().into(),
@@ -124,7 +92,7 @@ impl Table {
         Ok(uncertainty)
     }
 
-    fn check_model<M: FlightModel>(&self) -> Result<(), Failure> {
+    fn check_model<M: GeneratedModel>(&self) -> Result<(), Failure> {
         let path = ["table", "models"];
         let models = self.item(&path).and_then(Item::as_array);
         let mut models = models.into_iter().flatten().filter_map(|it| it.as_str());
@@ -146,17 +114,47 @@ impl Table {
     }
 
     /// `parameters` with the table's choices made.
-    fn chosen<M: FlightModel>(&self, parameters: M::Parameters) -> Result<M::Parameters, Failure> {
-        M::CHOICES
+    fn chosen<M: GeneratedModel>(
+        &self,
+        parameters: M::ParametersOf<f64>,
+    ) -> Result<M::ParametersOf<f64>, Failure> {
+        M::TABLE
+            .choices
             .iter()
             .try_fold(parameters, |parameters, choice| {
                 let path = ["choices", choice.name];
-                let option = self.word(&path)?;
-                (choice.make)(parameters, option).ok_or_else(|| {
-                    let problem = names::unknown(choice.name, option, &(choice.options)());
-                    self.fault(&path, &problem)
-                })
+                let name = self.word(&path)?;
+                let option = choice.option(name).ok_or_else(|| {
+                    let known: Vec<&str> =
+                        choice.options.iter().map(|option| option.name).collect();
+                    self.fault(&path, &names::unknown(choice.name, name, &known))
+                })?;
+                Ok(option.apply(parameters))
             })
+    }
+
+    /// Holds parameters of the set `set` against the rules of the table.
+    fn check_rules<M: GeneratedModel>(
+        &self,
+        parameters: &M::ParametersOf<f64>,
+        set: &str,
+        own: &str,
+    ) -> Result<(), Failure> {
+        let Some(rule) = M::TABLE.rules.iter().find(|rule| !rule.holds(parameters)) else {
+            return Ok(());
+        };
+        let first = rule.terms.first().and_then(|term| term.parameters.first());
+        let index = first.and_then(|name| M::ParametersOf::<f64>::index_of(name));
+        let Some(Entry { section, key, .. }) = index.and_then(|index| M::TABLE.entries.get(index))
+        else {
+            return Err(Failure::Request(format!("{}: {}", self.shown, rule.reason)));
+        };
+        let replaced = ["sets", set, section, key, "value"];
+        let path: &[&str] = match set != own && self.item(&replaced).is_some() {
+            true => &replaced,
+            false => &replaced[2..],
+        };
+        Err(self.fault(path, rule.reason))
     }
 
     /// The table's intervals for the components of `built_in`.
@@ -206,23 +204,16 @@ impl<P: Vector<f64>> Reading<'_, P> {
     }
 
     fn entry(&mut self, path: &[&str], section: &str, key: &str) -> Result<(), Failure> {
-        let name = if PARAMETERS.iter().any(|(own, _)| *own == section) {
-            Some(key.to_lowercase())
-        } else {
-            coefficient(section, key)
+        let powers = monomial(key);
+        let known = |entry: &Entry| {
+            entry.section == section && (entry.key == key || monomial(entry.key) == powers)
         };
-        let named = name.and_then(|name| P::index_of(&name));
-        let Some(index) = named else {
-            return Err(self.table.key_fault(path, &unknown::<P>(section, key)));
+        let Some(index) = self.entries.iter().position(known) else {
+            return Err(self.table.key_fault(path, &self.unknown(section, key)));
         };
         let (expected, factor) = scale::<P, f64>(index, self.units, self.from_si);
         let value = self.table.number(&[path, &["value"]].concat())?;
         self.table.unit(path, expected, false)?;
-        let name = P::NAMES.get(index).copied().unwrap_or_default();
-        if listed(&POSITIVE, name) && value <= 0.0 {
-            let message = format!("`{key}` must be positive");
-            return Err(self.table.fault(&[path, &["value"]].concat(), &message));
-        }
         self.parameters.set(index, value * factor);
         self.uncertainty.set(index, self.table.uncertainty(path)?);
         if let Some(given) = self.given.get_mut(index) {
@@ -232,34 +223,39 @@ impl<P: Vector<f64>> Reading<'_, P> {
     }
 
     /// A coefficient that is not listed is 0; a parameter that the model uses must be listed.
-    fn check_complete<M: FlightModel<Parameters = P>>(&self) -> Result<(), Failure> {
-        let Some((_, nominal)) = M::SETS.first() else {
+    fn check_complete<M: GeneratedModel<ParametersOf<f64> = P>>(&self) -> Result<(), Failure> {
+        let Some(ParameterSet { parameters, .. }) = M::SETS.first() else {
             return Ok(());
         };
         let uses = |index| {
-            let mut other = *nominal;
-            other.set(index, nominal.get(index).unwrap_or(0.0) + 1.0);
-            M::with_parameters(&other) != M::with_parameters(nominal)
+            let mut other = *parameters;
+            other.set(index, parameters.get(index).unwrap_or(0.0) + 1.0);
+            M::with_parameters(&other) != M::with_parameters(parameters)
         };
-        for (index, name) in P::NAMES.iter().enumerate() {
-            let section = PARAMETERS.iter().find(|(_, names)| listed(names, name));
-            let missing = self.given.get(index) == Some(&false);
-            if let Some((section, _)) = section.filter(|_| missing && uses(index)) {
-                let message = format!("`{name}` is missing in `[{section}]`");
+        for (index, entry) in self.entries.iter().enumerate() {
+            let is_monomial = monomial(entry.key).is_some();
+            let missing = self.given.get(index) == Some(&false) && entry.section != "choices";
+            if missing && !is_monomial && uses(index) {
+                let (key, section) = (entry.key, entry.section);
+                let message = format!("`{key}` is missing in `[{section}]`");
                 return Err(self.table.fault(&[section], &message));
             }
         }
         Ok(())
     }
-}
 
-/// Whether `name`, or what is left of it without the number of a mode, is among `names`.
-fn listed(names: &[&str], name: &str) -> bool {
-    let kind = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    names.contains(&name)
-        || kind
-            .strip_suffix('_')
-            .is_some_and(|kind| names.contains(&kind))
+    /// What to say of an entry that the models have no parameter for.
+    fn unknown(&self, section: &str, key: &str) -> String {
+        let known = self.entries.iter().filter(|entry| entry.section == section);
+        let known: Vec<&str> = known.map(|entry| entry.key).collect();
+        let problem = match known.as_slice() {
+            [] => format!("the models have no section `{section}`"),
+            known => names::unknown("key", key, known),
+        };
+        format!(
+            "{problem}. The models were generated without it: a table with other entries is made into models by `ahv generate`"
+        )
+    }
 }
 
 /// The unit of component `index` of a `V` in the system `units`, and the factor from there to the generated models.
@@ -273,67 +269,20 @@ fn scale<V: Vector<T>, T>(index: usize, units: Units, from_si: bool) -> (&'stati
     (unit, if from_si { 1.0 / factor } else { 1.0 })
 }
 
-/// The name of the coefficient of a monomial; `None` if `key` is none.
-fn coefficient(quantity: &str, key: &str) -> Option<String> {
-    let quantity = quantity.to_lowercase();
+/// The powers of a monomial's variables by name; `None` if `key` is none.
+fn monomial(key: &str) -> Option<BTreeMap<&str, u32>> {
+    let mut powers = BTreeMap::new();
     if key == "1" {
-        return Some(format!("{quantity}_0"));
+        return Some(powers);
     }
-    let mut powers: Vec<(usize, &str, u32)> = Vec::new();
     for factor in key.split('*') {
         let (name, exponent) = factor
             .trim()
             .split_once('^')
             .unwrap_or((factor.trim(), "1"));
         let exponent: u32 = exponent.parse().ok()?;
-        match powers.iter_mut().find(|(_, own, _)| *own == name) {
-            Some((_, _, own)) => *own = own.checked_add(exponent)?,
-            None => {
-                let known = VARIABLES.iter().position(|&variable| variable == name);
-                let rank = match known {
-                    Some(rank) => rank,
-                    None => {
-                        let mode: usize = name.strip_prefix("eta_")?.parse().ok()?;
-                        mode.checked_add(VARIABLES.len())?
-                    }
-                };
-                powers.push((rank, name, exponent));
-            }
-        }
+        let power: &mut u32 = powers.entry(name).or_default();
+        *power = power.checked_add(exponent)?;
     }
-    powers.sort_unstable();
-    let parts = powers
-        .into_iter()
-        .map(|(_, name, exponent)| match exponent {
-            1 => name.to_owned(),
-            _ => format!("{name}_{exponent}"),
-        });
-    Some(format!(
-        "{quantity}_{}",
-        parts.collect::<Vec<_>>().join("_")
-    ))
-}
-
-/// What to say of an entry that the models have no parameter for.
-fn unknown<P: Vector<f64>>(section: &str, key: &str) -> String {
-    if let Some((_, names)) = PARAMETERS.iter().find(|(own, _)| *own == section) {
-        let known: Vec<&str> = P::NAMES
-            .iter()
-            .copied()
-            .filter(|name| listed(names, name))
-            .collect();
-        return names::unknown("parameter", key, &known);
-    }
-    let quantity = format!("{}_", section.to_lowercase());
-    let known: Vec<&str> = P::NAMES
-        .iter()
-        .filter_map(|name| name.strip_prefix(quantity.as_str()))
-        .collect();
-    let problem = match known.as_slice() {
-        [] => format!("the models have no quantity `{section}`"),
-        known => names::unknown("monomial", key, known),
-    };
-    format!(
-        "{problem}. The models were generated without it: a table with other monomials or modes is made into models by `ahv generate`"
-    )
+    Some(powers)
 }

@@ -1,26 +1,22 @@
-//! Trims over the validity box of velocity and altitude.
+//! Trims over the validity box of the first two given states, such as velocity and altitude.
 
 use std::path::Path;
 use std::str::FromStr;
 
-use ahv_analysis::trim::{SteadyFlight, Trim, TrimError, trim};
-use ahv_core::{Bounds, Vector};
+use ahv_analysis::trim::{SteadyState, Trim, TrimError, trim};
+use ahv_core::{Bounds, GeneratedModel, Vector};
 use ahv_plot::{Axis, Cells, Colour, Figure, Layer, Mark, Panel, Shape};
 use serde::Serialize;
 
-use crate::condition::Vehicle;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::number;
-use crate::output;
-use crate::vehicle::FlightModel;
+use crate::output::{self, readable};
+use crate::vehicle::Vehicle;
 
-/// Points along velocity and altitude.
+/// Points along the two given states.
 #[derive(Clone, Copy)]
-pub(super) struct Size {
-    velocity: u16,
-    altitude: u16,
-}
+pub(super) struct Size([u16; 2]);
 
 /// Most points along an axis.
 const MOST: u16 = 500;
@@ -31,25 +27,28 @@ impl FromStr for Size {
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |text: &str| text.parse().ok().filter(|it| (2..=MOST).contains(it));
         let pair = text.split_once('x');
-        let pair = pair.and_then(|(v, h)| Some((number(v)?, number(h)?)));
-        let (velocity, altitude) =
-            pair.ok_or_else(|| format!("write it like 20x20, with numbers from 2 to {MOST}"))?;
-        Ok(Self { velocity, altitude })
+        let pair = pair.and_then(|(x, y)| Some([number(x)?, number(y)?]));
+        let pair =
+            pair.ok_or_else(|| format!("write it like 20x20, with numbers from 2 to {MOST}"));
+        pair.map(Self)
     }
 }
 
 /// A point of the map.
-struct Cell<M: FlightModel> {
-    velocity: f64,
-    altitude: f64,
+struct Cell<M: GeneratedModel> {
+    at: [f64; 2],
     result: Result<Trim<M::State, M::Input>, TrimError>,
 }
 
-/// Trims by rows of altitude, velocity running fastest.
-pub(super) struct Map<'a, M: FlightModel> {
+/// Trims by rows of the second state, the first running fastest.
+pub(super) struct Map<'a, M: GeneratedModel> {
     vehicle: &'a Vehicle<M>,
-    velocities: Vec<f64>,
-    altitudes: Vec<f64>,
+    /// The two given states.
+    names: [&'static str; 2],
+    /// Their values.
+    axes: [Vec<f64>; 2],
+    /// What is mapped: what people look at of a trim, but for what there is one of for each mode.
+    quantities: Vec<&'static str>,
     cells: Vec<Cell<M>>,
 }
 
@@ -63,42 +62,61 @@ pub(super) struct Json<'a> {
     blocked: Vec<(String, usize)>,
 }
 
-impl<'a, M: FlightModel> Map<'a, M> {
-    /// Trims at each point from the cold start of `flight`, whose velocity and altitude do not count.
+impl<'a, M: GeneratedModel> Map<'a, M> {
+    /// Trims at each point from the cold start of `flight`, in which the two states are not `given` otherwise.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] for a model of which fewer than two states are given, and for one that is.
     pub(super) fn new(
         vehicle: &'a Vehicle<M>,
-        flight: &SteadyFlight<M::Input>,
-        size: Size,
-    ) -> Self {
+        flight: &SteadyState<M::Input>,
+        Size(size): Size,
+        mut given: impl Iterator<Item = &'static str>,
+    ) -> Result<Self, Failure> {
+        let [first, second, ..] = M::TRIM.given else {
+            let few = format!("--map: fewer than two states of {} are given", M::NAME);
+            return Err(Failure::Request(few));
+        };
+        let names = [first.name, second.name];
+        if let Some(name) = given.find(|name| names.contains(name)) {
+            return Err(Failure::Request(format!(
+                "--map: {name} is mapped; leave --{name} out"
+            )));
+        }
         let interval = |name| {
             let index = M::State::index_of(name);
             let bounds = index.and_then(|index| vehicle.state_bounds.get(index));
             bounds.unwrap_or(Bounds::new(0.0, 0.0))
         };
-        let velocities = spaced(interval("velocity"), size.velocity);
-        let altitudes = spaced(interval("altitude"), size.altitude);
-        let points = altitudes.iter().flat_map(|&altitude| {
-            let point = move |&velocity| (velocity, altitude);
-            velocities.iter().map(point)
-        });
-        let cells = points.map(|(velocity, altitude)| {
-            let flight = SteadyFlight {
-                velocity,
-                altitude,
-                ..*flight
-            };
+        let axes = [0, 1].map(|axis| spaced(interval(names[axis]), size[axis]));
+        let [fast, slow] = &axes;
+        let points = slow.iter().flat_map(|&y| fast.iter().map(move |&x| [x, y]));
+        let cells = points.map(|at| {
+            let pairs = names.iter().zip(at);
+            let flight = pairs.fold(flight.clone(), |flight, (name, at)| flight.with(name, at));
             Cell {
-                velocity,
-                altitude,
+                at,
                 result: trim(&vehicle.model, &flight),
             }
         });
-        Self {
+        let single = |name: &&&str| !name.ends_with(|last: char| last.is_ascii_digit());
+        Ok(Self {
             vehicle,
             cells: cells.collect(),
-            velocities,
-            altitudes,
-        }
+            quantities: M::TRIM.shown.iter().filter(single).copied().collect(),
+            names,
+            axes,
+        })
+    }
+
+    /// A quantity of a trim, in the model's unit.
+    fn value(&self, name: &str, trim: &Trim<M::State, M::Input>) -> f64 {
+        let state = M::State::index_of(name).and_then(|index| trim.state.get(index));
+        let input = M::Input::index_of(name).and_then(|index| trim.input.get(index));
+        let outputs = || self.vehicle.outputs(&trim.state, &trim.input);
+        let output = || outputs().get(M::OutputsOf::<f64>::index_of(name)?);
+        state.or(input).or_else(output).unwrap_or(f64::NAN)
     }
 
     /// Why a point does not trim, in a few words.
@@ -177,49 +195,41 @@ impl<'a, M: FlightModel> Map<'a, M> {
     }
 
     fn header(&self) -> Vec<String> {
-        let label = |name| self.vehicle.units.label::<M::State>(name);
-        vec![
-            format!("velocity [{}]", label("velocity")),
-            format!("altitude [{}]", label("altitude")),
-            "converged".to_owned(),
-            "alpha [rad]".to_owned(),
-            "phi [1]".to_owned(),
-            "delta_e [rad]".to_owned(),
-            "blocking_bound".to_owned(),
-        ]
+        let label = |name: &&str| format!("{name} [{}]", self.vehicle.unit(name));
+        let mut header: Vec<String> = self.names.iter().map(label).collect();
+        header.push("converged".to_owned());
+        header.extend(self.quantities.iter().map(label));
+        header.push("blocking_bound".to_owned());
+        header
     }
 
     fn record(&self, cell: &Cell<M>) -> Vec<String> {
-        let mut record = vec![number::cell(cell.velocity), number::cell(cell.altitude)];
-        match &cell.result {
-            Ok(trim) => {
-                record.push("true".to_owned());
-                record.extend(QUANTITIES.map(|it| number::cell(it.of::<M>(trim))));
-                record.push(String::new());
-            }
-            Err(error) => {
-                record.push("false".to_owned());
-                record.extend(QUANTITIES.map(|_| String::new()));
-                record.push(self.why(error));
-            }
-        }
+        let mut record: Vec<String> = cell.at.map(number::cell).into();
+        record.push(cell.result.is_ok().to_string());
+        record.extend(self.quantities.iter().map(|name| match &cell.result {
+            Ok(trim) => number::cell(self.value(name, trim)),
+            Err(_) => String::new(),
+        }));
+        let why = cell.result.as_ref().err().map(|error| self.why(error));
+        record.push(why.unwrap_or_default());
         record
     }
 
     fn figure(&self) -> Figure {
-        let maps = QUANTITIES.into_iter().map(|quantity| {
+        let maps = self.quantities.iter().map(|name| {
+            let (unit, factor) = readable(self.vehicle.unit(name));
             let value = |cell: &Cell<M>| {
                 let trim = cell.result.as_ref().ok()?;
-                Some(quantity.of::<M>(trim) * quantity.shown)
+                Some(self.value(name, trim) * factor)
             };
             let cells = Cells {
-                x: edges(&self.velocities),
-                y: edges(&self.altitudes),
+                x: edges(&self.axes[0]),
+                y: edges(&self.axes[1]),
                 values: self.cells.iter().map(value).collect(),
-                label: quantity.label.to_owned(),
+                label: format!("{name} [{unit}]"),
             };
             self.panel(
-                quantity.title,
+                name,
                 vec![Layer::new("", Colour::Black, Mark::Cells(cells))],
             )
         });
@@ -233,7 +243,7 @@ impl<'a, M: FlightModel> Map<'a, M> {
     fn outcomes(&self) -> Vec<Layer> {
         let points = |wanted: &dyn Fn(&Cell<M>) -> bool| {
             let cells = self.cells.iter().filter(|cell| wanted(cell));
-            cells.map(|cell| (cell.velocity, cell.altitude)).collect()
+            cells.map(|cell| (cell.at[0], cell.at[1])).collect()
         };
         let trims = points(&|cell| cell.result.is_ok());
         let mut layers = vec![Layer::new(
@@ -269,53 +279,10 @@ impl<'a, M: FlightModel> Map<'a, M> {
         };
         Panel {
             title: title.to_owned(),
-            x: axis("velocity", &self.velocities),
-            y: axis("altitude", &self.altitudes),
+            x: axis(self.names[0], &self.axes[0]),
+            y: axis(self.names[1], &self.axes[1]),
             layers,
         }
-    }
-}
-
-/// What a map shows of a trim.
-#[derive(Clone, Copy)]
-struct Quantity {
-    name: &'static str,
-    title: &'static str,
-    label: &'static str,
-    /// Factor from the model's unit to the shown one.
-    shown: f64,
-}
-
-/// A radian in degrees.
-const DEGREES: f64 = 180.0 / std::f64::consts::PI;
-
-const QUANTITIES: [Quantity; 3] = [
-    Quantity {
-        name: "alpha",
-        title: "Angle of attack",
-        label: "alpha [deg]",
-        shown: DEGREES,
-    },
-    Quantity {
-        name: "phi",
-        title: "Fuel equivalence ratio",
-        label: "phi [1]",
-        shown: 1.0,
-    },
-    Quantity {
-        name: "delta_e",
-        title: "Elevator",
-        label: "delta_e [deg]",
-        shown: DEGREES,
-    },
-];
-
-impl Quantity {
-    /// The value in the model's unit.
-    fn of<M: FlightModel>(&self, trim: &Trim<M::State, M::Input>) -> f64 {
-        let state = M::State::index_of(self.name).and_then(|index| trim.state.get(index));
-        let input = || M::Input::index_of(self.name).and_then(|index| trim.input.get(index));
-        state.or_else(input).unwrap_or(f64::NAN)
     }
 }
 

@@ -1,17 +1,17 @@
 //! What a trim at one point tells.
 
-use ahv_analysis::trim::{Nearest, SteadyFlight, Trim, TrimError};
-use ahv_core::{Outside, Vector, first_outside};
+use ahv_analysis::trim::{Nearest, SteadyState, Trim, TrimError};
+use ahv_core::{GeneratedModel, Outside, Vector, first_outside};
 use serde::Serialize;
 
 use crate::assignment::show;
-use crate::condition::{Heading, Vehicle};
+use crate::named::{Named, shown_as};
 use crate::number::Shown;
 use crate::output::{Pairs, describe, describe_outside};
-use crate::vehicle::FlightModel;
+use crate::vehicle::{Heading, PointJson, Vehicle};
 
 /// The trim, or the point that comes nearest to one.
-struct Found<M: FlightModel> {
+struct Found<M: GeneratedModel> {
     state: M::State,
     input: M::Input,
     residuals: M::State,
@@ -20,9 +20,9 @@ struct Found<M: FlightModel> {
 }
 
 /// A trim that was found or not.
-pub(super) struct Report<'a, M: FlightModel> {
+pub(super) struct Report<'a, M: GeneratedModel> {
     vehicle: &'a Vehicle<M>,
-    flight: &'a SteadyFlight<M::Input>,
+    flight: &'a SteadyState<M::Input>,
     error: Option<&'a TrimError>,
     /// `None` where not even a nearest point is known.
     found: Option<Found<M>>,
@@ -33,25 +33,30 @@ pub(super) struct Report<'a, M: FlightModel> {
 pub(super) struct Json<'a> {
     #[serde(flatten)]
     heading: Heading<'a>,
-    velocity: f64,
-    altitude: f64,
-    gamma_deg: f64,
+    #[serde(flatten)]
+    condition: Named<f64>,
     converged: bool,
     reason: Option<String>,
     blocking_bound: Option<String>,
     blocking_bounds: Vec<String>,
-    alpha_deg: Option<f64>,
-    phi: Option<f64>,
-    delta_e_deg: Option<f64>,
-    eta: Vec<f64>,
+    /// What is shown of a trim, those of one kind as a list.
+    #[serde(flatten)]
+    shown: Named<ShownValue>,
     residual_max: Option<f64>,
     iterations: Option<usize>,
     in_validity_box: bool,
     outside_validity_box: Option<JsonOutside>,
-    state: Option<Pairs<f64>>,
-    input: Option<Pairs<f64>>,
+    #[serde(flatten)]
+    point: Option<PointJson>,
     residuals: Option<Pairs<f64>>,
-    units: Pairs<&'static str>,
+}
+
+/// A number, or those of one kind.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum ShownValue {
+    One(Option<f64>),
+    Several(Vec<f64>),
 }
 
 #[derive(Serialize)]
@@ -62,10 +67,10 @@ struct JsonOutside {
     max: f64,
 }
 
-impl<'a, M: FlightModel> Report<'a, M> {
+impl<'a, M: GeneratedModel> Report<'a, M> {
     pub(super) fn new(
         vehicle: &'a Vehicle<M>,
-        flight: &'a SteadyFlight<M::Input>,
+        flight: &'a SteadyState<M::Input>,
         result: &'a Result<Trim<M::State, M::Input>, TrimError>,
     ) -> Self {
         let (found, error) = match result {
@@ -89,24 +94,17 @@ impl<'a, M: FlightModel> Report<'a, M> {
 
     pub(super) fn json(&self) -> Json<'_> {
         let (vehicle, found) = (self.vehicle, self.found.as_ref());
-        let state = |name| found.and_then(|it| it.state.get(M::State::index_of(name)?));
-        let input = |name| found.and_then(|it| it.input.get(M::Input::index_of(name)?));
         let outside = self.outside();
         let bounds = self.error.map(|error| vehicle.blocking(error));
         let bounds = bounds.unwrap_or_default();
         Json {
             heading: vehicle.heading(),
-            velocity: self.flight.velocity,
-            altitude: self.flight.altitude,
-            gamma_deg: self.flight.gamma.to_degrees(),
+            condition: Named::given::<M>(self.flight),
             converged: self.error.is_none(),
             reason: self.error.map(|error| vehicle.no_trim(error)),
             blocking_bound: bounds.first().cloned(),
             blocking_bounds: bounds,
-            alpha_deg: state("alpha").map(f64::to_degrees),
-            phi: input("phi"),
-            delta_e_deg: input("delta_e").map(f64::to_degrees),
-            eta: self.eta(),
+            shown: self.shown(),
             residual_max: found.map(|it| it.residual_max),
             iterations: found.map(|it| it.iterations),
             in_validity_box: found.is_some() && outside.is_none(),
@@ -122,18 +120,44 @@ impl<'a, M: FlightModel> Report<'a, M> {
                     max: bounds.max,
                 },
             ),
-            state: found.map(|it| Pairs::of(&it.state)),
-            input: found.map(|it| Pairs::of(&it.input)),
+            point: found.map(|it| vehicle.point(&it.state, &it.input)),
             residuals: found.map(|it| Pairs::of(&it.residuals)),
-            units: Pairs::units_of_both::<M::State, M::Input>(vehicle.units),
         }
     }
 
-    /// Deflections of the flexible modes: states, or what follows the rigid body.
-    fn eta(&self) -> Vec<f64> {
-        self.found.as_ref().map_or_else(Vec::new, |found| {
-            self.vehicle.model.deflections(&found.state, &found.input)
-        })
+    /// A state, an input or another quantity of what was found.
+    fn value(&self, name: &str) -> Option<f64> {
+        let found = self.found.as_ref()?;
+        let state = M::State::index_of(name).and_then(|index| found.state.get(index));
+        let input = M::Input::index_of(name).and_then(|index| found.input.get(index));
+        let outputs = || self.vehicle.outputs(&found.state, &found.input);
+        let output = || outputs().get(M::OutputsOf::<f64>::index_of(name)?);
+        state.or(input).or_else(output)
+    }
+
+    /// What people look at, for a program: names that differ in their number alone, as those of modes, are one list.
+    fn shown(&self) -> Named<ShownValue> {
+        let mut shown: Vec<(String, ShownValue)> = Vec::new();
+        for name in M::TRIM.shown {
+            let value = self.value(name);
+            let kind = name.trim_end_matches(|c: char| c.is_ascii_digit());
+            let Some(kind) = kind
+                .strip_suffix('_')
+                .filter(|kind| kind.len() + 1 < name.len())
+            else {
+                let (name, factor) = shown_as(name, 1.0, self.vehicle.unit(name));
+                shown.push((name, ShownValue::One(value.map(|value| value * factor))));
+                continue;
+            };
+            match shown.iter_mut().find(|(known, _)| known == kind) {
+                Some((_, ShownValue::Several(list))) => list.extend(value),
+                _ => shown.push((
+                    kind.to_owned(),
+                    ShownValue::Several(value.into_iter().collect()),
+                )),
+            }
+        }
+        Named::new(shown)
     }
 
     pub(super) fn text(&self) -> String {
@@ -157,12 +181,18 @@ impl<'a, M: FlightModel> Report<'a, M> {
         } else {
             "at the nearest point:\n"
         };
-        let eta: Vec<String> = self.eta().iter().map(|&it| show(it, "1")).collect();
-        let eta = match eta.as_slice() {
-            [] => String::new(),
-            // In the COM and the DCOM they stand among the states.
-            _ if M::State::index_of("eta_1").is_some() => String::new(),
-            values => format!("\nquasi-static eta: {}", values.join(", ")),
+        // States and inputs stand there anyway.
+        let others = M::TRIM
+            .shown
+            .iter()
+            .filter(|name| M::OutputsOf::<f64>::index_of(name).is_some());
+        let others: String = others
+            .filter_map(|name| Some((name, self.value(name)?)))
+            .map(|(name, value)| format!("\n  {name:<12} {}", show(value, self.vehicle.unit(name))))
+            .collect();
+        let others = match others.as_str() {
+            "" => String::new(),
+            lines => format!("\noutputs:{lines}"),
         };
         let place = match self.outside() {
             None => "inside the validity box".to_owned(),
@@ -176,7 +206,7 @@ impl<'a, M: FlightModel> Report<'a, M> {
             }
         };
         format!(
-            "{head}\n{nearest}state:\n{}\ninput:\n{}{eta}\nresiduals, per s:\n{}\nlargest {:.3e}, after {} iterations\n{place}",
+            "{head}\n{nearest}state:\n{}\ninput:\n{}{others}\nresiduals, per s:\n{}\nlargest {:.3e}, after {} iterations\n{place}",
             describe(&found.state, units),
             describe(&found.input, units),
             residuals(&found.residuals, units.labels::<M::State>()),
@@ -196,7 +226,7 @@ fn residuals<X: Vector<f64>>(residuals: &X, units: &[&str]) -> String {
     rows.collect::<Vec<_>>().join("\n")
 }
 
-impl<M: FlightModel> Found<M> {
+impl<M: GeneratedModel> Found<M> {
     fn trimmed(trim: &Trim<M::State, M::Input>) -> Self {
         Self {
             state: trim.state,

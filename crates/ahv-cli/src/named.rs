@@ -1,0 +1,100 @@
+//! Values by name, as JSON objects have them.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use ahv_analysis::trim::SteadyState;
+use ahv_core::{GeneratedModel, Vector};
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::output::Pairs;
+
+/// Values by name in their own order, each name once; an object in JSON.
+pub(crate) struct Named<T>(pub(crate) Vec<(String, T)>);
+
+impl<T> Default for Named<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T> Named<T> {
+    pub(crate) fn new<N: ToString>(pairs: impl IntoIterator<Item = (N, T)>) -> Self {
+        let pairs = pairs.into_iter();
+        Self(
+            pairs
+                .map(|(name, value)| (name.to_string(), value))
+                .collect(),
+        )
+    }
+
+    pub(crate) fn names(&self) -> Vec<&str> {
+        self.0.iter().map(|(name, _)| name.as_str()).collect()
+    }
+}
+
+impl Named<f64> {
+    /// What is given of a steady state; angles in deg, as their names say.
+    pub(crate) fn given<M: GeneratedModel>(flight: &SteadyState<M::Input>) -> Self {
+        Self::new(flight.given().map(|(name, value)| {
+            let unit = M::State::index_of(name).and_then(|index| M::State::UNITS.get(index));
+            shown_as(name, value, unit.copied().unwrap_or("1"))
+        }))
+    }
+
+    /// The components of a vector by name.
+    pub(crate) fn of<V: Vector<f64>>(vector: &V) -> Self {
+        Self::new(Pairs::of(vector).0)
+    }
+
+    /// The vector whose components these are; what has no name here is 0.
+    pub(crate) fn vector<V: Vector<f64>>(&self) -> V {
+        V::from_fn(|index| {
+            let mut pairs = self.0.iter();
+            let found = pairs.find(|(name, _)| V::NAMES.get(index) == Some(&name.as_str()));
+            found.map_or(0.0, |&(_, value)| value)
+        })
+    }
+}
+
+impl<T: Serialize> Serialize for Named<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Entries<T>(PhantomData<T>);
+
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Entries<T> {
+            type Value = Named<T>;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("values by name")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Named<T>, A::Error> {
+                let mut pairs: Vec<(String, T)> = Vec::new();
+                while let Some((name, value)) = map.next_entry::<String, T>()? {
+                    if pairs.iter().any(|(known, _)| *known == name) {
+                        return Err(A::Error::custom(format!("`{name}` stands there twice")));
+                    }
+                    pairs.push((name, value));
+                }
+                Ok(Named(pairs))
+            }
+        }
+
+        deserializer.deserialize_map(Entries(PhantomData))
+    }
+}
+
+/// A value by its name for a program: an angle is in deg, and its name says so.
+pub(crate) fn shown_as(name: &str, value: f64, unit: &str) -> (String, f64) {
+    match unit {
+        "rad" => (format!("{name}_deg"), value.to_degrees()),
+        _ => (name.to_owned(), value),
+    }
+}
