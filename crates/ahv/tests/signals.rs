@@ -187,7 +187,7 @@ fn covariance_reports_the_flights_that_were_flown() {
         "--model",
         "sdcom",
         "--t-end",
-        "1",
+        "0.2",
         "--dt",
         "0.001",
         "--members",
