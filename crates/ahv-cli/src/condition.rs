@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use ahv_analysis::trim::{SOUGHT_INPUTS, SteadyFlight};
 use ahv_models::dcom::{Canard, Earth, ModalNoise, Reduction};
-use clap::builder::PossibleValuesParser;
+use ahv_models::sdcom_printed;
+use clap::builder::{EnumValueParser, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -19,12 +20,12 @@ use crate::table::Table;
 use crate::units::Units;
 use crate::vehicle::{FlightModel, ModelName, for_model};
 
-/// Model, parameters, choices and units. What is not given is as the table has it.
+/// Model, parameters, choices and units. What is not given is as the table has it. `N` is the models that the command takes.
 #[derive(Args)]
-pub(crate) struct Condition {
+pub(crate) struct Condition<N: ValueEnum + Clone + Send + Sync + 'static = ModelName> {
     /// Model
-    #[arg(long)]
-    pub(crate) model: ModelName,
+    #[arg(long, value_parser = EnumValueParser::<N>::new())]
+    pub(crate) model: N,
 
     /// Table whose values, choices, sets and validity box take the place of those that the models were generated with
     #[arg(long, value_name = "FILE")]
@@ -99,7 +100,7 @@ pub(crate) struct Values<M: FlightModel> {
     pub(crate) input_bounds: M::InputBounds,
 }
 
-impl Condition {
+impl<N: ValueEnum + Clone + Send + Sync + 'static> Condition<N> {
     /// The model `M`, which must be the one that `self.model` names, in this condition.
     ///
     /// # Errors
@@ -129,7 +130,7 @@ impl Condition {
                 options.find(|option| (choice.make)(parameters, option) == Some(parameters));
             (choice.name, chosen)
         });
-        if self.model == ModelName::SdcomPrinted {
+        if M::NAME == <sdcom_printed::Model<f64> as FlightModel>::NAME {
             complain(
                 "note: sdcom_printed is the paper's truncated form; what it leaves out (Delta f) can exceed the exact rate \
                  itself, see generated/docs/sdcom_printed.md. The exact form is --model sdcom",

@@ -25,7 +25,7 @@ use crate::place::Place;
 use crate::progress::{Progress, Work};
 use crate::signals::Stoppable;
 use crate::simulate::grid::{MOST_STEPS, allowed, positive};
-use crate::vehicle::{FlightModel, ModelName};
+use crate::vehicle::{FlightModel, NoisyModel};
 
 /// Fewest members that have a standard deviation.
 const FEWEST: u64 = 2;
@@ -40,7 +40,7 @@ const SAMPLES: u32 = 20;
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    condition: Condition,
+    condition: Condition<NoisyModel>,
 
     #[command(flatten)]
     place: Place,
@@ -93,17 +93,14 @@ pub(crate) struct Arguments {
 /// flight diverges.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.condition.model {
-        ModelName::Dcom => spread::<dcom::Model<f64>, Dcom>(arguments, Scheme::Heun),
-        ModelName::Sdcom => spread::<sdcom::Model<f64>, Sdcom>(arguments, Scheme::Splitting),
-        ModelName::SdcomPrinted => {
+        NoisyModel::Dcom => spread::<dcom::Model<f64>, Dcom>(arguments, Scheme::Heun),
+        NoisyModel::Sdcom => spread::<sdcom::Model<f64>, Sdcom>(arguments, Scheme::Splitting),
+        NoisyModel::SdcomPrinted => {
             spread::<sdcom_printed::Model<f64>, SdcomPrinted>(arguments, Scheme::Splitting)
         }
-        ModelName::SdcomGust => {
+        NoisyModel::SdcomGust => {
             spread::<sdcom_gust::Model<f64>, SdcomGust>(arguments, Scheme::Splitting)
         }
-        ModelName::Com | ModelName::ComRigid => Err(Failure::Request(
-            "--model: com and com_rigid have no noise; dcom and the sdcom models have".to_owned(),
-        )),
     }
 }
 

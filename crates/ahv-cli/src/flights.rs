@@ -11,7 +11,7 @@ use ahv_analysis::monte_carlo::{
 use ahv_analysis::trim::SteadyFlight;
 use ahv_core::{Bounds, Vector};
 use clap::builder::PossibleValuesParser;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde::Serialize;
 
 use crate::assignment::Assignments;
@@ -22,7 +22,7 @@ use crate::place::Place;
 use crate::progress::Progress;
 use crate::signals::Stoppable;
 use crate::simulate::grid::{allowed, positive};
-use crate::vehicle::{FlightModel, ModelName};
+use crate::vehicle::{FlightModel, FlownModel};
 
 /// Most steps of a member: some hours.
 const MOST_STEPS: f64 = 1e12;
@@ -31,7 +31,7 @@ const MOST_STEPS: f64 = 1e12;
 #[derive(Args)]
 pub(crate) struct Flights {
     #[command(flatten)]
-    pub(crate) condition: Condition,
+    pub(crate) condition: Condition<FlownModel>,
 
     #[command(flatten)]
     place: Place,
@@ -118,18 +118,11 @@ pub(crate) trait Task {
 ///
 /// # Errors
 ///
-/// [`Failure::Request`] for a model that is not flown side by side, those of the task.
+/// Those of the task.
 pub(crate) fn with_model(flights: &Flights, task: &impl Task) -> Result<(), Failure> {
     match flights.condition.model {
-        ModelName::Sdcom => task.run::<ahv_models::sdcom::Model<f64>, Sdcom>(),
-        ModelName::Dcom => task.run::<ahv_models::dcom::Model<f64>, Dcom>(),
-        other => {
-            let name = other.to_possible_value();
-            let name = name.as_ref().map_or("this", |it| it.get_name());
-            Err(Failure::Request(format!(
-                "--model: {name} is not flown side by side; sdcom and dcom are"
-            )))
-        }
+        FlownModel::Sdcom => task.run::<ahv_models::sdcom::Model<f64>, Sdcom>(),
+        FlownModel::Dcom => task.run::<ahv_models::dcom::Model<f64>, Dcom>(),
     }
 }
 

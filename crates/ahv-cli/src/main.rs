@@ -31,11 +31,12 @@ mod trim;
 mod units;
 mod vehicle;
 
+use std::io::{self, Write as _};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use failure::Failure;
+use failure::{Failure, written};
 
 /// Flight models of an air-breathing hypersonic vehicle.
 #[derive(Parser)]
@@ -72,7 +73,11 @@ enum ModelCommand {
 }
 
 fn main() -> ExitCode {
-    match Cli::parse().command {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(asked) => return answer(&asked),
+    };
+    match cli.command {
         // It handles signals itself.
         #[cfg(feature = "generate")]
         Command::Generate(arguments) => generate::run(&arguments),
@@ -80,6 +85,15 @@ fn main() -> ExitCode {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => failure.report(signals::exit_code()),
         },
+    }
+}
+
+/// Prints help, the version, or what is wrong with the command line.
+fn answer(asked: &clap::Error) -> ExitCode {
+    let printed = asked.print().and_then(|()| io::stdout().flush());
+    match written(printed) {
+        Err(failure) if !asked.use_stderr() => failure.report(signals::exit_code()),
+        _ => ExitCode::from(u8::try_from(asked.exit_code()).unwrap_or(2)),
     }
 }
 

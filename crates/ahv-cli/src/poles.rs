@@ -70,6 +70,8 @@ struct Roots<'a, M: FlightModel> {
     outputs: Vec<&'static str>,
     poles: Vec<Pole>,
     zeros: Zeros,
+    /// Inputs that no derivative of a state depends on.
+    idle: Vec<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -115,7 +117,10 @@ fn about_trim<M: FlightModel>(arguments: &Arguments, vehicle: &Vehicle<M>) -> Re
     let trim = vehicle.trim(&flight)?;
     let system = vehicle.linear(&trim, &arguments.inputs, &arguments.outputs)?;
     let failed = |error: PolesError| Failure::Numeric(format!("{}: {error}", M::NAME));
+    let columns = system.inputs.iter().zip(system.b.column_iter());
+    let idle = columns.filter(|(_, column)| column.iter().all(|&entry| entry == 0.0));
     let roots = Roots {
+        idle: idle.map(|(&input, _)| input).collect(),
         vehicle,
         place: vehicle.at(&flight),
         poles: poles(&system).map_err(failed)?,
@@ -151,6 +156,16 @@ fn decoupling(zero: &Zero) -> Option<&'static str> {
 }
 
 impl<M: FlightModel> Roots<'_, M> {
+    /// What to say of an input that moves no state.
+    fn without_effect(&self, input: &str) -> String {
+        let canard = self.vehicle.choices.iter().find(|it| it.0 == "canard");
+        let with = match canard {
+            Some((name, Some(canard))) if input == "delta_c" => format!(" with the {name} {canard}"),
+            _ => String::new(),
+        };
+        format!("{input} has no effect{with}: no derivative of a state depends on it\n")
+    }
+
     /// How many finite zeros there are, and why.
     fn count(&self) -> String {
         let Zeros {
@@ -162,12 +177,15 @@ impl<M: FlightModel> Roots<'_, M> {
         } = &self.zeros;
         let (inputs, outputs) = (self.inputs.len(), self.outputs.len());
         let rank = match *normal_rank < inputs.min(outputs) {
+            true if !self.idle.is_empty() => String::new(),
             true => format!(
                 "the transfer matrix has rank {normal_rank} only: its {inputs} inputs cannot move its {outputs} outputs \
                  apart from each other\n"
             ),
             false => String::new(),
         };
+        let idle = self.idle.iter().map(|&input| self.without_effect(input));
+        let rank = idle.collect::<String>() + &rank;
         let list = |numbers: &[usize]| {
             let texts: Vec<String> = numbers.iter().map(usize::to_string).collect();
             texts.join(", ")

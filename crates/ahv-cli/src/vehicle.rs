@@ -26,6 +26,32 @@ pub(crate) enum ModelName {
     SdcomGust,
 }
 
+/// A model with noise by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum NoisyModel {
+    /// Decoupled control-oriented model
+    Dcom,
+    /// Its stochastic reduction, exact
+    Sdcom,
+    /// Its stochastic reduction as the paper prints it: truncated, far from the exact one
+    #[value(alias = "sdcom-printed")]
+    SdcomPrinted,
+    /// Its stochastic reduction with a band-limited gust
+    #[value(alias = "sdcom-gust")]
+    SdcomGust,
+}
+
+/// A model by name that has loops over many members.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum FlownModel {
+    /// Decoupled control-oriented model
+    Dcom,
+    /// Its stochastic reduction, exact
+    Sdcom,
+}
+
 /// Evaluates an expression with `$model` standing for the generated model called `$name`.
 macro_rules! for_model {
     ($name:expr, $model:ident => $run:expr) => {

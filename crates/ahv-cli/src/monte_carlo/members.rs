@@ -5,6 +5,7 @@ use std::path::Path;
 use ahv_analysis::monte_carlo::{Flown, Seen};
 use ahv_core::Vector;
 
+use super::tables::COMPLETE;
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, complain};
 use crate::flights::{Pair, Ready};
@@ -72,6 +73,7 @@ impl<'r, F: Flown, M: Pair<F>> MemberList<'r, F, M> {
             .chain(left)
             .chain(states)
             .chain(parameters)
+            .chain([COMPLETE.to_owned()])
             .collect()
     }
 
@@ -117,6 +119,7 @@ impl<'r, F: Flown, M: Pair<F>> MemberList<'r, F, M> {
                     .filter_map(|&index| parameters.get(index).map(cell)),
             );
         }
+        row.push(true.to_string());
         row
     }
 
@@ -129,12 +132,21 @@ impl<'r, F: Flown, M: Pair<F>> MemberList<'r, F, M> {
         }
     }
 
-    /// Puts the list in its place.
+    /// Puts the list in its place; its last column says whether all members were flown, which is known only now.
     ///
     /// # Errors
     ///
     /// [`Failure::Request`] if it could not be written.
-    pub(super) fn finish(self) -> Result<(), Failure> {
-        self.file?.finish()
+    pub(super) fn finish(self, complete: bool) -> Result<(), Failure> {
+        let file = self.file?;
+        if complete {
+            return file.finish();
+        }
+        let [whole, part] = [true, false].map(|complete| format!(",{complete}"));
+        let marked = |line: &str| match line.strip_suffix(&whole) {
+            Some(cells) => format!("{cells}{part}"),
+            None => line.to_owned(),
+        };
+        file.rewritten(marked)?.finish()
     }
 }
