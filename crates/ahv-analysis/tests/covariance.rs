@@ -440,7 +440,8 @@ fn sample<F: Flown>(
 /// Every standard deviation in its interval of 95 % would be luck: 2.3 half widths hold each with near certainty.
 fn agrees(linear: &Spreading<impl Vector<f64>>, sampled: &Snapshot) {
     for (index, (linear, state)) in linear.std().into_iter().zip(&sampled.states).enumerate() {
-        let Estimate { value, low, high } = state.std.and_then(|it| it.closed()).expect("a deviation");
+        let Estimate { value, low, high } =
+            state.std.and_then(|it| it.closed()).expect("a deviation");
         let half = 0.5 * (high - low);
         assert!(
             (linear - value).abs() <= 2.3 * half + 1e-12 * linear,

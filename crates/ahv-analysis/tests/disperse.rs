@@ -334,5 +334,8 @@ fn a_spread_has_its_numbers() {
     );
     assert_eq!(Spread::of(&[1.0]), None);
     let few = Spread::of(&[1.0, 2.0, 4.0]).expect("a spread");
-    assert_eq!((few.std_error, few.std_low, few.std_high), (None, None, None));
+    assert_eq!(
+        (few.std_error, few.std_low, few.std_high),
+        (None, None, None)
+    );
 }

@@ -10,8 +10,8 @@ use ahv_analysis::monte_carlo::{
 };
 use ahv_analysis::trim::SteadyFlight;
 use ahv_core::{Bounds, Vector};
-use clap::builder::PossibleValuesParser;
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 
 use crate::assignment::Assignments;

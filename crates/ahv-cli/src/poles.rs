@@ -160,7 +160,9 @@ impl<M: FlightModel> Roots<'_, M> {
     fn without_effect(&self, input: &str) -> String {
         let canard = self.vehicle.choices.iter().find(|it| it.0 == "canard");
         let with = match canard {
-            Some((name, Some(canard))) if input == "delta_c" => format!(" with the {name} {canard}"),
+            Some((name, Some(canard))) if input == "delta_c" => {
+                format!(" with the {name} {canard}")
+            }
             _ => String::new(),
         };
         format!("{input} has no effect{with}: no derivative of a state depends on it\n")

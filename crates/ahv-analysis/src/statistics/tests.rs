@@ -55,10 +55,7 @@ fn a_side_without_a_rank_is_open() {
         (median.value, median.low, median.high),
         (Some(19.5), Some(13.0), Some(26.0))
     );
-    assert_eq!(
-        OpenEstimate::of_sorted(&[], 0.5),
-        OpenEstimate::default()
-    );
+    assert_eq!(OpenEstimate::of_sorted(&[], 0.5), OpenEstimate::default());
 }
 
 /// Student's table.
@@ -118,6 +115,9 @@ fn two_or_three_numbers_say_nothing_of_a_deviation() {
     }
     for sample in [&[1.0, 2.0, 4.0, 9.0][..], &[0.0, 0.0, 0.0, 1.0], &[2.0; 4]] {
         let it = OpenEstimate::of_sample_std(sample).closed().expect("four");
-        assert!(it.low <= it.value && it.value <= it.high && it.high <= 1e4 * it.value, "{it:?}");
+        assert!(
+            it.low <= it.value && it.value <= it.high && it.high <= 1e4 * it.value,
+            "{it:?}"
+        );
     }
 }

@@ -76,7 +76,9 @@ impl FeedbackArguments {
         };
         let fault = |what: &str| Failure::Request(format!("--feedback {}: {what}", path.display()));
         let gains = Gains::read(path, vehicle, flight).map_err(|what| fault(&what))?;
-        vehicle.moves(&gains.state.vector()).map_err(|why| fault(&why))?;
+        vehicle
+            .moves(&gains.state.vector())
+            .map_err(|why| fault(&why))?;
         let feedback = self.law::<M, F>(vehicle, &gains)?;
         let mut differences = gains.differences(vehicle, flight);
         if let Some(unsteady) = feedback.unsteady(&vehicle.model) {

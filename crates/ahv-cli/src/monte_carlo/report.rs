@@ -175,15 +175,19 @@ impl<F: Flown, M: Pair<F>> Told<'_, F, M> {
         let states = M::State::NAMES.iter().zip(units).zip(&last.states);
         let swamped = states.filter_map(|((name, unit), state)| {
             let (all, stayed) = (state.std?.value?, state.std_of_stayed?);
-            let less = format!("{name} {} instead of {}", show(stayed, unit), show(all, unit));
+            let less = format!(
+                "{name} {} instead of {}",
+                show(stayed, unit),
+                show(all, unit)
+            );
             (stayed > 0.0 && all > SWAMPED * stayed).then_some(less)
         });
         let swamped: Vec<String> = swamped.collect();
         (!swamped.is_empty()).then(|| {
             format!(
                 "warning: {left} of {} members that fly at the end had left the validity box, and their values make most of the \
-                 means and standard deviations; without them the standard deviations are: {}. Look at the quantiles, \
-                 which a few members do not move",
+                 means and standard deviations; without them the standard deviations are: {}. Look at the quantiles \
+                 instead",
                 last.members,
                 swamped.join(", ")
             )
