@@ -1,5 +1,6 @@
 //! CSV files: all of one or none.
 
+use std::io::{self, BufRead as _, BufReader, BufWriter, Write as _};
 use std::path::Path;
 
 use serde::Serialize;
@@ -19,10 +20,13 @@ impl CsvFile {
     ///
     /// [`Failure::Request`] if no file can be made there.
     pub fn create(path: &Path) -> Result<Self, Failure> {
-        let writer = csv::WriterBuilder::new()
-            .buffer_capacity(1 << 16)
-            .from_writer(Output::create(path)?);
-        Ok(Self { writer })
+        Ok(Self::of(Output::create(path)?))
+    }
+
+    fn of(output: Output) -> Self {
+        let mut builder = csv::WriterBuilder::new();
+        let writer = builder.buffer_capacity(1 << 16).from_writer(output);
+        Self { writer }
     }
 
     /// Writes a row of numbers; each reads back as the same bits, and one that is not finite is an empty cell.
@@ -50,6 +54,28 @@ impl CsvFile {
             };
             cannot_write(self.writer.get_ref().path(), &why)
         })
+    }
+
+    /// Writes what there is anew, each line as `changed` has it. Only for files whose cells hold no line ends.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] if the file cannot be read or written.
+    pub(crate) fn rewritten(mut self, changed: impl Fn(&str) -> String) -> Result<Self, Failure> {
+        let path = self.writer.get_ref().path().to_owned();
+        let failed = |error: io::Error| cannot_write(&path, &plain(&error));
+        self.writer.flush().map_err(failed)?;
+        let written = self.writer.get_ref().reader().map_err(failed)?;
+        let mut anew = Output::create(&path)?;
+        {
+            let mut buffer = BufWriter::new(&mut anew);
+            for line in BufReader::new(written).lines() {
+                let line = line.map_err(failed)?;
+                writeln!(buffer, "{}", changed(&line)).map_err(failed)?;
+            }
+            buffer.flush().map_err(failed)?;
+        }
+        Ok(Self::of(anew))
     }
 
     /// Puts the complete file in its place.

@@ -39,7 +39,16 @@ pub fn complain(message: &str) {
 /// [`Failure::Request`] if stdout cannot be written for another reason.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout();
-    match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+    written(writeln!(stdout, "{text}").and_then(|()| stdout.flush()))
+}
+
+/// What became of writing to stdout. A reader that has gone away is no failure.
+///
+/// # Errors
+///
+/// [`Failure::Request`] if stdout could not be written for another reason.
+pub(crate) fn written(result: io::Result<()>) -> Result<(), Failure> {
+    match result {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::Request(format!("cannot write to stdout: {error}")))
         }

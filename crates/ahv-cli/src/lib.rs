@@ -34,12 +34,13 @@ mod trim;
 mod units;
 mod vehicle;
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use ahv_core::{GeneratedModel, ModelList};
-use failure::Failure;
+use failure::{Failure, written};
 use vehicle::VehicleArgs;
 
 /// Flight models of an air-breathing hypersonic vehicle.
@@ -98,7 +99,10 @@ impl ExtraCommand {
 /// asks for, and gives the exit code.
 pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
     registry::register::<L>();
-    let mut matches = command(extra).get_matches();
+    let mut matches = match command(extra).try_get_matches() {
+        Ok(matches) => matches,
+        Err(asked) => return answer(&asked),
+    };
     if let Some((name, matches)) = matches.subcommand()
         && let Some(extra) = extra.iter().find(|it| it.command.get_name() == name)
     {
@@ -110,6 +114,15 @@ pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
         #[cfg(feature = "generate")]
         Command::Generate(arguments) => generate::run(&arguments),
         Command::Model(command) => listening(|| (command.vehicle().registered()?.run)(&command)),
+    }
+}
+
+/// Prints help, the version, or what is wrong with the command line.
+fn answer(asked: &clap::Error) -> ExitCode {
+    let printed = asked.print().and_then(|()| io::stdout().flush());
+    match written(printed) {
+        Err(failure) if !asked.use_stderr() => failure.report(signals::exit_code()),
+        _ => ExitCode::from(u8::try_from(asked.exit_code()).unwrap_or(2)),
     }
 }
 

@@ -13,7 +13,7 @@ use ahv_core::{Bounds, GeneratedModel, Vector};
 use clap::Args;
 
 use crate::assignment::Assignments;
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, complain, print};
 use crate::flights::{Flights, Ready, watched};
 use crate::number::Shown;
 use crate::output;
@@ -115,12 +115,16 @@ impl Arguments {
                     }
                 })
         })?;
-        let listed = list.map_or(Ok(()), MemberList::finish);
+        let complete = outcome.members == outcome.asked;
+        let listed = list.map_or(Ok(()), |list| list.finish(complete));
         let told = Told {
             arguments: self,
             ready,
             outcome,
         };
+        if let Some(warning) = told.warning() {
+            complain(&warning);
+        }
         // Whatever fails, the rest is reported; pictures come last.
         let numbers = folder.map_or(Ok(()), |folder| told.write(folder));
         let printed = if self.json {

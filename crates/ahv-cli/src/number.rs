@@ -17,6 +17,17 @@ pub fn time(seconds: f64) -> f64 {
     format!("{seconds:.14e}").parse().unwrap_or(seconds)
 }
 
+/// A number with so many decimals; with a power of ten where they would all be 0.
+pub fn fixed(value: f64, decimals: i32) -> String {
+    let size = value.abs();
+    let places = usize::try_from(decimals).unwrap_or(0);
+    if size > 0.0 && size < 10_f64.powi(-decimals) {
+        format!("{:.places$e}", Shown(value))
+    } else {
+        format!("{:.places$}", Shown(value))
+    }
+}
+
 /// Reads a positive, finite number.
 ///
 /// # Errors
@@ -32,13 +43,22 @@ pub fn positive(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{cell, time};
+    use super::{cell, fixed, time};
 
     #[test]
     fn a_cell_reads_back_or_is_empty() {
         assert_eq!(cell(f64::NEG_INFINITY), "");
         assert_eq!(cell(1.0 / 3.0).parse(), Ok(1.0 / 3.0));
         assert_eq!(cell(1e300), "1e300");
+    }
+
+    #[test]
+    fn what_has_no_decimals_has_a_power_of_ten() {
+        assert_eq!(fixed(0.25, 4), "0.2500");
+        assert_eq!(fixed(-2.5e-9, 4), "-2.5000e-9");
+        assert_eq!(fixed(2e20, 4), "2.0000e20");
+        assert_eq!(fixed(0.0, 4), "0.0000");
+        assert_eq!(fixed(f64::NAN, 4), "not a number");
     }
 
     #[test]

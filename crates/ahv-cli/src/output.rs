@@ -131,6 +131,15 @@ impl Output {
         Ok(())
     }
 
+    /// What was written so far, from its start.
+    ///
+    /// # Errors
+    ///
+    /// Those of the system.
+    pub(crate) fn reader(&self) -> io::Result<fs::File> {
+        self.file.reopen()
+    }
+
     /// Where the file will be.
     pub(crate) fn path(&self) -> &Path {
         &self.path

@@ -65,6 +65,8 @@ struct Roots<'a, M: GeneratedModel> {
     outputs: Vec<&'static str>,
     poles: Vec<Pole>,
     zeros: Zeros,
+    /// Inputs that no derivative of a state depends on.
+    idle: Vec<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -117,7 +119,10 @@ fn about_trim<M: GeneratedModel>(
         &arguments.outputs,
     )?;
     let failed = |error: PolesError| Failure::Numeric(format!("{}: {error}", M::NAME));
+    let columns = system.inputs.iter().zip(system.b.column_iter());
+    let idle = columns.filter(|(_, column)| column.iter().all(|&entry| entry == 0.0));
     let roots = Roots {
+        idle: idle.map(|(&input, _)| input).collect(),
         vehicle,
         place: vehicle.at(&flight),
         poles: poles(&system, M::MODES).map_err(failed)?,
@@ -153,6 +158,12 @@ fn decoupling(zero: &Zero) -> Option<&'static str> {
 }
 
 impl<M: GeneratedModel> Roots<'_, M> {
+    /// What to say of an input that moves no state.
+    fn without_effect(&self, input: &str) -> String {
+        let described = self.vehicle.described();
+        format!("{input} has no effect ({described}): no derivative of a state depends on it\n")
+    }
+
     /// How many finite zeros there are, and why.
     fn count(&self) -> String {
         let Zeros {
@@ -164,12 +175,15 @@ impl<M: GeneratedModel> Roots<'_, M> {
         } = &self.zeros;
         let (inputs, outputs) = (self.inputs.len(), self.outputs.len());
         let rank = match *normal_rank < inputs.min(outputs) {
+            true if !self.idle.is_empty() => String::new(),
             true => format!(
                 "the transfer matrix has rank {normal_rank} only: its {inputs} inputs cannot move its {outputs} outputs \
                  apart from each other\n"
             ),
             false => String::new(),
         };
+        let idle = self.idle.iter().map(|&input| self.without_effect(input));
+        let rank = idle.collect::<String>() + &rank;
         let list = |numbers: &[usize]| {
             let texts: Vec<String> = numbers.iter().map(usize::to_string).collect();
             texts.join(", ")

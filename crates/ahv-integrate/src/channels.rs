@@ -3,8 +3,8 @@
 use core::fmt;
 
 use ahv_core::{
-    Shown,    AdditiveNoise, CommutativeNoise, DifferentiableNoise, ItoCorrected, Model, NoiseClass, Real,
-    StochasticModel, Vector,
+    AdditiveNoise, CommutativeNoise, DifferentiableNoise, ItoCorrected, Model, NoiseClass, Real,
+    Shown, StochasticModel, Vector,
 };
 
 use crate::vector::component;

@@ -116,7 +116,9 @@ pub enum PlotError {
         axis: String,
     },
     /// A range whose ends are not finite or not in order.
-    #[error("panel \"{panel}\": the axis \"{axis}\" cannot run from {min:?} to {max:?}")]
+    #[error(
+        "panel \"{panel}\": the axis \"{axis}\" has a range whose ends are not finite or not in order"
+    )]
     BadRange {
         /// Title of the panel.
         panel: String,
@@ -128,7 +130,9 @@ pub enum PlotError {
         max: f64,
     },
     /// A value is infinite or NaN.
-    #[error("panel \"{panel}\": layer \"{layer}\" holds {value:?}, which cannot be drawn")]
+    #[error(
+        "panel \"{panel}\": layer \"{layer}\" holds a value that is not finite, which cannot be drawn"
+    )]
     NonFinite {
         /// Title of the panel.
         panel: String,

@@ -99,6 +99,69 @@ fn a_side_of_a_quantile_without_a_rank_is_open() {
     );
 }
 
+/// Two members or three have no kurtosis, and no interval of a standard deviation.
+#[test]
+fn the_deviation_of_a_few_members_is_open() {
+    for (members, open) in [("2", true), ("3", true), ("4", false)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let out = folder.path().display().to_string();
+        let line = format!(
+            "montecarlo --model sdcom --members {members} --t-end 0.1 --dt 0.01 --out {out}"
+        );
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let std = json(&arguments)["snapshots"][10]["std"]["alpha"].clone();
+        assert!(
+            std["value"].as_f64().is_some_and(|value| value > 0.0),
+            "{std}"
+        );
+        assert_eq!(
+            [std["low"].is_null(), std["high"].is_null()],
+            [open; 2],
+            "{std}"
+        );
+        let printed = String::from_utf8(run(&arguments).stdout).expect("text");
+        assert_eq!(printed.contains(" ft/s [open, open]"), open, "{printed}");
+        let table = fs::read_to_string(folder.path().join("snapshots.csv")).expect("rows");
+        let rows = csv(&table);
+        let column = rows[0]
+            .iter()
+            .position(|it| it == "std_low")
+            .expect("a column");
+        let row = rows.iter().rfind(|row| row[2] == "alpha").expect("a row");
+        assert_eq!(row[column].is_empty(), open);
+    }
+}
+
+/// Members that left the box make the moments: said, with what they are without them. The normal spread of chi is no such case.
+#[test]
+fn members_that_swamp_the_moments_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let gains = folder.path().join("gains.json").display().to_string();
+    assert!(
+        run(&["lqr", "--model", "dcom", "--out", &gains])
+            .status
+            .success()
+    );
+    let line = format!(
+        "montecarlo --model dcom --members 400 --t-end 2 --dt 0.005 --feedback {gains} --json"
+    );
+    let arguments: Vec<&str> = line.split(' ').collect();
+    let calm = run(&arguments);
+    assert!(!String::from_utf8_lossy(&calm.stderr).contains("warning"));
+    let wild = run(&[&arguments[..], &["--disperse"]].concat());
+    let message = String::from_utf8_lossy(&wild.stderr);
+    for words in [
+        "members that fly at the end had left the validity box",
+        "pitch_rate",
+        "quantiles",
+    ] {
+        assert!(message.contains(words), "{message}");
+    }
+    let told: Value = serde_json::from_slice(&wild.stdout).expect("JSON");
+    let std = |key: &str| told[key]["pitch_rate"].as_f64().expect("a number");
+    assert!(std("std") > 3.0 * std("std_inside_validity_box"));
+}
+
 fn csv(text: &str) -> Vec<Vec<String>> {
     let row = |line: &str| line.split(',').map(str::to_owned).collect();
     text.lines().map(row).collect()

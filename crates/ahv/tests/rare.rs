@@ -69,7 +69,7 @@ fn what_cannot_be_found_is_told() {
         (
             ["--passes", "chi_1=0"],
             2,
-            "the limit 0.0 of chi_1 must be a number other than 0.0",
+            "the limit 0 of chi_1 must be a number other than 0, where",
         ),
         (
             ["--passes", "chi_1=1e6"],

@@ -105,7 +105,11 @@ fn montecarlo_reports_the_members_that_were_flown() {
         );
         assert!(read("montecarlo.svg").contains("interrupted: "));
         let members = told["members"].as_u64().expect("a number");
-        assert_eq!(read("members.csv").lines().count() as u64, 1 + members);
+        let list = read("members.csv");
+        assert_eq!(list.lines().count() as u64, 1 + members);
+        assert!(list.lines().skip(1).all(|line| line.ends_with(",false")));
+        // Those in flight are not among them.
+        assert_eq!(told["member_steps"].as_u64(), Some(200 * members));
         assert!(
             names(part.path())
                 .iter()
@@ -119,8 +123,17 @@ fn montecarlo_reports_the_members_that_were_flown() {
             assert_eq!(told[key], again[key], "{key}");
         }
         assert_eq!(again["complete"], true);
-        let list = fs::read_to_string(whole.path().join("members.csv")).expect("a list");
-        assert_eq!(list, read("members.csv"));
+        // But for its mark, in the last column.
+        let again = fs::read_to_string(whole.path().join("members.csv")).expect("a list");
+        assert!(again.lines().skip(1).all(|line| line.ends_with(",true")));
+        let marked = |line: &str| {
+            line.strip_suffix(",true")
+                .map(|cells| format!("{cells},false"))
+        };
+        let marked = again
+            .lines()
+            .map(|line| marked(line).unwrap_or_else(|| line.to_owned()));
+        assert!(marked.eq(list.lines()));
     }
 }
 
@@ -196,7 +209,7 @@ fn covariance_reports_the_flights_that_were_flown() {
         "--out",
         &out,
     ]);
-    sleep(Duration::from_secs(2));
+    sleep(Duration::from_secs(4));
     let output = end(child, "-INT");
     assert_eq!(output.status.code(), Some(130), "{output:?}");
     let outcome = json(&output);
@@ -206,6 +219,64 @@ fn covariance_reports_the_flights_that_were_flown() {
     let read = |name: &str| fs::read_to_string(place.path().join(name)).expect("a file");
     assert!(read("covariance.csv").trim_end().ends_with(",false"));
     assert!(read("covariance.svg").contains("interrupted: "));
+}
+
+/// The repetitions that were flown make an estimate of their own, which says that it is a part.
+#[test]
+fn rare_reports_the_repetitions_that_were_flown() {
+    let flights = |repetitions: &str| {
+        let line = "rare --model sdcom --t-end 0.2 --dt 0.002 --scheme euler-maruyama --effort 200 --passes chi_1=0.5 --threads 1 --json";
+        let flags = ["--repetitions", repetitions];
+        start(&line.split(' ').chain(flags).collect::<Vec<_>>())
+    };
+    let child = flights("10000");
+    sleep(Duration::from_secs(3));
+    let output = end(child, "-INT");
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    let told = json(&output);
+    let flown = told["repetitions"].as_u64().expect("a number");
+    assert!((10..10_000).contains(&flown), "{flown}");
+    assert_eq!(
+        (&told["complete"], &told["asked"]),
+        (&false.into(), &10_000.into())
+    );
+    let message = String::from_utf8_lossy(&output.stderr);
+    let words = format!("interrupted: {flown} of 10000 repetitions were flown, and are reported");
+    assert!(message.contains(&words), "{message}");
+    let again = json(
+        &flights(&flown.to_string())
+            .wait_with_output()
+            .expect("it ends"),
+    );
+    for key in [
+        "probability",
+        "levels",
+        "repetitions",
+        "member_steps",
+        "lost",
+    ] {
+        assert_eq!(told[key], again[key], "{key}");
+    }
+    assert_eq!(again["complete"], true);
+}
+
+/// Without an estimate it says what was flown, and that there is none.
+#[test]
+fn rare_without_an_estimate_says_so() {
+    let line = "rare --model sdcom --t-end 100 --passes chi_1=1 --effort 100000 --threads 1";
+    let child = start(&line.split(' ').collect::<Vec<_>>());
+    sleep(Duration::from_secs(1));
+    let output = end(child, "-INT");
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    assert!(output.stdout.is_empty());
+    let message = String::from_utf8_lossy(&output.stderr);
+    for words in [
+        "the pilot had set",
+        "0 of 20 repetitions",
+        "there is no estimate",
+    ] {
+        assert!(message.contains(words), "{message}");
+    }
 }
 
 /// What has no part to report ends at once.

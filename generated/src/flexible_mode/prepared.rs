@@ -160,7 +160,7 @@ impl<R> Prepared<R> {
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 92 operations: 12 additions, 70 multiplications, 8 divisions, 2 sqrt.
+/// 94 operations: 13 additions, 71 multiplications, 8 divisions, 2 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Response of the mode, (5)
     let damping = R::TWO * p.zeta * p.omega; // rad/s
@@ -168,20 +168,21 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
 
     // Coloured noise, (23)
     let inv_zeta = p.zeta.recip();
-    let half_inv_zeta_minus_zeta = R::HALF * inv_zeta - p.zeta;
-    let d_chi_decay_d_omega = p.zeta + p.moment_matching * half_inv_zeta_minus_zeta; // 1/rad
+    let moment_matching_over_zeta = p.moment_matching * inv_zeta;
+    let d_chi_decay_d_omega = p.zeta * (R::ONE - p.moment_matching)
+        + R::HALF * moment_matching_over_zeta; // 1/rad
     let chi_decay = p.omega * d_chi_decay_d_omega; // 1/s
     let chi_share = p.zeta * (R::ONE - p.variance_matching - p.moment_matching)
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * p.moment_matching * inv_zeta;
+        + R::HALF * moment_matching_over_zeta;
     let inv_omega = p.omega.recip();
     let chi_diffusion = chi_share * p.sigma * inv_omega; // (ft*slug)^0.5/s^0.5
 
     // Derivatives with respect to parameters
     let inv_zeta_2 = inv_zeta * inv_zeta;
     let d_chi_decay_d_zeta = p.omega
-        * (R::ONE + p.moment_matching * (-R::HALF * inv_zeta_2 - R::ONE)); // 1/s
-    let d_chi_decay_d_moment_matching = p.omega * half_inv_zeta_minus_zeta; // 1/s
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_2) + R::ONE); // 1/s
+    let d_chi_decay_d_moment_matching = p.omega * (R::HALF * inv_zeta - p.zeta); // 1/s
 
     // Response of the mode, (13)
     let one_plus_zeta = R::ONE + p.zeta;

@@ -651,7 +651,7 @@ impl<R> Prepared<R> {
 
 /// Computes everything that depends on parameters alone.
 ///
-/// 230 operations: 33 additions, 183 multiplications, 12 divisions, 2 sqrt.
+/// 234 operations: 34 additions, 186 multiplications, 12 divisions, 2 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     let inv_r_e = p.r_e.recip();
@@ -664,20 +664,21 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let elevator_lift = p.c_l_delta_e * d_elevator_lift_d_c_l_delta_e; // 1/rad
 
     // Coloured noise, (23)
+    let one_minus_moment_matching = R::ONE - p.moment_matching;
     let inv_zeta_1 = p.zeta_1.recip();
-    let half_inv_zeta_1_minus_zeta_1 = R::HALF * inv_zeta_1 - p.zeta_1;
-    let d_chi_decay_1_d_omega_1 = p.zeta_1
-        + p.moment_matching * half_inv_zeta_1_minus_zeta_1; // 1/rad
+    let moment_matching_over_zeta_1 = p.moment_matching * inv_zeta_1;
+    let d_chi_decay_1_d_omega_1 = p.zeta_1 * one_minus_moment_matching
+        + R::HALF * moment_matching_over_zeta_1; // 1/rad
     let chi_decay_1 = p.omega_1 * d_chi_decay_1_d_omega_1; // 1/s
     let inv_zeta_2 = p.zeta_2.recip();
-    let half_inv_zeta_2_minus_zeta_2 = R::HALF * inv_zeta_2 - p.zeta_2;
-    let d_chi_decay_2_d_omega_2 = p.zeta_2
-        + p.moment_matching * half_inv_zeta_2_minus_zeta_2; // 1/rad
+    let moment_matching_over_zeta_2 = p.moment_matching * inv_zeta_2;
+    let d_chi_decay_2_d_omega_2 = p.zeta_2 * one_minus_moment_matching
+        + R::HALF * moment_matching_over_zeta_2; // 1/rad
     let chi_decay_2 = p.omega_2 * d_chi_decay_2_d_omega_2; // 1/s
     let inv_zeta_3 = p.zeta_3.recip();
-    let half_inv_zeta_3_minus_zeta_3 = R::HALF * inv_zeta_3 - p.zeta_3;
-    let d_chi_decay_3_d_omega_3 = p.zeta_3
-        + p.moment_matching * half_inv_zeta_3_minus_zeta_3; // 1/rad
+    let moment_matching_over_zeta_3 = p.moment_matching * inv_zeta_3;
+    let d_chi_decay_3_d_omega_3 = p.zeta_3 * one_minus_moment_matching
+        + R::HALF * moment_matching_over_zeta_3; // 1/rad
     let chi_decay_3 = p.omega_3 * d_chi_decay_3_d_omega_3; // 1/s
 
     // Derivatives with respect to delta_e
@@ -688,16 +689,16 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Derivatives with respect to parameters
     let inv_zeta_1_2 = inv_zeta_1 * inv_zeta_1;
     let d_chi_decay_1_d_zeta_1 = p.omega_1
-        * (R::ONE + p.moment_matching * (-R::HALF * inv_zeta_1_2 - R::ONE)); // 1/s
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_1_2) + R::ONE); // 1/s
     let inv_zeta_2_2 = inv_zeta_2 * inv_zeta_2;
     let d_chi_decay_2_d_zeta_2 = p.omega_2
-        * (R::ONE + p.moment_matching * (-R::HALF * inv_zeta_2_2 - R::ONE)); // 1/s
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_2_2) + R::ONE); // 1/s
     let inv_zeta_3_2 = inv_zeta_3 * inv_zeta_3;
     let d_chi_decay_3_d_zeta_3 = p.omega_3
-        * (R::ONE + p.moment_matching * (-R::HALF * inv_zeta_3_2 - R::ONE)); // 1/s
-    let d_chi_decay_1_d_moment_matching = p.omega_1 * half_inv_zeta_1_minus_zeta_1; // 1/s
-    let d_chi_decay_2_d_moment_matching = p.omega_2 * half_inv_zeta_2_minus_zeta_2; // 1/s
-    let d_chi_decay_3_d_moment_matching = p.omega_3 * half_inv_zeta_3_minus_zeta_3; // 1/s
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_3_2) + R::ONE); // 1/s
+    let d_chi_decay_1_d_moment_matching = p.omega_1 * (R::HALF * inv_zeta_1 - p.zeta_1); // 1/s
+    let d_chi_decay_2_d_moment_matching = p.omega_2 * (R::HALF * inv_zeta_2 - p.zeta_2); // 1/s
+    let d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
     let chi_share_1_term_1 = R::ONE
@@ -705,17 +706,17 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         - p.moment_matching;
     let chi_share_1 = p.zeta_1 * chi_share_1_term_1
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * p.moment_matching * inv_zeta_1;
+        + R::HALF * moment_matching_over_zeta_1;
     let inv_omega_1 = p.omega_1.recip();
     let chi_diffusion_1 = chi_share_1 * p.sigma_1 * inv_omega_1; // (ft*slug)^0.5/s^0.5
     let chi_share_2 = p.zeta_2 * chi_share_1_term_1
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * p.moment_matching * inv_zeta_2;
+        + R::HALF * moment_matching_over_zeta_2;
     let inv_omega_2 = p.omega_2.recip();
     let chi_diffusion_2 = chi_share_2 * p.sigma_2 * inv_omega_2; // (ft*slug)^0.5/s^0.5
     let chi_share_3 = p.zeta_3 * chi_share_1_term_1
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * p.moment_matching * inv_zeta_3;
+        + R::HALF * moment_matching_over_zeta_3;
     let inv_omega_3 = p.omega_3.recip();
     let chi_diffusion_3 = chi_share_3 * p.sigma_3 * inv_omega_3; // (ft*slug)^0.5/s^0.5
 

@@ -29,9 +29,10 @@ def define_decay(m: Model, suffix: str = "") -> ca.SX:
     """The decay rate a of (18), by (23) or by matching moments."""
     omega, zeta, moment = (m.parameter(name) for name in (f"omega{suffix}", f"zeta{suffix}", "moment_matching"))
     printed = zeta * omega
+    # Not a difference from the printed one: in that the other rate would drown where the damping is large.
     return m.graph.define(
         f"chi_decay{suffix}",
-        printed + moment * (omega / (2 * zeta) - printed),
+        printed * (1 - moment) + moment * (omega / (2 * zeta)),
         symbol=f"a{subscript(suffix)}",
         unit="1/s",
         doc=f"decay rate of the coloured noise{of(suffix)}",

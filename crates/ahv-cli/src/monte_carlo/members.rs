@@ -5,6 +5,7 @@ use std::path::Path;
 use ahv_analysis::monte_carlo::Seen;
 use ahv_core::{GeneratedModel, Vector};
 
+use super::tables::COMPLETE;
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, complain};
 use crate::flights::Ready;
@@ -71,6 +72,7 @@ impl<'r, M: GeneratedModel> MemberList<'r, M> {
             .chain(left)
             .chain(states)
             .chain(parameters)
+            .chain([COMPLETE.to_owned()])
             .collect()
     }
 
@@ -116,6 +118,7 @@ impl<'r, M: GeneratedModel> MemberList<'r, M> {
                     .filter_map(|&index| parameters.get(index).map(cell)),
             );
         }
+        row.push(true.to_string());
         row
     }
 
@@ -128,12 +131,21 @@ impl<'r, M: GeneratedModel> MemberList<'r, M> {
         }
     }
 
-    /// Puts the list in its place.
+    /// Puts the list in its place; its last column says whether all members were flown, which is known only now.
     ///
     /// # Errors
     ///
     /// [`Failure::Request`] if it could not be written.
-    pub(super) fn finish(self) -> Result<(), Failure> {
-        self.file?.finish()
+    pub(super) fn finish(self, complete: bool) -> Result<(), Failure> {
+        let file = self.file?;
+        if complete {
+            return file.finish();
+        }
+        let [whole, part] = [true, false].map(|complete| format!(",{complete}"));
+        let marked = |line: &str| match line.strip_suffix(&whole) {
+            Some(cells) => format!("{cells}{part}"),
+            None => line.to_owned(),
+        };
+        file.rewritten(marked)?.finish()
     }
 }

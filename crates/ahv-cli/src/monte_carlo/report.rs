@@ -14,6 +14,9 @@ use crate::number::{self, Shown};
 use crate::output::Pairs;
 use crate::vehicle::Heading;
 
+/// How many times as large as that of the others a standard deviation is that a few members make.
+const SWAMPED: f64 = 3.0;
+
 /// The outcome as JSON. Means, standard deviations and quantiles are of the members that fly at the end.
 #[derive(Serialize)]
 pub(super) struct Json<'a> {
@@ -157,6 +160,38 @@ impl<M: GeneratedModel> Told<'_, M> {
     pub(super) fn left(&self, snapshot: &Snapshot, set: usize) -> Pairs<Estimate> {
         let counts = snapshot.left.get(set).into_iter().flatten();
         by_state::<M::State, _>(counts.map(|&it| Estimate::of_share(it, self.outcome.members)))
+    }
+
+    /// What to say of a few members that left the validity box and make most of a standard deviation, if they do.
+    ///
+    /// With one of a law like the normal one that cannot be: without less than half of its members it is a third at least.
+    pub(super) fn warning(&self) -> Option<String> {
+        let last = self.outcome.snapshots.last()?;
+        let left = last.members - last.stayed;
+        if 2 * left >= last.members {
+            return None;
+        }
+        let units = self.ready.vehicle.units.labels::<M::State>();
+        let states = M::State::NAMES.iter().zip(units).zip(&last.states);
+        let swamped = states.filter_map(|((name, unit), state)| {
+            let (all, stayed) = (state.std?.value?, state.std_of_stayed?);
+            let less = format!(
+                "{name} {} instead of {}",
+                show(stayed, unit),
+                show(all, unit)
+            );
+            (stayed > 0.0 && all > SWAMPED * stayed).then_some(less)
+        });
+        let swamped: Vec<String> = swamped.collect();
+        (!swamped.is_empty()).then(|| {
+            format!(
+                "warning: {left} of {} members that fly at the end had left the validity box, and their values make most of the \
+                 means and standard deviations; without them the standard deviations are: {}. Look at the quantiles \
+                 instead",
+                last.members,
+                swamped.join(", ")
+            )
+        })
     }
 
     fn rate(&self) -> f64 {

@@ -13,7 +13,7 @@ use crate::number::{cell, time};
 use crate::output;
 
 /// Heading of the column that is the same in all rows: whether all members were flown.
-const COMPLETE: &str = "complete";
+pub(super) const COMPLETE: &str = "complete";
 
 /// Cells of an estimate; empty where there is none, or a side is open.
 fn cells(estimate: &OpenEstimate) -> [String; 3] {

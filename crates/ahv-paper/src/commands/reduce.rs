@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use ahv_analysis::statistics::Estimate;
 use ahv_cli::csv_file::CsvFile;
 use ahv_cli::failure::{Failure, print};
-use ahv_cli::number::{self, Shown, positive};
+use ahv_cli::number::{self, Shown, fixed, positive};
 use ahv_cli::output;
 use ahv_cli::progress::{Progress, Work};
 use ahv_cli::steps::allowed;
@@ -357,7 +357,13 @@ pub(crate) fn bargain(comparisons: &[Comparison]) -> String {
     };
     let kept = comparisons.iter().filter(|it| it.kept);
     let lost = comparisons.iter().filter(|it| !it.kept);
-    let lost = lost.map(|it| format!("{} ({:.4} of the mode's)", name(it.property), it.ratio));
+    let lost = lost.map(|it| {
+        format!(
+            "{} ({} of the mode's)",
+            name(it.property),
+            fixed(it.ratio, 4)
+        )
+    });
     format!(
         "keeps {}; gives up {}",
         list(kept.map(|it| name(it.property).to_owned()).collect()),
@@ -370,12 +376,12 @@ pub(crate) fn greatest(errors: &StdErrors) -> String {
     let peak = |peak: &Peak| {
         let when = peak.time.map_or_else(
             || "in the long run".to_owned(),
-            |time| format!("at {time:.4} s"),
+            |time| format!("at {} s", fixed(time, 4)),
         );
         let leader = if peak.chi_leads { "chi" } else { "eta" };
         format!(
-            "by {:.6} at most, {when}, where {leader} has the larger",
-            peak.value
+            "by {} at most, {when}, where {leader} has the larger",
+            fixed(peak.value, 6)
         )
     };
     let StdErrors {
@@ -398,30 +404,27 @@ fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Str
     for (index, subject) in subjects.iter().enumerate() {
         let mode = JsonMode::new(subject);
         let sample = |estimate: &Estimate| {
-            format!(
-                "{:.6} [{:.6}, {:.6}]",
-                Shown(estimate.value),
-                Shown(estimate.low),
-                Shown(estimate.high)
-            )
+            let ends = [estimate.value, estimate.low, estimate.high];
+            let [value, low, high] = ends.map(|end| fixed(end, 6));
+            format!("{value} [{low}, {high}]")
         };
         // Writing into a String cannot fail.
         let _ = write!(
             text,
-            "mode {}: omega {} rad/s, zeta {}, sigma {}, slowest decay rate {:.6} 1/s\n  \
-             decay {:.6} 1/s, intensity {:.6}; {}\n  \
-             std of eta {:.6}, of chi {:.6}; {}\n  \
+            "mode {}: omega {} rad/s, zeta {}, sigma {}, slowest decay rate {} 1/s\n  \
+             decay {} 1/s, intensity {}; {}\n  \
+             std of eta {}, of chi {}; {}\n  \
              sampled at {} s: eta {}, chi {}\n",
             index + 1,
             Shown(mode.omega),
             Shown(mode.zeta),
             Shown(mode.sigma),
-            Shown(mode.mode_decay),
-            Shown(mode.decay),
-            Shown(mode.intensity),
+            fixed(mode.mode_decay, 6),
+            fixed(mode.decay, 6),
+            fixed(mode.intensity, 6),
             bargain(&subject.reduced.comparisons()),
-            Shown(mode.eta_std),
-            Shown(mode.chi_std),
+            fixed(mode.eta_std, 6),
+            fixed(mode.chi_std, 6),
             greatest(&subject.reduced.largest_std_errors()),
             Shown(experiment.steps as f64 * experiment.dt),
             sample(&mode.monte_carlo.eta_std),

@@ -1,0 +1,132 @@
+//! Requests that cannot be met, or make no sense: what is said of them.
+#![forbid(unsafe_code)]
+
+use std::fs::File;
+use std::process::{Command, Output};
+
+fn run(line: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ahv"));
+    let output = command.args(line.split_whitespace()).output();
+    output.expect("ahv starts")
+}
+
+fn refused(line: &str, words: &[&str]) {
+    let output = run(line);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+    for word in words {
+        assert!(message.contains(word), "{line}: no {word} in {message}");
+    }
+}
+
+fn told(line: &str) -> String {
+    let output = run(line);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {message}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// Every command that steps says so, whichever flag is to blame, before it works.
+#[test]
+fn a_flight_of_too_many_steps_is_refused() {
+    let out = env!("CARGO_TARGET_TMPDIR");
+    let simulate = format!("simulate --model com --out {out}/never.csv --dt 1e-3 --t-end");
+    for flight in [
+        "covariance --model sdcom --t-end",
+        "montecarlo --model sdcom --members 8 --dt 1e-3 --t-end",
+        "rare --model sdcom --passes alpha=2deg --dt 1e-3 --t-end",
+        "reduce --t-end",
+        &simulate,
+    ] {
+        let words = ["--t-end 1e308", "--dt 0.0", "steps; 1 to 1e", "larger --dt"];
+        refused(&format!("{flight} 1e308"), &words);
+    }
+    refused(
+        "covariance --model sdcom --dt 1e-9",
+        &["1000000000 steps; 1 to 1e8"],
+    );
+    refused("reduce --dt 1e-300", &["--dt 1e-300 makes"]);
+    refused("reduce --dt 1e300", &["makes 0 steps", "smaller --dt"]);
+}
+
+/// The help names the models that a command takes, and others are refused with their names.
+#[test]
+fn only_models_with_noise_are_offered_where_noise_is_flown() {
+    for (command, models) in [
+        ("montecarlo --members 9 --t-end 1", "dcom, sdcom]"),
+        ("rare --passes alpha=2deg --t-end 1", "dcom, sdcom]"),
+        ("covariance", "dcom, sdcom, sdcom_printed, sdcom_gust]"),
+    ] {
+        for model in ["com", "com_rigid"] {
+            refused(&format!("{command} --model {model}"), &["--model", models]);
+        }
+        let name = command.split(' ').next().expect("a command");
+        let help = told(&format!("{name} --help"));
+        let (_, list) = help.split_once("--model <MODEL>").expect("a model");
+        let (list, _) = list.split_once("--table").expect("the next flag");
+        assert!(
+            list.contains("- dcom:") && !list.contains("- com:"),
+            "{list}"
+        );
+    }
+}
+
+#[test]
+fn nothing_flies_without_velocity() {
+    let out = env!("CARGO_TARGET_TMPDIR");
+    let simulate =
+        format!("simulate --model com --t-end 1 --dt 0.1 --out {out}/still.csv --initial");
+    for velocity in ["0ft/s", "-1ft/s"] {
+        refused(
+            &format!("{simulate} velocity={velocity}"),
+            &["velocity must be above 0"],
+        );
+    }
+    refused("trim --model com --velocity 0", &["--velocity", "above 0"]);
+}
+
+#[test]
+fn an_input_without_effect_is_named() {
+    let alone = told("poles --model sdcom --canard none --inputs delta_c");
+    let words =
+        "delta_c has no effect with the canard none: no derivative of a state depends on it";
+    assert!(
+        alone.contains(words) && !alone.contains("rank 0"),
+        "{alone}"
+    );
+    assert!(told("poles --model sdcom --canard none --inputs phi,delta_c").contains(words));
+    assert!(!told("poles --model sdcom --canard free --inputs phi,delta_c").contains("no effect"));
+}
+
+/// Damping so large that one decay rate is nothing beside the other: a sum holds both.
+#[test]
+fn a_mode_of_any_damping_is_reduced() {
+    for zeta in ["1e8", "1e20", "1e100"] {
+        for method in ["printed", "variance", "moment"] {
+            told(&format!(
+                "reduce --omega 20 --zeta {zeta} --sigma 100 --runs 30 --method {method}"
+            ));
+        }
+    }
+    let moment = told("reduce --omega 20 --zeta 1e8 --sigma 100 --runs 30 --method moment");
+    assert!(moment.contains("decay 1.000000e-7 1/s"), "{moment}");
+    assert!(
+        moment.contains("keeps decay rate, variance and spectrum at zero frequency"),
+        "{moment}"
+    );
+}
+
+/// A help that nobody can read is a failure, as any other outcome is.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_a_failure_of_the_help_too() {
+    for arguments in [&["--help"][..], &["--version"], &["trim", "--help"]] {
+        let full = File::options()
+            .write(true)
+            .open("/dev/full")
+            .expect("a full device");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ahv"));
+        let status = command.args(arguments).stdout(full).status();
+        assert_eq!(status.expect("ahv starts").code(), Some(2), "{arguments:?}");
+    }
+}
