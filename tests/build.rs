@@ -65,6 +65,10 @@ fn evaluation(model: &Value) -> String {
         let function_name = name(function);
         let call = format!("model::{function_name}({arguments})");
         let outputs = list(&function["outputs"]);
+        if function_name == "outputs" {
+            body += &together(model, function, &quantities);
+            continue;
+        }
         if function_name.starts_with("drift_and_") {
             let parts = function_name.trim_start_matches("drift_and_");
             let tuple = if parts == "jacobians" {
@@ -155,6 +159,31 @@ fn evaluation(model: &Value) -> String {
          let p = model::prepare(&vector::<R, model::Parameters<R>>(\"parameter\", inputs));\n    \
          let mut values = Values::new();\n{body}    values\n}}\n\n"
     )
+}
+
+/// The outputs together are the same numbers as those of the functions that have one alone, which the oracle knows.
+fn together(model: &Value, function: &Value, quantities: &HashMap<String, &Value>) -> String {
+    let alone: HashMap<String, &Value> = list(&model["functions"])
+        .iter()
+        .map(|function| (name(function), function))
+        .collect();
+    let entries = list(&function["outputs"])
+        .iter()
+        .flat_map(|output| list(&output["entries"]));
+    let mut body = format!(
+        "    let all = model::outputs({});\n",
+        arguments(function, quantities)
+    );
+    for output in entries.filter_map(|entry| entry["at"][0].as_str()) {
+        if let Some(alone) = alone.get(output) {
+            let arguments = arguments(alone, quantities);
+            let _ = writeln!(
+                body,
+                "    assert_eq!(all.{output}, model::{output}({arguments}), \"{output}\");"
+            );
+        }
+    }
+    body + "    let _ = all;\n"
 }
 
 /// The statement that notes the values of an output.

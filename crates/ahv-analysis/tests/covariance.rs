@@ -1,19 +1,20 @@
 //! Covariances against closed forms, SciPy, quadrature and flights.
 #![forbid(unsafe_code)]
 
+mod common;
+
 use ahv_analysis::covariance::{
     CovarianceError, Flight, Regulation, Spreading, lyapunov, noise_intensity,
 };
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
-use ahv_analysis::monte_carlo::{
-    Control, Dcom, Experiment, Flown, Mode, Scheme, Sdcom, SdcomGust, SdcomPrinted, Snapshot,
-};
+use ahv_analysis::monte_carlo::{Control, Experiment, Mode, Scheme, Snapshot};
 use ahv_analysis::statistics::Estimate;
-use ahv_analysis::trim::{SteadyFlight, trim};
-use ahv_core::{DifferentiableModel, Model, Pattern, StochasticModel, Vector};
+use ahv_analysis::trim::trim;
+use ahv_core::{DifferentiableModel, GeneratedModel, Model, Pattern, StochasticModel, Vector};
 use ahv_models::{dcom, sdcom, sdcom_gust, sdcom_printed};
 use approx::assert_relative_eq;
+use common::level;
 use nalgebra::DMatrix;
 
 fn matrix(rows: &[&[f64]]) -> DMatrix<f64> {
@@ -358,12 +359,9 @@ fn a_closed_loop_comes_to_rest_where_lyapunov_says() {
     ));
 }
 
-/// Level flight of a model at its trim, with held inputs.
-fn level<M>(model: &M, dt: f64) -> Flight<M::State, M::Input>
-where
-    M: DifferentiableModel<Scalar = f64>,
-{
-    let trim = trim(model, &SteadyFlight::new(7702.0808, 85_000.0)).expect("it trims");
+/// A flight of a model at its trim, with held inputs.
+fn held<M: GeneratedModel>(model: &M, dt: f64) -> Flight<M::State, M::Input> {
+    let trim = trim(model, &level::<M>()).expect("it trims");
     Flight::new(trim.state, trim.input, dt)
 }
 
@@ -386,7 +384,7 @@ fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 #[test]
 fn the_covariance_at_a_trim_is_that_of_one_matrix_exponential() {
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let flight = level(&model, 0.1);
+    let flight = held(&model, 0.1);
     let spread = flight.covariance(&model, &[0.5]).expect("a flight");
     let (a, _) = model.jacobians(&flight.start, &flight.input);
     let a: [[f64; 8]; 8] = a.to_matrix();
@@ -413,15 +411,15 @@ fn the_covariance_at_a_trim_is_that_of_one_matrix_exponential() {
 }
 
 /// The ensemble of the same flight, by the default scheme of its model.
-fn sample<F: Flown>(
-    flight: &Flight<F::State<f64>, F::Input<f64>>,
-    parameters: F::Parameters<f64>,
+fn sample<M: GeneratedModel>(
+    flight: &Flight<M::State, M::Input>,
+    parameters: &M::ParametersOf<f64>,
     scheme: Scheme,
     snapshots: Vec<u64>,
     members: u64,
 ) -> Vec<Snapshot> {
-    let experiment = Experiment::<F> {
-        parameters,
+    let experiment = Experiment::<M> {
+        parameters: *parameters,
         dispersion: None,
         state: [flight.start, Vector::splat(0.0)],
         input: [flight.input, Vector::splat(0.0)],
@@ -450,39 +448,38 @@ fn agrees(linear: &Spreading<impl Vector<f64>>, sampled: &Snapshot) {
     }
 }
 
+/// Flights of 0.1 s and 0.3 s, by both; what is sampled.
+fn compare<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
+    scheme: Scheme,
+    dt: f64,
+) -> Vec<Snapshot> {
+    let model = M::with_parameters(parameters);
+    let flight = held(&model, dt);
+    let steps = [0.1, 0.3].map(|time: f64| (time / dt).round() as u64);
+    let linear = flight.covariance(&model, &[0.1, 0.3]).expect("a flight");
+    let sampled = sample::<M>(&flight, parameters, scheme, steps.to_vec(), 400);
+    for (linear, sampled) in linear.iter().zip(&sampled) {
+        assert_eq!(sampled.members, 400);
+        agrees(linear, sampled);
+    }
+    sampled
+}
+
 #[test]
 fn flights_of_every_model_spread_as_the_linear_covariance_says() {
     let dt = 5e-3;
-    macro_rules! compare {
-        ($module:ident, $family:ty, $scheme:expr) => {{
-            let model = $module::Model::new(&$module::NOMINAL);
-            let flight = level(&model, dt);
-            let linear = flight.covariance(&model, &[0.1, 0.3]).expect("a flight");
-            let sampled = sample::<$family>(&flight, $module::NOMINAL, $scheme, vec![20, 60], 400);
-            for (linear, sampled) in linear.iter().zip(&sampled) {
-                assert_eq!(sampled.members, 400);
-                agrees(linear, sampled);
-            }
-            sampled
-        }};
-    }
-    let exact = compare!(sdcom, Sdcom, Scheme::Splitting);
-    compare!(sdcom_gust, SdcomGust, Scheme::Splitting);
-    compare!(sdcom_printed, SdcomPrinted, Scheme::Splitting);
+    let exact = compare::<sdcom::Model<f64>>(&sdcom::NOMINAL, Scheme::Splitting, dt);
+    compare::<sdcom_gust::Model<f64>>(&sdcom_gust::NOMINAL, Scheme::Splitting, dt);
+    compare::<sdcom_printed::Model<f64>>(&sdcom_printed::NOMINAL, Scheme::Splitting, dt);
     // The modes of DCOM want shorter steps.
-    let model = dcom::Model::new(&dcom::NOMINAL);
-    let flight = level(&model, 2e-3);
-    let linear = flight.covariance(&model, &[0.2]).expect("a flight");
-    let sampled = sample::<Dcom>(&flight, dcom::NOMINAL, Scheme::Heun, vec![100], 400);
-    agrees(&linear[0], &sampled[0]);
+    compare::<dcom::Model<f64>>(&dcom::NOMINAL, Scheme::Heun, 2e-3);
     // A wrong linearisation is seen: the noise of modes as large again.
     let loud = sdcom::Model::new(&sdcom::Parameters {
         sigma_1: 2.0 * sdcom::NOMINAL.sigma_1,
         ..sdcom::NOMINAL
     });
-    let other = level(&loud, dt)
-        .covariance(&loud, &[0.3])
-        .expect("a flight");
+    let other = held(&loud, dt).covariance(&loud, &[0.3]).expect("a flight");
     let std = exact[1].states[5].std.expect("a deviation");
     assert!(!std.holds(other[0].std()[5]));
 }
@@ -495,7 +492,7 @@ fn stiff_coloured_noise_has_its_exact_deviation_at_any_step() {
     let model = sdcom::Model::new(&parameters);
     let chi = 7;
     let exact = {
-        let flight = level(&model, 1.0);
+        let flight = held(&model, 1.0);
         let (a, _) = model.jacobians(&flight.start, &flight.input);
         let rate = -a.chi_3.chi_3;
         assert!((2600.0..2650.0).contains(&rate), "{rate}");
@@ -504,12 +501,13 @@ fn stiff_coloured_noise_has_its_exact_deviation_at_any_step() {
     };
     assert!((exact - 0.0329).abs() < 5e-5, "{exact}");
     for (dt, steps) in [(2e-3, 50), (5e-4, 200)] {
-        let flight = level(&model, dt);
+        let flight = held(&model, dt);
         let linear = flight.covariance(&model, &[0.1]).expect("a flight");
         assert_relative_eq!(linear[0].std()[chi], exact, max_relative = 1e-9);
         let least = linear[0].covariance.clone().symmetric_eigenvalues().min();
         assert!(least >= -1e-12 * linear[0].covariance.amax(), "{least}");
-        let sampled = sample::<Sdcom>(&flight, parameters, Scheme::Splitting, vec![steps], 2000);
+        let sampled =
+            sample::<sdcom::Model<f64>>(&flight, &parameters, Scheme::Splitting, vec![steps], 2000);
         let std = sampled[0].states[chi].std.and_then(|it| it.closed());
         let std = std.expect("a deviation");
         assert!((std.value / exact - 1.0).abs() < 0.06, "{std:?}, {exact}");
@@ -520,15 +518,15 @@ fn stiff_coloured_noise_has_its_exact_deviation_at_any_step() {
 #[test]
 fn a_regulated_flight_has_a_stationary_covariance() {
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let open = level(&model, 0.05);
+    let open = held(&model, 0.05);
     assert!(matches!(
         open.stationary(&model),
         Err(CovarianceError::UndampedMode { mode, .. }) if mode == "short period"
     ));
     let inputs = ["phi", "delta_e"];
     let system = linearize(&model, &open.start, &open.input, &inputs, &[]).expect("linear");
-    let x_std: sdcom::State<f64> = deviations();
-    let u_std: sdcom::Input<f64> = deviations();
+    let x_std: sdcom::State<f64> = deviations(<sdcom::Model<f64>>::DEVIATIONS);
+    let u_std: sdcom::Input<f64> = deviations(<sdcom::Model<f64>>::DEVIATIONS);
     let regulator = Regulator::new(
         &system.a,
         &system.b,

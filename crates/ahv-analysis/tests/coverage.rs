@@ -4,17 +4,18 @@
 //! `--nocapture` the tables are printed as the document has them.
 #![forbid(unsafe_code)]
 
+mod common;
+
 use std::collections::BTreeMap;
 
 use ahv_analysis::disperse::{Distribution, Draws};
-use ahv_analysis::monte_carlo::{
-    Control, Dcom, Experiment, Flown, Mode, QUANTILES, Scheme, Sdcom, StateSpread,
-};
+use ahv_analysis::monte_carlo::{Control, Experiment, Mode, QUANTILES, Scheme, StateSpread};
 use ahv_analysis::statistics::{Estimate, OpenEstimate, mean_and_std};
-use ahv_analysis::trim::{SteadyFlight, trim};
-use ahv_core::Vector;
+use ahv_analysis::trim::trim;
+use ahv_core::{GeneratedModel, Vector};
 use ahv_integrate::NormalStream;
 use ahv_models::{dcom, sdcom};
+use common::level;
 
 /// Seeds unless others are asked for.
 const SEEDS: u64 = 40;
@@ -273,11 +274,11 @@ fn estimates(spread: &StateSpread) -> Option<[OpenEstimate; 4]> {
 }
 
 /// Coverage of a state's intervals at the end, with one large ensemble as the truth.
-fn flights<F: Flown>(
+fn flights<M: GeneratedModel>(
     table: &mut Table,
     name: &str,
     states: &[&str],
-    experiment: impl Fn(u64) -> Experiment<F>,
+    experiment: impl Fn(u64) -> Experiment<M>,
 ) {
     let seeds = seeds();
     let sizes = &MEMBERS[..if seeds > SEEDS { 2 } else { 1 }];
@@ -288,7 +289,7 @@ fn flights<F: Flown>(
             snapshots.pop().expect("a snapshot").states
         };
         let truth = run(u64::MAX / 2, seeds * members);
-        let at = |state: &str| F::State::<()>::index_of(state).expect("a state");
+        let at = |state: &str| M::StateOf::<()>::index_of(state).expect("a state");
         let mut counts = vec![[Count::default(); 4]; states.len()];
         for seed in 0..seeds {
             let spreads = run(seed, members);
@@ -315,52 +316,47 @@ fn intervals_of_flights_cover_as_documented() {
         heading: "| flights | members | mean | standard deviation | 0.5 % quantile | median |",
         rows: Vec::new(),
     };
-    let level = SteadyFlight::new(7702.0808, 85_000.0);
-    let rest = trim(&sdcom::Model::new(&sdcom::SECTION5_3), &level).expect("it trims");
-    flights::<Sdcom>(&mut table, "sdcom section5.3, 1 s", &["velocity"], |seed| {
+    let calm = held::<sdcom::Model<f64>>(&sdcom::SECTION5_3, Scheme::Splitting, 0.02, 50);
+    flights(&mut table, "sdcom section5.3, 1 s", &["velocity"], |seed| {
         Experiment {
-            parameters: sdcom::SECTION5_3,
-            dispersion: None,
-            state: [rest.state, Vector::splat(0.0)],
-            input: [rest.input, Vector::splat(0.0)],
-            feedback: None,
-            watched: Vec::new(),
-            scheme: Scheme::Splitting,
-            mode: Mode::Exact,
-            dt: 0.02,
-            snapshots: vec![50],
             seed,
+            ..calm.clone()
         }
     });
-    let level = SteadyFlight::new(7702.0808, 85_000.0);
-    let rest = trim(&dcom::Model::new(&dcom::NOMINAL), &level).expect("it trims");
-    let uncertainty = dcom::PROVENANCE.map_into(|it| it.uncertainty);
-    flights::<Dcom>(
-        &mut table,
-        "dcom dispersed, 0.5 s",
-        &["alpha", "pitch_rate"],
-        |seed| {
-            let draws = Draws::new(
-                dcom::NOMINAL,
-                uncertainty,
-                Distribution::Uniform,
-                Vec::new(),
-                seed,
-            );
-            Experiment {
-                parameters: dcom::NOMINAL,
-                dispersion: Some(draws.expect("draws")),
-                state: [rest.state, Vector::splat(0.0)],
-                input: [rest.input, Vector::splat(0.0)],
-                feedback: None,
-                watched: Vec::new(),
-                scheme: Scheme::Heun,
-                mode: Mode::Exact,
-                dt: 4e-3,
-                snapshots: vec![125],
-                seed,
-            }
-        },
-    );
+    let calm = held::<dcom::Model<f64>>(&dcom::NOMINAL, Scheme::Heun, 4e-3, 125);
+    let uncertainty = dcom::SETS[0].uncertainty();
+    let states = ["alpha", "pitch_rate"];
+    flights(&mut table, "dcom dispersed, 0.5 s", &states, |seed| {
+        let law = Distribution::Uniform;
+        let draws = Draws::new(dcom::NOMINAL, uncertainty, law, Vec::new(), seed);
+        Experiment {
+            dispersion: Some(draws.expect("draws")),
+            seed,
+            ..calm.clone()
+        }
+    });
     table.check();
+}
+
+/// A model from its trim, at its inputs.
+fn held<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
+    scheme: Scheme,
+    dt: f64,
+    steps: u64,
+) -> Experiment<M> {
+    let rest = trim(&M::with_parameters(parameters), &level::<M>()).expect("it trims");
+    Experiment {
+        parameters: *parameters,
+        dispersion: None,
+        state: [rest.state, Vector::splat(0.0)],
+        input: [rest.input, Vector::splat(0.0)],
+        feedback: None,
+        watched: Vec::new(),
+        scheme,
+        mode: Mode::Exact,
+        dt,
+        snapshots: vec![steps],
+        seed: 0,
+    }
 }

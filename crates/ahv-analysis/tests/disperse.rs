@@ -1,16 +1,18 @@
 //! Draws, spreads and slopes against their laws, repeated trims and differences.
 #![forbid(unsafe_code)]
 
+mod common;
+
 use ahv_analysis::disperse::{
-    Distribution, DrawError, Draws, Group, Kind, Nominal, Spread, disperse, slopes, solve, spreads,
+    Distribution, DrawError, Draws, Group, Kind, SolutionError, Spread, disperse, nominal, slopes,
+    solve, spreads,
 };
 use ahv_analysis::monte_carlo::Control;
-use ahv_analysis::parametric::Parametric;
 use ahv_analysis::sensitivity::RootVectors;
-use ahv_analysis::trim::SteadyFlight;
-use ahv_core::Vector;
+use ahv_core::{GeneratedModel, ParameterSetOf, Vector};
 use ahv_models::{com, com_rigid, dcom, sdcom};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use common::level;
 use nalgebra::{Complex, DMatrix};
 
 fn uncertainty() -> dcom::Parameters<f64> {
@@ -31,10 +33,6 @@ fn group(correlation: f64, names: &[&str]) -> Group {
         parameters: names.iter().map(|name| index(name)).collect(),
         correlation,
     }
-}
-
-fn level<U: Vector<f64>>() -> SteadyFlight<U> {
-    SteadyFlight::new(7702.0808, 85_000.0)
 }
 
 /// Relative changes of a parameter over members, in units of its uncertainty.
@@ -152,21 +150,18 @@ fn draws_without_sense_are_refused() {
 }
 
 /// Slopes of every quantity against central differences of the whole way: trim, linearisation, roots.
-fn slopes_are_those_of_repeated_trims<M>(nominal: M::Parameters, uncertainty: M::Parameters)
-where
-    M: Parametric,
-    M::Parameters: Send + Sync,
-{
-    let draws = Draws::new(nominal, uncertainty, Distribution::Uniform, vec![], 0).expect("sound");
-    let about = Nominal::<M::State, M::Input>::new::<M>(&nominal, level()).expect("it trims");
+fn slopes_are_those_of_repeated_trims<M: GeneratedModel>(set: &ParameterSetOf<M>) {
+    let (centre, uncertainty) = (set.parameters, set.uncertainty());
+    let draws = Draws::new(centre, uncertainty, Distribution::Uniform, vec![], 0).expect("sound");
+    let about = nominal::<M>(&centre, level::<M>()).expect("it trims");
     let slopes = slopes::<M>(&draws, &about).expect("derivatives");
     for (column, &parameter) in slopes.parameters.iter().enumerate() {
-        let value = nominal.get(parameter).expect("a parameter");
+        let value = centre.get(parameter).expect("a parameter");
         let step = 1e-4 * value.abs();
         let values = |step: f64| {
-            let mut moved = nominal;
+            let mut moved = centre;
             moved.set(parameter, value + step);
-            about.values_of(&solve::<M>(&moved, &level()).expect("it trims"))
+            about.values_of(&solve::<M>(&moved, &level::<M>()).expect("it trims"))
         };
         let (above, below) = (values(step), values(-step));
         for (index, quantity) in about.quantities.iter().enumerate() {
@@ -181,7 +176,7 @@ where
                 "{} {:?} by {}: {slope} {difference}",
                 quantity.name,
                 quantity.part,
-                M::Parameters::NAMES[parameter]
+                M::ParametersOf::<f64>::NAMES[parameter]
             );
         }
     }
@@ -189,11 +184,10 @@ where
 
 #[test]
 fn slopes_of_every_kind_of_model() {
-    slopes_are_those_of_repeated_trims::<dcom::Model<f64>>(dcom::NOMINAL, uncertainty());
-    slopes_are_those_of_repeated_trims::<sdcom::Model<f64>>(dcom::SECTION5_3, uncertainty());
-    let com = com::PROVENANCE.map_into(|provenance| provenance.uncertainty);
-    slopes_are_those_of_repeated_trims::<com::Model<f64>>(com::NOMINAL, com);
-    slopes_are_those_of_repeated_trims::<com_rigid::Model<f64>>(com::NOMINAL, com);
+    slopes_are_those_of_repeated_trims::<dcom::Model<f64>>(&dcom::SETS[0]);
+    slopes_are_those_of_repeated_trims::<sdcom::Model<f64>>(&sdcom::SETS[1]);
+    slopes_are_those_of_repeated_trims::<com::Model<f64>>(&com::SETS[0]);
+    slopes_are_those_of_repeated_trims::<com_rigid::Model<f64>>(&com_rigid::SETS[0]);
 }
 
 /// λ = −p ± √(p² − q) of λ² + 2pλ + q: ∂λ/∂q = −1/(2(λ + p)).
@@ -224,7 +218,8 @@ fn small_uncertainties_spread_as_slopes_say() {
     let small = uncertainty().map(|share| 0.025 * share);
     let groups = vec![group(0.8, &["c_l_alpha", "c_m_alpha", "c_l_0"])];
     let draws = Draws::new(dcom::NOMINAL, small, Distribution::Uniform, groups, 4).expect("sound");
-    let about = Nominal::new::<dcom::Model<f64>>(&dcom::NOMINAL, level()).expect("it trims");
+    let about = nominal::<dcom::Model<f64>>(&dcom::NOMINAL, level::<dcom::Model<f64>>());
+    let about = about.expect("it trims");
     let slopes = slopes::<dcom::Model<f64>>(&draws, &about).expect("derivatives");
     let members = disperse::<dcom::Model<f64>>(&draws, &about, MEMBERS, &Control::default());
     let spreads = spreads(&members, about.quantities.len());
@@ -252,7 +247,8 @@ fn members_do_not_depend_on_each_other() {
         Distribution::Uniform,
         vec![group(0.5, &["c_l_alpha", "c_l_0"])],
     );
-    let about = Nominal::new::<sdcom::Model<f64>>(&dcom::NOMINAL, level()).expect("it trims");
+    let about = nominal::<sdcom::Model<f64>>(&dcom::NOMINAL, level::<sdcom::Model<f64>>());
+    let about = about.expect("it trims");
     let on = |threads, members| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let run = || disperse::<sdcom::Model<f64>>(&draws, &about, members, &Control::default());
@@ -275,8 +271,8 @@ fn members_do_not_depend_on_each_other() {
 #[test]
 fn failures_are_counted_with_their_reasons() {
     let draws = draws(Distribution::Uniform, Vec::new());
-    let flight = level().within(&dcom::INPUT_BOUNDS);
-    let about = Nominal::new::<dcom::Model<f64>>(&dcom::NOMINAL, flight).expect("it trims");
+    let flight = level::<dcom::Model<f64>>().within(&dcom::INPUT_BOUNDS);
+    let about = nominal::<dcom::Model<f64>>(&dcom::NOMINAL, flight).expect("it trims");
     let members = disperse::<dcom::Model<f64>>(&draws, &about, 100, &Control::default());
     let failed: Vec<_> = members
         .iter()
@@ -299,11 +295,10 @@ fn failures_are_counted_with_their_reasons() {
         i_yy: 2e5,
         ..com::NOMINAL
     };
-    let contradiction = solve::<com::Model<f64>>(&heavy, &level()).expect_err("no such vehicle");
-    assert!(
-        contradiction.to_string().contains("mass matrix"),
-        "{contradiction}"
-    );
+    let broken = solve::<com::Model<f64>>(&heavy, &level::<com::Model<f64>>());
+    let broken = broken.expect_err("no such vehicle");
+    assert!(matches!(broken, SolutionError::Rule(_)), "{broken:?}");
+    assert!(broken.to_string().contains("mass matrix"), "{broken}");
 }
 
 #[test]

@@ -1,15 +1,22 @@
 //! Linear systems, poles and zeros against SciPy's on an independent derivation, and against numbers of the paper.
 #![forbid(unsafe_code)]
 
+mod common;
+
 use std::fs;
 
-use ahv_analysis::linearize::{LinearSystem, LinearizeError, PATH_INPUTS, PATH_OUTPUTS, linearize};
-use ahv_analysis::poles::{Decoupling, Mode, Pole, Zeros, damping, frequency, poles, zeros};
-use ahv_analysis::trim::{SteadyFlight, trim};
-use ahv_core::{DifferentiableModel, Vector};
+use ahv_analysis::linearize::{LinearSystem, LinearizeError, linearize, with_outputs};
+use ahv_analysis::poles::{Decoupling, Pole, Zeros, damping, frequency, poles, zeros};
+use ahv_analysis::trim::{SteadyState, trim};
+use ahv_core::{GeneratedModel, Vector};
 use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use common::level;
 use nalgebra::{Complex, DMatrix};
+
+/// Inputs and outputs of a vehicle where none are asked for.
+const INPUTS: &[&str] = <dcom::Model<f64>>::DEFAULT_INPUTS;
+const OUTPUTS: &[&str] = <dcom::Model<f64>>::DEFAULT_OUTPUTS;
 
 /// What SciPy found for a model and a set.
 struct Reference {
@@ -69,11 +76,11 @@ impl Reference {
     /// The system of the vectors, its states and outputs by name.
     fn system(&self, states: &[&'static str]) -> LinearSystem {
         let output =
-            |row: usize, column: usize| f64::from(u8::from(states[column] == PATH_OUTPUTS[row]));
+            |row: usize, column: usize| f64::from(u8::from(states[column] == OUTPUTS[row]));
         LinearSystem {
             states: states.to_vec(),
-            inputs: PATH_INPUTS.to_vec(),
-            outputs: PATH_OUTPUTS.to_vec(),
+            inputs: INPUTS.to_vec(),
+            outputs: OUTPUTS.to_vec(),
             a: self.a.clone(),
             b: self.b.clone(),
             c: DMatrix::from_fn(2, states.len(), output),
@@ -118,7 +125,7 @@ fn poles_and_zeros_are_scipys_on_the_same_matrices() {
         };
         let what = format!("{} {}", reference.model, reference.set);
         let system = reference.system(states);
-        let found = values(&poles(&system).expect("poles"));
+        let found = values(&poles(&system, &[]).expect("poles"));
         assert_same(&found, &reference.poles, &what);
         let found = zeros(&system).expect("zeros");
         let finite: Vec<_> = found.finite.iter().map(|it| it.value).collect();
@@ -132,23 +139,28 @@ fn poles_and_zeros_are_scipys_on_the_same_matrices() {
     }
 }
 
-fn level<M: DifferentiableModel<Scalar = f64>>(model: &M) -> (M::State, M::Input) {
-    let trim = trim(model, &SteadyFlight::new(7702.0808, 85_000.0)).expect("the model trims");
+fn trimmed<M: GeneratedModel>(model: &M) -> (M::State, M::Input) {
+    let trim = trim(model, &level::<M>()).expect("the model trims");
     (trim.state, trim.input)
 }
 
-fn system<M: DifferentiableModel<Scalar = f64>>(model: &M) -> LinearSystem {
-    let (x, u) = level(model);
-    linearize(model, &x, &u, &PATH_INPUTS, &PATH_OUTPUTS).expect("the model is smooth")
+/// From its default inputs to its default outputs.
+fn system<M: GeneratedModel>(model: &M) -> LinearSystem {
+    let (x, u) = trimmed(model);
+    linearize(model, &x, &u, M::DEFAULT_INPUTS, M::DEFAULT_OUTPUTS).expect("the model is smooth")
+}
+
+fn poles_of<M: GeneratedModel>(model: &M) -> Vec<Pole> {
+    poles(&system(model), M::MODES).expect("poles")
 }
 
 /// Trim, A and B are those that SciPy finds with an independent derivation.
-fn agrees<M: DifferentiableModel<Scalar = f64>>(model: &M, name: &str, set: &str) {
+fn agrees<M: GeneratedModel>(model: &M, set: &str) {
     let references = references();
     let mut references = references.iter();
-    let reference = references.find(|it| it.model == name && it.set == set);
+    let reference = references.find(|it| it.model == M::NAME && it.set == set);
     let reference = reference.expect("the case is in the vectors");
-    let (x, u) = level(model);
+    let (x, u) = trimmed(model);
     for (index, expected) in reference.state.iter().enumerate() {
         let found = x.get(index).expect("a component");
         assert_abs_diff_eq!(found, *expected, epsilon = 1e-9);
@@ -170,30 +182,23 @@ fn agrees<M: DifferentiableModel<Scalar = f64>>(model: &M, name: &str, set: &str
 
 #[test]
 fn trims_and_linear_systems_are_those_of_the_independent_derivation() {
-    agrees(&com::Model::new(&com::NOMINAL), "com", "section5.1");
-    agrees(
-        &com_rigid::Model::new(&com::NOMINAL),
-        "com_rigid",
-        "section5.1",
-    );
-    agrees(&dcom::Model::new(&dcom::NOMINAL), "dcom", "section5.1");
-    agrees(&dcom::Model::new(&dcom::SECTION5_3), "dcom", "section5.3");
-    agrees(&sdcom::Model::new(&dcom::NOMINAL), "sdcom", "section5.1");
-    agrees(&sdcom::Model::new(&dcom::SECTION5_3), "sdcom", "section5.3");
+    agrees(&com::Model::new(&com::NOMINAL), "section5.1");
+    agrees(&com_rigid::Model::new(&com::NOMINAL), "section5.1");
+    agrees(&dcom::Model::new(&dcom::NOMINAL), "section5.1");
+    agrees(&dcom::Model::new(&dcom::SECTION5_3), "section5.3");
+    agrees(&sdcom::Model::new(&dcom::NOMINAL), "section5.1");
+    agrees(&sdcom::Model::new(&dcom::SECTION5_3), "section5.3");
 }
 
 /// The poles of `mode`.
-fn of(mode: Mode, poles: &[Pole]) -> Vec<Complex<f64>> {
+fn of(mode: &str, poles: &[Pole]) -> Vec<Complex<f64>> {
     let those = poles.iter().filter(|pole| pole.mode == Some(mode));
     those.map(|pole| pole.value).collect()
 }
 
 /// The real short-period poles, stable and unstable.
 fn short_period(poles: &[Pole]) -> (f64, f64) {
-    let mut real: Vec<f64> = of(Mode::ShortPeriod, poles)
-        .iter()
-        .map(|it| it.re)
-        .collect();
+    let mut real: Vec<f64> = of("short period", poles).iter().map(|it| it.re).collect();
     real.sort_by(f64::total_cmp);
     assert_eq!(real.len(), 2, "{poles:?}");
     (real[0], real[1])
@@ -201,13 +206,17 @@ fn short_period(poles: &[Pole]) -> (f64, f64) {
 
 #[test]
 fn modes_are_told_by_participation() {
-    let found = poles(&system(&dcom::Model::new(&dcom::SECTION5_3))).expect("poles");
+    let found = poles_of(&dcom::Model::new(&dcom::SECTION5_3));
     // Table 3 prints -3.97 and +3.86.
     let (stable, unstable) = short_period(&found);
     assert_abs_diff_eq!(stable, -3.9694, epsilon = 6e-5);
     assert_abs_diff_eq!(unstable, 3.8612, epsilon = 6e-5);
-    for (number, real, imaginary) in [(1, -0.41, 20.5), (2, -1.05, 52.5), (3, -2.10, 105.0)] {
-        let pair = of(Mode::Flexible(number), &found);
+    for (mode, real, imaginary) in [
+        ("flexible 1", -0.41, 20.5),
+        ("flexible 2", -1.05, 52.5),
+        ("flexible 3", -2.10, 105.0),
+    ] {
+        let pair = of(mode, &found);
         assert_eq!(pair.len(), 2, "{found:?}");
         for pole in pair {
             assert_abs_diff_eq!(pole.re, real, epsilon = 0.01);
@@ -215,8 +224,8 @@ fn modes_are_told_by_participation() {
             assert_abs_diff_eq!(damping(pole), 0.02, epsilon = 1e-4);
         }
     }
-    assert_eq!(of(Mode::Phugoid, &found).len(), 2);
-    assert_eq!(of(Mode::Height, &found).len(), 1);
+    assert_eq!(of("phugoid", &found).len(), 2);
+    assert_eq!(of("height", &found).len(), 1);
     assert!(
         found.iter().all(|pole| pole.participation > 0.5),
         "{found:?}"
@@ -230,11 +239,15 @@ fn participation_does_not_depend_on_units() {
     let mut factors = com::Parameters::<f64>::SI_FACTORS.iter();
     let metres = feet.map(|value| value * factors.next().expect("a factor for each"));
     let model = com::Model::new(&metres);
-    let flight = SteadyFlight::new(7702.0808 * 0.3048, 85_000.0 * 0.3048);
+    let factor = |name: &str| {
+        let states = com::State::<f64>::index_of(name).map(|it| com::State::<f64>::SI_FACTORS[it]);
+        states.unwrap_or(1.0)
+    };
+    let flight = SteadyState::converted(&<com::Model<f64>>::TRIM, factor);
     let trim = trim(&model, &flight).expect("the model trims in SI");
     let in_si = linearize(&model, &trim.state, &trim.input, &[], &[]).expect("smooth");
-    let found = poles(&system(&com::Model::new(&feet))).expect("poles");
-    let found_in_si = poles(&in_si).expect("poles in SI");
+    let found = poles_of(&com::Model::new(&feet));
+    let found_in_si = poles(&in_si, <com::Model<f64>>::MODES).expect("poles in SI");
     for (pole, in_si) in found.iter().zip(&found_in_si) {
         assert_eq!(pole.mode, in_si.mode);
         assert_abs_diff_eq!(pole.participation, in_si.participation, epsilon = 1e-7);
@@ -244,17 +257,17 @@ fn participation_does_not_depend_on_units() {
 #[test]
 fn coloured_noise_and_gust_have_their_own_decay_rates() {
     let p = dcom::NOMINAL;
-    let found = poles(&system(&sdcom_gust::Model::new(&p))).expect("poles");
+    let found = poles_of(&sdcom_gust::Model::new(&p));
     let modes = [
-        (1, p.omega_1 * p.zeta_1),
-        (2, p.omega_2 * p.zeta_2),
-        (3, p.omega_3 * p.zeta_3),
+        ("coloured noise 1", p.omega_1 * p.zeta_1),
+        ("coloured noise 2", p.omega_2 * p.zeta_2),
+        ("coloured noise 3", p.omega_3 * p.zeta_3),
     ];
-    for (number, decay) in modes {
-        let pole = of(Mode::ColouredNoise(number), &found);
+    for (mode, decay) in modes {
+        let pole = of(mode, &found);
         assert_relative_eq!(pole[0].re, -decay, max_relative = 1e-12);
     }
-    let gust = of(Mode::Gust, &found);
+    let gust = of("gust", &found);
     assert_relative_eq!(gust[0].re, -1.0 / p.gust_time, max_relative = 1e-12);
 }
 
@@ -278,7 +291,7 @@ fn no_input_reaches_the_coloured_noise() {
 
 #[test]
 fn the_rigid_com_has_the_recomputed_short_period() {
-    let found = poles(&system(&com_rigid::Model::new(&com_rigid::NOMINAL))).expect("poles");
+    let found = poles_of(&com_rigid::Model::new(&com_rigid::NOMINAL));
     let (stable, unstable) = short_period(&found);
     assert_abs_diff_eq!(stable, -1.764, epsilon = 6e-4);
     assert_abs_diff_eq!(unstable, 1.694, epsilon = 6e-4);
@@ -292,7 +305,7 @@ fn inertia_does_most_of_the_short_period_of_section_5_3() {
         (heavy.m, heavy.i_yy, -1.742, 1.673),
     ] {
         let parameters = dcom::Parameters { m, i_yy, ..light };
-        let found = poles(&system(&dcom::Model::new(&parameters))).expect("poles");
+        let found = poles_of(&dcom::Model::new(&parameters));
         let found = short_period(&found);
         assert_abs_diff_eq!(found.0, stable, epsilon = 6e-4);
         assert_abs_diff_eq!(found.1, unstable, epsilon = 6e-4);
@@ -328,19 +341,19 @@ fn small_systems_have_the_zeros_of_their_transfer_functions() {
 #[test]
 fn what_cannot_be_is_a_typed_error() {
     let model = dcom::Model::new(&dcom::NOMINAL);
-    let (x, u) = level(&model);
-    let unknown = linearize(&model, &x, &u, &["delta_f"], &PATH_OUTPUTS);
+    let (x, u) = trimmed(&model);
+    let unknown = linearize(&model, &x, &u, &["delta_f"], OUTPUTS);
     assert_eq!(
         unknown,
         Err(LinearizeError::UnknownInput("delta_f".to_owned()))
     );
-    let unknown = linearize(&model, &x, &u, &PATH_INPUTS, &["theta"]);
+    let unknown = linearize(&model, &x, &u, INPUTS, &["theta"]);
     assert_eq!(
         unknown,
         Err(LinearizeError::UnknownOutput("theta".to_owned()))
     );
     let still = dcom::State { velocity: 0.0, ..x };
-    let still = linearize(&model, &still, &u, &PATH_INPUTS, &PATH_OUTPUTS);
+    let still = linearize(&model, &still, &u, INPUTS, OUTPUTS);
     assert!(
         matches!(still, Err(LinearizeError::NonFinite { .. })),
         "{still:?}"
@@ -471,12 +484,8 @@ fn zeros_of_every_pair_are_slicots() {
     }
 }
 
-fn pair<M: DifferentiableModel<Scalar = f64>>(
-    model: &M,
-    inputs: &[&str],
-    outputs: &[&str],
-) -> Zeros {
-    let (x, u) = level(model);
+fn pair<M: GeneratedModel>(model: &M, inputs: &[&str], outputs: &[&str]) -> Zeros {
+    let (x, u) = trimmed(model);
     let system = linearize(model, &x, &u, inputs, outputs).expect("the model is smooth");
     zeros(&system).expect("zeros")
 }
@@ -485,7 +494,7 @@ fn pair<M: DifferentiableModel<Scalar = f64>>(
 #[test]
 fn a_transfer_matrix_without_full_rank_has_no_invented_zeros() {
     let dcom = dcom::Model::new(&dcom::NOMINAL);
-    let found = pair(&dcom, &PATH_INPUTS, &["altitude", "gamma"]);
+    let found = pair(&dcom, INPUTS, &["altitude", "gamma"]);
     assert_eq!((found.normal_rank, found.finite.len()), (1, 0));
     assert_eq!(
         (found.right_indices.len(), found.left_indices.len()),
@@ -495,21 +504,21 @@ fn a_transfer_matrix_without_full_rank_has_no_invented_zeros() {
     let found = pair(&dcom::Model::new(&slaved), &["delta_e"], &["altitude"]);
     assert_eq!((found.finite.len(), found.infinite_orders), (8, vec![3]));
     let rigid = com_rigid::Model::new(&com::NOMINAL);
-    let found = pair(&rigid, &PATH_INPUTS, &["altitude", "alpha"]);
+    let found = pair(&rigid, INPUTS, &["altitude", "alpha"]);
     assert_eq!((found.finite.len(), found.normal_rank), (1, 2));
 }
 
 /// Zeros do not depend on units, and neither does the rank: each state, input and output is scaled by itself.
 #[test]
 fn units_change_no_zero() {
-    let (x, u) = level(&dcom::Model::new(&dcom::SECTION5_3));
+    let (x, u) = trimmed(&dcom::Model::new(&dcom::SECTION5_3));
     for outputs in [
         ["altitude", "gamma"],
         ["velocity", "gamma"],
         ["alpha", "eta_1"],
     ] {
         let model = dcom::Model::new(&dcom::SECTION5_3);
-        let system = linearize(&model, &x, &u, &PATH_INPUTS, &outputs).expect("smooth");
+        let system = linearize(&model, &x, &u, INPUTS, &outputs).expect("smooth");
         let plain = zeros(&system).expect("zeros");
         let factor = |index: usize| 10.0_f64.powi((index as i32 * 7) % 13 - 6);
         let mut scaled = system.clone();
@@ -532,6 +541,101 @@ fn there_may_be_more_outputs_than_inputs() {
     let dcom = dcom::Model::new(&dcom::NOMINAL);
     let tall = pair(&dcom, &["phi"], &["velocity", "gamma"]);
     assert_eq!((tall.normal_rank, tall.left_indices.len()), (1, 1));
-    let wide = pair(&dcom, &PATH_INPUTS, &["velocity"]);
+    let wide = pair(&dcom, INPUTS, &["velocity"]);
     assert_eq!((wide.normal_rank, wide.right_indices.len()), (1, 1));
+}
+
+fn with<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
+    outputs: &[&str],
+) -> Result<LinearSystem, LinearizeError> {
+    let (x, u) = trimmed(&M::with_parameters(parameters));
+    let owned = |names: &[&str]| -> Vec<String> { names.iter().map(ToString::to_string).collect() };
+    with_outputs::<M>(
+        parameters,
+        &x,
+        &u,
+        &owned(M::DEFAULT_INPUTS),
+        &owned(outputs),
+    )
+}
+
+/// θ = γ + α: its row of C says so, and its zeros are those of the same system with θ in the place of the state α.
+#[test]
+fn an_output_that_is_no_state_has_its_zeros() {
+    let system = with::<dcom::Model<f64>>(&dcom::NOMINAL, &["velocity", "theta"]);
+    let system = system.expect("the model is smooth");
+    assert_eq!(system.outputs, ["velocity", "theta"]);
+    let index = |name: &str| dcom::State::<f64>::index_of(name).expect("a state");
+    for (column, entry) in system.c.row(1).iter().enumerate() {
+        let expected = column == index("gamma") || column == index("alpha");
+        assert_eq!(
+            *entry,
+            f64::from(u8::from(expected)),
+            "{}",
+            system.states[column]
+        );
+    }
+    assert_eq!(system.d, DMatrix::zeros(2, 2));
+    let found = zeros(&system).expect("zeros");
+    // With S x = (…, γ + α, …) the system is S A S⁻¹, S B, C S⁻¹, in which θ is a state.
+    let mut to = DMatrix::identity(11, 11);
+    to[(index("alpha"), index("gamma"))] = 1.0;
+    let from = to.clone().try_inverse().expect("regular");
+    let moved = LinearSystem {
+        a: &to * &system.a * &from,
+        b: &to * &system.b,
+        c: &system.c * &from,
+        ..system.clone()
+    };
+    let theta = moved.c.row(1);
+    assert!(
+        theta
+            .iter()
+            .enumerate()
+            .all(|(it, c)| (*c == 1.0) == (it == index("alpha")))
+    );
+    let expected = zeros(&moved).expect("zeros");
+    assert_eq!(found.infinite_orders, expected.infinite_orders);
+    let [found, expected] = [found, expected].map(|zeros| {
+        let values = zeros.finite.iter().map(|it| it.value);
+        values.collect::<Vec<_>>()
+    });
+    assert!(!found.is_empty());
+    assert_near(&found, &expected, "theta");
+    // The poles do not know of outputs.
+    let default = poles_of(&dcom::Model::new(&dcom::NOMINAL));
+    assert_eq!(
+        poles(&system, <dcom::Model<f64>>::MODES).expect("poles"),
+        default
+    );
+}
+
+/// States are rows of 0 and 1 as before, and an output that depends on an input has a direct path.
+#[test]
+fn outputs_may_be_states_and_others_at_once() {
+    let mixed = with::<com::Model<f64>>(&com::NOMINAL, &["gamma", "lift", "velocity"]);
+    let mixed = mixed.expect("the model is smooth");
+    let plain = system(&com::Model::new(&com::NOMINAL));
+    assert_eq!((&mixed.a, &mixed.b), (&plain.a, &plain.b));
+    assert_eq!(mixed.c.row(0), plain.c.row(1));
+    assert_eq!(mixed.c.row(2), plain.c.row(0));
+    let (x, u) = trimmed(&com::Model::new(&com::NOMINAL));
+    let p = com::NOMINAL;
+    let density = p.rho_0 * ((p.h_0 - x.altitude) / p.h_s).exp();
+    let force = 0.5 * density * x.velocity * x.velocity * p.s;
+    let c_l = p.c_l_0 + p.c_l_alpha * x.alpha + p.c_l_delta_e * u.delta_e;
+    for (found, expected) in [
+        (mixed.d[(1, 0)], 0.0),
+        (mixed.d[(1, 1)], force * p.c_l_delta_e),
+        (mixed.c[(1, 0)], 2.0 * force * c_l / x.velocity),
+        (mixed.c[(1, 1)], -force * c_l / p.h_s),
+        (mixed.c[(1, 3)], force * p.c_l_alpha),
+    ] {
+        assert_relative_eq!(found, expected, max_relative = 1e-12);
+    }
+    assert_eq!(
+        with::<com::Model<f64>>(&com::NOMINAL, &["theta", "height"]),
+        Err(LinearizeError::UnknownOutput("height".to_owned()))
+    );
 }

@@ -1,6 +1,8 @@
 //! Rare events against the transition kernel of a process, and against plain sampling.
 #![forbid(unsafe_code)]
 
+mod common;
+
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use ahv_analysis::actuator::Actuator;
@@ -9,24 +11,26 @@ use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
 use ahv_analysis::monte_carlo::{
     Control, Experiment, Feedback, Mode, MonteCarloError, RareError, RareEstimate, RareEvent,
-    Scheme, Sdcom,
+    Scheme,
 };
 use ahv_analysis::statistics::Estimate;
-use ahv_analysis::trim::{SteadyFlight, Trim, trim};
-use ahv_core::{Bounds, ColouredNoise, StochasticModel, Vector};
-use ahv_models::sdcom::{INPUT_BOUNDS, Input, Model, NOMINAL, Noise, Parameters, State};
+use ahv_analysis::trim::{Trim, trim};
+use ahv_core::{Bounds, ColouredNoise, GeneratedModel, StochasticModel, Vector};
+use ahv_models::sdcom::{INPUT_BOUNDS, Input, NOMINAL, Noise, Parameters, State};
+use common::level;
+
+type Model = ahv_models::sdcom::Model<f64>;
 
 /// Steps of a flight, and their size in s.
 const STEPS: u64 = 100;
 const DT: f64 = 0.002;
 
 fn steady() -> Trim<State<f64>, Input<f64>> {
-    let at = SteadyFlight::new(7702.0808, 85_000.0);
-    trim(&Model::new(&NOMINAL), &at).expect("a trim")
+    trim(&Model::new(&NOMINAL), &level::<Model>()).expect("a trim")
 }
 
 /// SDCOM from its trim, with held inputs.
-fn open_loop(seed: u64) -> Experiment<Sdcom> {
+fn open_loop(seed: u64) -> Experiment<Model> {
     let at = steady();
     Experiment {
         parameters: NOMINAL,
@@ -44,7 +48,7 @@ fn open_loop(seed: u64) -> Experiment<Sdcom> {
 }
 
 /// SDCOM from its trim, with a linear-quadratic regulator through actuators.
-fn closed_loop(seed: u64) -> Experiment<Sdcom> {
+fn closed_loop(seed: u64) -> Experiment<Model> {
     let at = steady();
     let system = linearize(
         &Model::new(&NOMINAL),
@@ -54,8 +58,8 @@ fn closed_loop(seed: u64) -> Experiment<Sdcom> {
         &[],
     )
     .expect("a linear system");
-    let efforts = deviations::<Input<f64>>();
-    let q = bryson(&deviations::<State<f64>>().to_array());
+    let efforts = deviations::<Input<f64>>(Model::DEVIATIONS);
+    let q = bryson(&deviations::<State<f64>>(Model::DEVIATIONS).to_array());
     let r = bryson(&[efforts.phi, efforts.delta_e]);
     let regulator = Regulator::new(&system.a, &system.b, &q, &r).expect("a regulator");
     let row = |row| State::from_fn(|state| regulator.gain[(row, state)]);
@@ -188,7 +192,7 @@ fn passage(chain: Chain, deviations: f64) -> RareEvent {
     }
 }
 
-fn estimate(experiment: &Experiment<Sdcom>, event: &RareEvent, threads: usize) -> RareEstimate {
+fn estimate(experiment: &Experiment<Model>, event: &RareEvent, threads: usize) -> RareEstimate {
     experiment
         .first_passage(event, threads, &Control::default())
         .expect("an estimate")
@@ -345,7 +349,7 @@ fn threads_change_no_bit() {
 fn requests_without_sense_are_refused() {
     let experiment = open_loop(1);
     let good = passage(Chain::of(Scheme::EulerMaruyama), 4.0);
-    let refused = |experiment: &Experiment<Sdcom>, event: &RareEvent| match experiment
+    let refused = |experiment: &Experiment<Model>, event: &RareEvent| match experiment
         .first_passage(event, 1, &Control::default())
     {
         Err(MonteCarloError::Rare(error)) => error,

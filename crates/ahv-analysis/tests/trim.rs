@@ -3,11 +3,14 @@
 
 use std::f64::consts::PI;
 
-use ahv_analysis::trim::{SteadyFlight, TrimError, trim};
-use ahv_core::{Bounds, DifferentiableModel, Vector};
-use ahv_models::dcom::{Canard, Earth};
-use ahv_models::{com, com_rigid, dcom, sdcom, sdcom_gust, sdcom_printed};
+mod common;
+
+use ahv_analysis::trim::{SteadyState, TrimError, trim};
+use ahv_core::{Bounds, DifferentiableModel, GeneratedModel, ModelList, ModelVisitor, Vector};
+use ahv_models::dcom::Canard;
+use ahv_models::{Models, com, com_rigid, dcom, sdcom, sdcom_gust, sdcom_printed};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use common::level;
 
 const VELOCITY: f64 = 7702.0808;
 const ALTITUDE: f64 = 85_000.0;
@@ -18,8 +21,8 @@ fn dcom_model(canard: Canard) -> dcom::Model<f64> {
 
 #[test]
 fn without_canard_the_trim_is_the_recomputed_one() {
-    let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
-    let trim = trim(&dcom_model(Canard::None), &flight).expect("the DCOM trims");
+    let trim =
+        trim(&dcom_model(Canard::None), &level::<dcom::Model<f64>>()).expect("the DCOM trims");
     assert_abs_diff_eq!(trim.state.alpha.to_degrees(), 1.5018, epsilon = 6e-5);
     assert_abs_diff_eq!(trim.input.phi, 0.2821, epsilon = 6e-5);
     assert_abs_diff_eq!(trim.input.delta_e.to_degrees(), 13.1006, epsilon = 6e-5);
@@ -37,8 +40,8 @@ fn without_canard_the_trim_is_the_recomputed_one() {
 
 #[test]
 fn with_a_slaved_canard_the_trim_is_the_recomputed_one() {
-    let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
-    let trim = trim(&dcom_model(Canard::Slaved), &flight).expect("the DCOM trims");
+    let trim =
+        trim(&dcom_model(Canard::Slaved), &level::<dcom::Model<f64>>()).expect("the DCOM trims");
     assert_abs_diff_eq!(trim.state.alpha.to_degrees(), 3.6558, epsilon = 6e-5);
     assert_abs_diff_eq!(trim.input.phi, 0.2957, epsilon = 6e-5);
     assert_abs_diff_eq!(trim.input.delta_e.to_degrees(), 7.1364, epsilon = 6e-5);
@@ -52,7 +55,7 @@ fn the_coms_trim_where_they_were_recomputed_on_both_earths() {
         (com::Earth::Spherical, 1.4056, 0.2505, 11.984),
     ] {
         let parameters = com::NOMINAL.with_earth(earth);
-        let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
+        let flight = level::<com_rigid::Model<f64>>();
         let rigid = trim(&com_rigid::Model::new(&parameters), &flight).expect("trims");
         // To the digits given.
         assert_abs_diff_eq!(rigid.state.alpha.to_degrees(), alpha, epsilon = 6e-5);
@@ -60,7 +63,7 @@ fn the_coms_trim_where_they_were_recomputed_on_both_earths() {
         assert_abs_diff_eq!(rigid.input.delta_e.to_degrees(), delta_e, epsilon = 6e-4);
         assert!(rigid.residual_max < 1e-9, "{rigid:?}");
 
-        let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
+        let flight = level::<com::Model<f64>>();
         let flexible = trim(&com::Model::new(&parameters), &flight).expect("trims");
         assert_abs_diff_eq!(flexible.state.alpha, rigid.state.alpha, epsilon = 1e-12);
         assert_abs_diff_eq!(flexible.input.phi, rigid.input.phi, epsilon = 1e-12);
@@ -83,7 +86,7 @@ fn the_set_of_section_5_3_trims_where_it_was_recomputed() {
         (dcom::SECTION5_3, 0.606, 0.2216, 10.996),
         (heavy_section_5_3(), 1.5115, 0.2811, 13.063),
     ] {
-        let flight = SteadyFlight::new(VELOCITY, ALTITUDE);
+        let flight = level::<dcom::Model<f64>>();
         let trim = trim(&dcom::Model::new(&parameters), &flight).expect("the DCOM trims");
         assert_abs_diff_eq!(trim.state.alpha.to_degrees(), alpha, epsilon = 6e-4);
         assert_abs_diff_eq!(trim.input.phi, phi, epsilon = 6e-5);
@@ -101,25 +104,35 @@ fn heavy_section_5_3() -> dcom::Parameters<f64> {
 }
 
 /// The trims of a model in foot and slug, and of the same model in SI, agree to rounding.
-fn agree_in_si<M: DifferentiableModel<Scalar = f64>>(model: &M, in_si: &M) {
-    let feet = SteadyFlight::new(VELOCITY, ALTITUDE);
-    let metres = SteadyFlight::new(VELOCITY * 0.3048, ALTITUDE * 0.3048);
-    let (feet, metres) = (trim(model, &feet), trim(in_si, &metres));
-    let (feet, metres) = (feet.expect("trims"), metres.expect("trims in SI"));
+fn agree_in_si<M: GeneratedModel>(parameters: &M::ParametersOf<f64>) {
+    let in_si = M::with_parameters(&si(*parameters));
+    let metres = SteadyState::converted(&M::TRIM, |name| {
+        factor::<M::State>(name)
+            .or(factor::<M::Input>(name))
+            .expect("a state or an input")
+    });
+    let feet = trim(&M::with_parameters(parameters), &level::<M>()).expect("trims");
+    let metres = trim(&in_si, &metres).expect("trims in SI");
     for (index, (name, factor)) in M::State::NAMES.iter().zip(M::State::SI_FACTORS).enumerate() {
         let converted = feet.state.get(index).map(|value| value * factor);
         let own = metres.state.get(index);
         let (converted, own) = converted.zip(own).expect("a component");
         assert!(
             (converted - own).abs() <= 1e-12 * converted.abs().max(1.0),
-            "{name}: {converted} from feet, {own} in SI"
+            "{} {name}: {converted} from feet, {own} in SI",
+            M::NAME
         );
     }
-    for index in 0..M::Input::LEN {
+    for (index, factor) in M::Input::SI_FACTORS.iter().enumerate() {
         let inputs = feet.input.get(index).zip(metres.input.get(index));
         let (feet, metres) = inputs.expect("a component");
-        assert_abs_diff_eq!(feet, metres, epsilon = 1e-12);
+        assert_abs_diff_eq!(feet * factor, metres, epsilon = 1e-12);
     }
+}
+
+/// What a component in foot and slug is multiplied with to be in SI.
+fn factor<V: Vector<f64>>(name: &str) -> Option<f64> {
+    V::SI_FACTORS.get(V::index_of(name)?).copied()
 }
 
 fn si<P: Vector<f64>>(parameters: P) -> P {
@@ -127,38 +140,34 @@ fn si<P: Vector<f64>>(parameters: P) -> P {
     parameters.map(|value| value * factors.next().expect("a factor for each"))
 }
 
+/// Every set as it is, and with each option of each choice.
 #[test]
 fn every_model_trims_alike_in_si() {
-    for (_, p) in com::SETS {
-        agree_in_si(&com::Model::new(&p), &com::Model::new(&si(p)));
-        agree_in_si(&com_rigid::Model::new(&p), &com_rigid::Model::new(&si(p)));
-    }
-    for (_, set) in dcom::SETS {
-        for p in [
-            set,
-            set.with_canard(Canard::Slaved).with_earth(Earth::Spherical),
-        ] {
-            agree_in_si(&dcom::Model::new(&p), &dcom::Model::new(&si(p)));
-            agree_in_si(&sdcom::Model::new(&p), &sdcom::Model::new(&si(p)));
-            agree_in_si(&sdcom_gust::Model::new(&p), &sdcom_gust::Model::new(&si(p)));
-            agree_in_si(
-                &sdcom_printed::Model::new(&p),
-                &sdcom_printed::Model::new(&si(p)),
-            );
+    struct InSi(usize);
+
+    impl ModelVisitor for InSi {
+        fn visit<M: GeneratedModel>(&mut self) {
+            for set in M::SETS {
+                agree_in_si::<M>(&set.parameters);
+                for option in M::TABLE.choices.iter().flat_map(|choice| choice.options) {
+                    agree_in_si::<M>(&option.apply(set.parameters));
+                }
+            }
+            self.0 += 1;
         }
     }
+
+    let mut visitor = InSi(0);
+    Models::visit(&mut visitor);
+    assert_eq!(visitor.0, 7);
 }
 
 /// At rest η is N/ω², which is what the reduction puts in its place: both models share their trims.
 #[test]
 fn the_stochastic_model_trims_where_the_deterministic_one_does() {
-    let full = trim(
-        &dcom_model(Canard::None),
-        &SteadyFlight::new(VELOCITY, ALTITUDE),
-    )
-    .expect("trims");
+    let full = trim(&dcom_model(Canard::None), &level::<dcom::Model<f64>>()).expect("trims");
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let reduced = trim(&model, &SteadyFlight::new(VELOCITY, ALTITUDE)).expect("the SDCOM trims");
+    let reduced = trim(&model, &level::<sdcom::Model<f64>>()).expect("the SDCOM trims");
     assert_abs_diff_eq!(reduced.state.alpha, full.state.alpha, epsilon = 1e-12);
     assert_abs_diff_eq!(reduced.input.phi, full.input.phi, epsilon = 1e-12);
     assert_abs_diff_eq!(reduced.input.delta_e, full.input.delta_e, epsilon = 1e-12);
@@ -172,7 +181,7 @@ fn the_stochastic_model_trims_where_the_deterministic_one_does() {
     );
 
     let model = sdcom_gust::Model::new(&sdcom::NOMINAL);
-    let gust = trim(&model, &SteadyFlight::new(VELOCITY, ALTITUDE)).expect("trims");
+    let gust = trim(&model, &level::<sdcom_gust::Model<f64>>()).expect("trims");
     assert_abs_diff_eq!(gust.state.alpha, full.state.alpha, epsilon = 1e-12);
     assert_eq!(gust.state.alpha_gust, 0.0);
 }
@@ -181,14 +190,14 @@ fn the_stochastic_model_trims_where_the_deterministic_one_does() {
 #[test]
 fn the_printed_form_trims_elsewhere() {
     let model = sdcom_printed::Model::new(&sdcom_printed::NOMINAL);
-    let trim = trim(&model, &SteadyFlight::new(VELOCITY, ALTITUDE)).expect("trims");
+    let trim = trim(&model, &level::<sdcom_printed::Model<f64>>()).expect("trims");
     assert!(trim.residual_max < 1e-9, "{trim:?}");
     assert!(trim.input.phi < 0.5 * 0.2821, "{trim:?}");
 }
 
 #[test]
 fn held_inputs_are_held() {
-    let mut flight = SteadyFlight::<dcom::Input<f64>>::new(VELOCITY, ALTITUDE);
+    let mut flight = level::<dcom::Model<f64>>();
     flight.input.delta_c = 0.05;
     let trim = trim(&dcom_model(Canard::Free), &flight).expect("the DCOM trims");
     assert_eq!(trim.input.delta_c, 0.05);
@@ -293,28 +302,30 @@ fn bisect([mut low, mut high]: [f64; 2], falling: impl Fn(f64) -> f64) -> f64 {
 /// A trim is found from the cold start exactly where there is one, and else the bound that blocks is told.
 ///
 /// `scanned` is a model with the same trims whose modes do not act on each other.
-fn trims_wherever_it_can<M, N, X, U>(name: &str, model: &M, scanned: &N, states: &X, inputs: &U)
+fn trims_wherever_it_can<M, N>(model: &M, scanned: &N)
 where
-    M: DifferentiableModel<Scalar = f64>,
+    M: GeneratedModel,
     N: DifferentiableModel<Scalar = f64>,
-    X: Vector<Bounds>,
-    U: Vector<Bounds>,
 {
-    let of = |name| {
-        X::index_of(name)
-            .and_then(|index| states.get(index))
-            .expect("a state")
-    };
+    fn of<V: Vector<Bounds>>(bounds: &V, name: &str) -> Bounds {
+        V::index_of(name)
+            .and_then(|index| bounds.get(index))
+            .expect("a component")
+    }
+
     let place = |bounds: Bounds, step| {
         let share = f64::from(step) / f64::from(GRID - 1);
         bounds.min + (bounds.max - bounds.min) * share
     };
+    let [over_velocity, over_altitude] =
+        ["velocity", "altitude"].map(|name| of(&M::STATE_BOUNDS, name));
+    let bounds = ["phi", "delta_e"].map(|name| of(&M::INPUT_BOUNDS, name));
     let mut found = 0;
     for (i, j) in (0..GRID).flat_map(|i| (0..GRID).map(move |j| (i, j))) {
-        let (velocity, altitude) = (place(of("velocity"), i), place(of("altitude"), j));
-        let flight = SteadyFlight::new(velocity, altitude).within(inputs);
-        let there = exists(scanned, velocity, altitude, flight.bounds);
-        let what = format!("{name} at {velocity} ft/s, {altitude} ft");
+        let (velocity, altitude) = (place(over_velocity, i), place(over_altitude, j));
+        let flight = at::<M>(velocity, altitude).within(&M::INPUT_BOUNDS);
+        let there = exists(scanned, velocity, altitude, bounds);
+        let what = format!("{} at {velocity} ft/s, {altitude} ft", M::NAME);
         match trim(model, &flight) {
             Ok(trim) => {
                 assert!(there, "{what}: a trim that the scan does not see");
@@ -336,50 +347,44 @@ where
                         .1
                 };
                 assert_eq!(at(blocking[0].input), blocking[0].bound, "{what}");
-                let [phi, delta_e] = beyond.expect("far from the bounds there is one");
-                let [fuel, elevator] = flight.bounds;
-                assert!(!fuel.contains(phi) || !elevator.contains(delta_e), "{what}");
+                let beyond = beyond.expect("far from the bounds there is one");
+                let mut outside = beyond.iter().zip(bounds);
+                assert!(
+                    outside.any(|((_, value), bounds)| !bounds.contains(*value)),
+                    "{what}"
+                );
             }
             Err(error) => panic!("{what}: {error}"),
         }
     }
-    assert!((100..=400).contains(&found), "{name}: {found}");
+    assert!((100..=400).contains(&found), "{}: {found}", M::NAME);
+}
+
+/// Level flight at this velocity and altitude.
+fn at<M: GeneratedModel>(velocity: f64, altitude: f64) -> SteadyState<M::Input> {
+    level::<M>()
+        .with("velocity", velocity)
+        .with("altitude", altitude)
 }
 
 #[test]
 fn the_com_trims_over_the_box_wherever_it_can() {
-    let (model, rigid) = (
-        com::Model::new(&com::NOMINAL),
-        com_rigid::Model::new(&com::NOMINAL),
-    );
-    trims_wherever_it_can(
-        "com",
-        &model,
-        &rigid,
-        &com::STATE_BOUNDS,
-        &com::INPUT_BOUNDS,
-    );
+    let rigid = com_rigid::Model::new(&com::NOMINAL);
+    trims_wherever_it_can(&com::Model::new(&com::NOMINAL), &rigid);
 }
 
 #[test]
 fn the_dcom_trims_over_the_box_wherever_it_can() {
-    let (states, inputs) = (&dcom::STATE_BOUNDS, &dcom::INPUT_BOUNDS);
     for canard in [Canard::None, Canard::Slaved] {
         let model = dcom_model(canard);
-        trims_wherever_it_can("dcom", &model, &model, states, inputs);
+        trims_wherever_it_can(&model, &model);
     }
 }
 
 #[test]
 fn the_sdcom_trims_over_the_box_wherever_it_can() {
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    trims_wherever_it_can(
-        "sdcom",
-        &model,
-        &model,
-        &sdcom::STATE_BOUNDS,
-        &sdcom::INPUT_BOUNDS,
-    );
+    trims_wherever_it_can(&model, &model);
 }
 
 /// The forces along and across the path of a point mass, recomputed from the table.
@@ -387,7 +392,7 @@ fn the_sdcom_trims_over_the_box_wherever_it_can() {
 fn a_climb_is_steady_with_the_weight_along_the_path() {
     let p = com::NOMINAL;
     for gamma in [-0.06_f64, 0.05] {
-        let flight = SteadyFlight::new(VELOCITY, ALTITUDE).climbing(gamma);
+        let flight = level::<com_rigid::Model<f64>>().with("gamma", gamma);
         let trim = trim(&com_rigid::Model::new(&p), &flight).expect("trims");
         assert_eq!(trim.state.gamma, gamma);
         assert!(trim.residual_max < 1e-9, "{trim:?}");
@@ -419,7 +424,7 @@ fn the_bound_that_blocks_is_told() {
         phi: Bounds::new(0.05, 0.2),
         ..com::INPUT_BOUNDS
     };
-    let flight = SteadyFlight::new(VELOCITY, ALTITUDE).within(&bounds);
+    let flight = level::<com_rigid::Model<f64>>().within(&bounds);
     let error = trim(&com_rigid::Model::new(&com::NOMINAL), &flight).expect_err("too little fuel");
     let nearest = error.nearest().expect("a nearest point");
     assert_eq!(nearest.input[0], ("phi", 0.2));
@@ -432,7 +437,9 @@ fn the_bound_that_blocks_is_told() {
         panic!("{error:?}");
     };
     assert_eq!(blocking[0].to_string(), "phi <= 0.2");
-    assert_abs_diff_eq!(beyond.expect("a trim")[0], 0.26809, epsilon = 6e-6);
+    let beyond = beyond.as_ref().expect("a trim");
+    assert_eq!(beyond[0].0, "phi");
+    assert_abs_diff_eq!(beyond[0].1, 0.26809, epsilon = 6e-6);
     assert!(
         error.to_string().contains("no trim inside phi <= 0.2"),
         "{error}"
@@ -446,7 +453,7 @@ fn all_violated_bounds_are_named() {
         phi: Bounds::new(0.05, 0.2),
         delta_e: Bounds::new(-0.2, 0.2),
     };
-    let flight = SteadyFlight::new(VELOCITY, ALTITUDE).within(&bounds);
+    let flight = level::<com_rigid::Model<f64>>().within(&bounds);
     let error = trim(&com_rigid::Model::new(&com::NOMINAL), &flight).expect_err("out of bounds");
     let TrimError::Blocked { blocking, .. } = &error else {
         panic!("{error:?}");
@@ -459,24 +466,28 @@ fn all_violated_bounds_are_named() {
 #[test]
 fn impossible_flight_is_a_typed_error() {
     let model = dcom_model(Canard::None);
-    let level = SteadyFlight::new(VELOCITY, ALTITUDE);
-    for (flight, quantity) in [
-        (SteadyFlight::new(0.0, ALTITUDE), "velocity"),
-        (SteadyFlight::new(-VELOCITY, ALTITUDE), "velocity"),
-        (SteadyFlight::new(f64::NAN, ALTITUDE), "velocity"),
-        (SteadyFlight::new(VELOCITY, f64::INFINITY), "altitude"),
-        (level.climbing(90.0_f64.to_radians()), "gamma"),
-        (level.climbing(-PI), "gamma"),
-        (level.climbing(f64::NAN), "gamma"),
+    for (name, value) in [
+        ("velocity", 0.0),
+        ("velocity", -VELOCITY),
+        ("velocity", f64::NAN),
+        ("altitude", f64::INFINITY),
+        ("gamma", 90.0_f64.to_radians()),
+        ("gamma", -PI),
+        ("gamma", f64::NAN),
     ] {
+        let flight = level::<dcom::Model<f64>>().with(name, value);
         let refused = trim(&model, &flight);
         assert!(
-            matches!(refused, Err(TrimError::Domain { name, .. }) if name == quantity),
+            matches!(refused, Err(TrimError::Domain { name: at_fault, .. }) if at_fault == name),
             "{refused:?}"
         );
     }
     // Too slow for the numbers of the machine: the row that fails has a name.
-    let slow = trim(&model, &SteadyFlight::new(1e-300, ALTITUDE)).expect_err("no flight");
+    let slow = trim(
+        &model,
+        &level::<dcom::Model<f64>>().with("velocity", 1e-300),
+    )
+    .expect_err("no flight");
     let nearest = slow.nearest().expect("a nearest point");
     assert_eq!(nearest.worst, "gamma");
     let text = slow.to_string();
@@ -484,12 +495,24 @@ fn impossible_flight_is_a_typed_error() {
         text.contains("the derivative of gamma is still -") && text.len() < 120,
         "{text}"
     );
-    let space = trim(&model, &SteadyFlight::new(VELOCITY, 1e6));
+    let high = level::<dcom::Model<f64>>().with("altitude", 1e6);
+    let space = trim(&model, &high);
     assert!(
         matches!(space, Err(TrimError::NoConvergence { .. })),
         "{space:?}"
     );
-    let bounded = SteadyFlight::new(VELOCITY, 1e6).within(&dcom::INPUT_BOUNDS);
-    let space = trim(&model, &bounded).expect_err("there is no air");
+    let space = trim(&model, &high.within(&dcom::INPUT_BOUNDS)).expect_err("there is no air");
     assert!(space.nearest().is_some(), "{space:?}");
+    // A name that is no given state, and a bound that is told.
+    let unknown = trim(&model, &level::<dcom::Model<f64>>().with("alpha", 0.0));
+    assert_eq!(unknown, Err(TrimError::MissingName { name: "alpha" }));
+    let steep = trim(&model, &level::<dcom::Model<f64>>().with("gamma", 2.0));
+    let half = 0.5 * PI;
+    let expected = TrimError::Domain {
+        name: "gamma",
+        value: 2.0,
+        above: -half,
+        below: half,
+    };
+    assert_eq!(steep, Err(expected));
 }

@@ -179,7 +179,7 @@ fn trajectories(finishes: &[Finish]) -> [Bar; 2] {
 }
 
 fn ensembles(finishes: &[Finish]) -> Vec<Bar> {
-    let [double, single, ..] = monte_carlo::SIDE_BY_SIDE;
+    let [double, single] = monte_carlo::SIDE_BY_SIDE;
     let ratio = |name| {
         let own = found(finishes, THREADS, name)?;
         // The first of all is what ratios are to.

@@ -1,6 +1,7 @@
 //! Weak error against time: the step of the splitting that is as accurate as Euler–Maruyama at 1 ms.
 
-use ahv_analysis::monte_carlo::{Experiment, Mode, Scheme, Sdcom};
+use ahv_analysis::monte_carlo::{Experiment, Mode, Scheme};
+use ahv_models::sdcom::Model;
 use rayon::ThreadPool;
 use serde::Serialize;
 
@@ -109,7 +110,7 @@ pub(crate) fn measure(rounds: u32) -> Result<Weak, String> {
     })
 }
 
-fn experiment_of(scheme: Scheme, dt: f64, seed: u64) -> Experiment<Sdcom> {
+fn experiment_of(scheme: Scheme, dt: f64, seed: u64) -> Experiment<Model<f64>> {
     Experiment {
         scheme,
         dt,
@@ -119,7 +120,10 @@ fn experiment_of(scheme: Scheme, dt: f64, seed: u64) -> Experiment<Sdcom> {
     }
 }
 
-fn moments_of(experiment: &Experiment<Sdcom>, threads: &ThreadPool) -> Result<Vec<f64>, String> {
+fn moments_of(
+    experiment: &Experiment<Model<f64>>,
+    threads: &ThreadPool,
+) -> Result<Vec<f64>, String> {
     let ends = fly(experiment, FLIGHTS, threads)?;
     Ok(moments::of_members::<STATES>(&ends))
 }

@@ -170,12 +170,9 @@ impl<F: GeneratedModel> Law<F> {
 #[cfg(test)]
 mod tests {
     use ahv_core::{Bounds, Vector};
+    use ahv_models::sdcom::{Input, Model, State};
 
     use super::{Actuator, Feedback, LANES, Packed, Real};
-    use crate::monte_carlo::{Family, Sdcom};
-
-    type State<T> = <Sdcom as Family>::State<T>;
-    type Input<T> = <Sdcom as Family>::Input<T>;
 
     /// A member that flies on from step 40 sees the reference of step 40.
     #[test]
@@ -187,7 +184,7 @@ mod tests {
         };
         let mut gain: Input<State<f64>> = Vector::splat(Vector::splat(0.0));
         gain.delta_e.altitude = 1e-3;
-        let feedback = Feedback::<Sdcom> {
+        let feedback = Feedback::<Model<f64>> {
             state: State::splat(0.0),
             rate: State {
                 altitude: 134.0,

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use super::experiment::{Control, Experiment, Seen};
 use super::lanes::LANES;
-use super::propagator::{Propagator, propagator};
+use super::propagator::Propagator;
 use super::spread::{Bin, QUANTILES, Spread};
 use super::{Loss, MonteCarloError};
 use crate::ordered::in_order;
@@ -131,7 +131,7 @@ impl<F: GeneratedModel> Experiment<F> {
             .build()
             .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
         let started = Instant::now();
-        let propagator = propagator(self)?;
+        let propagator = self.propagator()?;
         let mut collector = Collector::<F>::new(self);
         let mut next = 0;
         while next < members {
@@ -165,7 +165,7 @@ impl<F: GeneratedModel> Experiment<F> {
             snapshots: (0..=self.steps()).step_by(stride.max(1) as usize).collect(),
             ..self.clone()
         };
-        let propagator = propagator(&alone)?;
+        let propagator = alone.propagator()?;
         let seen = propagator.fly(&[member], &Control::default())?;
         let at = seen.into_iter().flatten().next().map(|seen| seen.at);
         let timed = alone.snapshots.iter().zip(at.unwrap_or_default());

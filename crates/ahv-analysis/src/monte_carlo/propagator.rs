@@ -50,31 +50,31 @@ pub trait Propagator<F: GeneratedModel>: Send + Sync {
     ) -> Result<Option<Vec<Passed<F>>>, MonteCarloError>;
 }
 
-/// The propagator of an experiment's members, with the scheme that it asks for.
-///
-/// # Errors
-///
-/// [`MonteCarloError::Scheme`] for a scheme that is not for this model's noise, [`MonteCarloError::StepSize`],
-/// [`MonteCarloError::Normals`].
-pub(super) fn propagator<F: GeneratedModel>(
-    experiment: &Experiment<F>,
-) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError> {
-    match experiment.scheme {
-        Scheme::Splitting => {
-            F::coloured(BySplitting(experiment)).unwrap_or(Err(MonteCarloError::Scheme {
-                scheme: Scheme::Splitting.name(),
-                reason: NoiseError::ColouredStates {
-                    expected: 1,
-                    found: 0,
-                },
-            }))
+impl<F: GeneratedModel> Experiment<F> {
+    /// The propagator of the members, with the scheme that is asked for.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError::Scheme`] for a scheme that is not for this model's noise, [`MonteCarloError::StepSize`],
+    /// [`MonteCarloError::Normals`].
+    pub fn propagator(&self) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError> {
+        match self.scheme {
+            Scheme::Splitting => {
+                F::coloured(BySplitting(self)).unwrap_or(Err(MonteCarloError::Scheme {
+                    scheme: Scheme::Splitting.name(),
+                    reason: NoiseError::ColouredStates {
+                        expected: 1,
+                        found: 0,
+                    },
+                }))
+            }
+            Scheme::Heun => side_by_side::<F, Heun>(self),
+            Scheme::EulerMaruyama => side_by_side::<F, EulerMaruyama>(self),
+            Scheme::StratonovichHeun => one_by_one::<F, InStratonovichSense>(self),
+            Scheme::Milstein => one_by_one::<F, Milstein>(self),
+            Scheme::Sra1 => one_by_one::<F, Sra1>(self),
+            Scheme::Dri1 => one_by_one::<F, Dri1>(self),
         }
-        Scheme::Heun => side_by_side::<F, Heun>(experiment),
-        Scheme::EulerMaruyama => side_by_side::<F, EulerMaruyama>(experiment),
-        Scheme::StratonovichHeun => one_by_one::<F, InStratonovichSense>(experiment),
-        Scheme::Milstein => one_by_one::<F, Milstein>(experiment),
-        Scheme::Sra1 => one_by_one::<F, Sra1>(experiment),
-        Scheme::Dri1 => one_by_one::<F, Dri1>(experiment),
     }
 }
 

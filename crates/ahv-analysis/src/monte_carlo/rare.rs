@@ -17,7 +17,7 @@ pub(super) use passage::{Goal, Particle, Passage, Passed, pass};
 use super::MonteCarloError;
 use super::experiment::{Control, Experiment};
 use super::lanes::LANES;
-use super::propagator::{Propagator, propagator};
+use super::propagator::Propagator;
 use crate::statistics::{Estimate, Z_95, mean_and_std, student_95};
 
 /// Fewest repetitions: from there on, Student's quantile is right to four digits.
@@ -173,7 +173,7 @@ impl<F: GeneratedModel> Experiment<F> {
             .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
         let mut search = Search {
             experiment: self,
-            propagator: propagator(self)?,
+            propagator: self.propagator()?,
             event,
             control,
             goal: event.goal(self),

@@ -1,6 +1,6 @@
 //! The product's ways to do it. A row more is a [`Runner`] more in [`runners`].
 
-use ahv_analysis::monte_carlo::{Control, Experiment, Flown as _, LANES, Mode, Scheme, Sdcom};
+use ahv_analysis::monte_carlo::{Control, Experiment, LANES, Mode, Scheme};
 use ahv_core::Vector as _;
 use ahv_integrate::{ItoEulerMaruyama, WienerSource};
 use ahv_models::sdcom::{Input, Model, Noise, State};
@@ -8,7 +8,6 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::{DT, Flight, MEMBERS, STATES, STEPS, UNITS};
-use crate::lanes::has_fma;
 use crate::moments;
 use crate::race::Runner;
 use crate::threads::pool;
@@ -16,23 +15,10 @@ use crate::threads::pool;
 /// One member after the other.
 const PRODUCT: &str = "ahv, `ItoEulerMaruyama`";
 /// Members side by side, in each mode.
-pub(crate) const SIDE_BY_SIDE: [&str; 4] = [
-    "ahv, 8 lanes",
-    "ahv, 8 lanes, f32-noise",
-    "ahv, 8 lanes, f32-drift",
-    "ahv, 8 lanes, fma",
-];
-const MODES: [(Mode, &str); 4] = [
+pub(crate) const SIDE_BY_SIDE: [&str; 2] = ["ahv, 8 lanes", "ahv, 8 lanes, f32-noise"];
+const MODES: [(Mode, &str); 2] = [
     (Mode::Exact, "8 members side by side, f64"),
     (Mode::F32Noise, "the same, normal numbers in f32"),
-    (
-        Mode::F32Drift,
-        "the same, and drift and noise in f32, state in f64",
-    ),
-    (
-        Mode::Fma,
-        "8 members side by side, f64, with a fused multiply-add",
-    ),
 ];
 
 /// All of them on this number of threads.
@@ -53,17 +39,15 @@ pub(crate) fn runners(flight: Flight, threads: usize) -> Result<Vec<Runner<'stat
     let run = move |seed| scalar(seed, &checked);
     let mut runners = vec![Runner::new(PRODUCT, how, UNITS, run, values)];
     for (name, (mode, how)) in SIDE_BY_SIDE.into_iter().zip(MODES) {
-        if mode != Mode::Fma || has_fma() {
-            let (experiment, pool) = (experiment(&flight, mode), pool_of()?);
-            let run = move |seed| side_by_side(&experiment, seed, &pool);
-            runners.push(Runner::new(name, how, UNITS, run, values));
-        }
+        let (experiment, pool) = (experiment(&flight, mode), pool_of()?);
+        let run = move |seed| side_by_side(&experiment, seed, &pool);
+        runners.push(Runner::new(name, how, UNITS, run, values));
     }
     Ok(runners)
 }
 
 /// What members fly from a start at held inputs, by the method of the peers, with nothing watched.
-pub(crate) fn experiment(flight: &Flight, mode: Mode) -> Experiment<Sdcom> {
+pub(crate) fn experiment(flight: &Flight, mode: Mode) -> Experiment<Model<f64>> {
     Experiment {
         parameters: flight.parameters,
         dispersion: None,
@@ -81,12 +65,14 @@ pub(crate) fn experiment(flight: &Flight, mode: Mode) -> Experiment<Sdcom> {
 
 /// The ends of members, [`LANES`] at a time.
 pub(crate) fn fly(
-    experiment: &Experiment<Sdcom>,
+    experiment: &Experiment<Model<f64>>,
     members: u64,
     pool: &ThreadPool,
 ) -> Result<Vec<[f64; STATES]>, String> {
     let control = Control::default();
-    let propagator = Sdcom::propagator(experiment).map_err(|it| format!("error: {it}"))?;
+    let propagator = experiment
+        .propagator()
+        .map_err(|it| format!("error: {it}"))?;
     let batch = |first: u64| {
         let first = first * LANES as u64;
         let numbers: Vec<u64> = (first..members.min(first + LANES as u64)).collect();
@@ -106,7 +92,7 @@ pub(crate) fn fly(
 }
 
 fn side_by_side(
-    experiment: &Experiment<Sdcom>,
+    experiment: &Experiment<Model<f64>>,
     seed: u64,
     pool: &ThreadPool,
 ) -> Result<Vec<[f64; STATES]>, String> {
