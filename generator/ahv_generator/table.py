@@ -32,6 +32,9 @@ _ENTRY_KEYS = ("value", "unit", "source", "status", "uncertainty")
 _BOX_KEYS = ("min", "max", "unit")
 _MODELS = tuple(model for family in FAMILIES for model in family)
 CHOICES = "choices"
+# Flexible modes of a DCOM: a number has one digit.
+MOST_MODES = 9
+_MANY_MODES = re.compile(r"(?:C_)?N_[0-9]+")
 
 _SET_NAME = re.compile(r"[a-z][a-z0-9._-]*")
 _SET_LETTERS = "lower-case letters, digits, `.`, `_`, `-`"
@@ -116,7 +119,10 @@ class _Reader:
         known = ("table", "sources", CHOICES, "validity", "sets", *self.known)
         for section in self.document:
             if section not in known:
-                self.faults.key((section,), f"unknown section `{section}`", suggestion(section, known))
+                message, advice = f"unknown section `{section}`", suggestion(section, known)
+                if _MANY_MODES.fullmatch(section):
+                    message, advice = f"`{section}`: flexible modes are numbered from 1 to {MOST_MODES}", None
+                self.faults.key((section,), message, advice)
         parameters: list[Parameter] = []
         for section, specs in schema.parameters.items():
             parameters += self._parameters(section, specs)
@@ -151,8 +157,6 @@ class _Reader:
         if not (isinstance(name, str) and name.isidentifier() and name == name.lower()) or name == _AUDIT:
             message = f"`name` must be a lower-case identifier other than `{_AUDIT}`"
             self.faults.value(("table", "name"), message)
-        elif name == "audit":
-            self.faults.value(("table", "name"), "`audit` is the name of the paper's audit; choose another")
         system = self.header.get("units", units.IMPERIAL)
         if system not in units.SYSTEMS:
             help_line = suggestion(str(system), units.SYSTEMS)
@@ -183,7 +187,7 @@ class _Reader:
             return com_schema(models)
         if set(models) & set(MODE_FAMILY):
             return mode_schema()
-        numbered = [int(s[4:]) for s in self.document if re.fullmatch(r"C_N_[1-9]", s)]
+        numbered = [int(s[4:]) for s in self.document if re.fullmatch(rf"C_N_[1-{MOST_MODES}]", s)]
         return dcom_schema(models, max(numbered, default=1))
 
     def _entry(self, path: tuple[str, ...], expected: str) -> tuple[float, Mapping[str, object]] | None:

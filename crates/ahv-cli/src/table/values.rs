@@ -314,6 +314,34 @@ fn coefficient(quantity: &str, key: &str) -> Option<String> {
     ))
 }
 
+/// The key of a monomial, of what its coefficient's name has after the quantity: `phi*alpha^3` of `phi_alpha_3`.
+fn monomial(suffix: &str) -> String {
+    if suffix == "0" {
+        return "1".to_owned();
+    }
+    let (mut factors, mut rest) = (Vec::new(), suffix);
+    while !rest.is_empty() {
+        let eta = rest
+            .strip_prefix("eta_")
+            .and_then(|after| after.split('_').next());
+        let eta = eta.map(|number| "eta_".len() + number.len());
+        let known = VARIABLES.iter().find(|name| rest.starts_with(**name));
+        let Some(length) = eta.or(known.map(|name| name.len())) else {
+            return suffix.to_owned();
+        };
+        let (name, after) = rest.split_at(length);
+        rest = after.trim_start_matches('_');
+        let digits = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let (exponent, after) = rest.split_at(digits);
+        rest = after.trim_start_matches('_');
+        factors.push(match exponent {
+            "" => name.to_owned(),
+            exponent => format!("{name}^{exponent}"),
+        });
+    }
+    factors.join("*")
+}
+
 /// What to say of an entry that the models have no parameter for.
 fn unknown<P: Vector<f64>>(section: &str, key: &str) -> String {
     if let Some((_, names)) = PARAMETERS.iter().find(|(own, _)| *own == section) {
@@ -325,12 +353,17 @@ fn unknown<P: Vector<f64>>(section: &str, key: &str) -> String {
         return names::unknown("parameter", key, &known);
     }
     let quantity = format!("{}_", section.to_lowercase());
-    let known: Vec<&str> = P::NAMES
+    let suffixes = P::NAMES
         .iter()
-        .filter_map(|name| name.strip_prefix(quantity.as_str()))
-        .collect();
+        .filter_map(|name| name.strip_prefix(quantity.as_str()));
+    let known: Vec<String> = suffixes.map(monomial).collect();
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let problem = match known.as_slice() {
         [] => format!("the models have no quantity `{section}`"),
+        _ if key == "0" => format!(
+            "unknown monomial `0`; the constant part has the key `1`. Known: {}",
+            known.join(", ")
+        ),
         known => names::unknown("monomial", key, known),
     };
     format!(
