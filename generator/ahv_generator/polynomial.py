@@ -41,7 +41,9 @@ def parse_monomial(key: str, allowed: Iterable[str]) -> Powers:
         if match is None:
             message = f"`{shortened(key)}` is not a monomial; write it like `alpha`, `alpha^2` or `phi*alpha^3`"
             if re.fullmatch(r"[A-Za-z]\w*\^[0-9]+", part.strip(" ")):
-                message = f"`{shortened(key)}`: an exponent is a number from 1 to {HIGHEST_DEGREE}, without zeros before it"
+                message = (
+                    f"`{shortened(key)}`: an exponent is a number from 1 to {HIGHEST_DEGREE}, without zeros before it"
+                )
             elif key == "0":
                 message = "`0` is not a monomial; the constant part of a quantity has the key `1`"
             raise MonomialError(message)

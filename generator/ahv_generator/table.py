@@ -34,7 +34,7 @@ _MODELS = tuple(model for family in FAMILIES for model in family)
 CHOICES = "choices"
 # Flexible modes of a DCOM: a number has one digit.
 MOST_MODES = 9
-_MANY_MODES = re.compile(r"(?:C_)?N_[0-9]+")
+_OTHER_MODES = re.compile(r"C_N_(?:0[0-9]*|[1-9][0-9]+)")
 
 _SET_NAME = re.compile(r"[a-z][a-z0-9._-]*")
 _SET_LETTERS = "lower-case letters, digits, `.`, `_`, `-`"
@@ -119,10 +119,10 @@ class _Reader:
         known = ("table", "sources", CHOICES, "validity", "sets", *self.known)
         for section in self.document:
             if section not in known:
-                message, advice = f"unknown section `{section}`", suggestion(section, known)
-                if _MANY_MODES.fullmatch(section):
-                    message, advice = f"`{section}`: flexible modes are numbered from 1 to {MOST_MODES}", None
-                self.faults.key((section,), message, advice)
+                if _OTHER_MODES.fullmatch(section) and "C_N_1" in known:
+                    self.faults.key((section,), f"`{section}`: flexible modes are numbered from 1 to {MOST_MODES}")
+                else:
+                    self.faults.key((section,), f"unknown section `{section}`", suggestion(section, known))
         parameters: list[Parameter] = []
         for section, specs in schema.parameters.items():
             parameters += self._parameters(section, specs)
