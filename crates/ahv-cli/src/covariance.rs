@@ -102,6 +102,8 @@ struct Outcome<'a, M: GeneratedModel> {
     vehicle: &'a Vehicle<M>,
     arguments: &'a Arguments,
     place: String,
+    /// State and input of the trim.
+    start: (M::State, M::Input),
     scheme: Scheme,
     linear: Vec<Spreading<M::State>>,
     /// Members that were flown.
@@ -186,6 +188,7 @@ fn spread<M: GeneratedModel>(arguments: &Arguments, scheme: Scheme) -> Result<()
         members,
         sampled,
         place: vehicle.at(&steady),
+        start: (trim.state, trim.input),
         scheme,
         vehicle: &vehicle,
         arguments,

@@ -20,7 +20,7 @@ use crate::number::{self, Shown};
 use crate::progress::Progress;
 use crate::signals::Stoppable;
 use crate::steps::allowed;
-use crate::vehicle::{Vehicle, VehicleArgs};
+use crate::vehicle::{PointJson, Vehicle, VehicleArgs};
 
 /// Most steps of a member: some hours.
 const MOST_STEPS: f64 = 1e12;
@@ -191,6 +191,12 @@ impl<M: GeneratedModel> Ready<M> {
     /// End of the flights, in s.
     pub(crate) fn duration(&self) -> f64 {
         self.time(self.experiment.steps())
+    }
+
+    /// Where the flights start.
+    pub(crate) fn point(&self) -> PointJson {
+        let Experiment { state, input, .. } = &self.experiment;
+        self.vehicle.point(&state[0], &input[0])
     }
 
     /// Time after so many steps, in s.

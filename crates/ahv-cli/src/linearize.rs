@@ -5,24 +5,25 @@ mod mat;
 use std::path::{Path, PathBuf};
 
 use ahv_analysis::linearize::{LinearSystem, LinearizeError, with_outputs};
-use ahv_analysis::trim::{SteadyState, Trim};
-use ahv_core::{GeneratedModel, Vector};
+use ahv_analysis::trim::SteadyState;
+use ahv_core::{GeneratedModel, Model, Vector};
 use clap::Args;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
+use crate::assignment::Assignments;
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
 use crate::flight_condition::FlightCondition;
 use crate::named::Named;
 use crate::names;
 use crate::number::{Shown, cell};
-use crate::output::{self, Pairs};
+use crate::output::{self, Pairs, describe};
 use crate::vehicle::{Heading, Vehicle, VehicleArgs};
 
-/// Linearises a model about its trim: dx/dt = A x + B u, y = C x + D u.
+/// Linearises a model about its trim, or a given state: dx/dt = A x + B u, y = C x + D u.
 ///
-/// Derivatives are the generated ones, exact to rounding. States, inputs and outputs are deviations from the trim, in the
+/// Derivatives are the generated ones, exact to rounding. States, inputs and outputs are deviations from that point, in the
 /// units of the model, angles in rad.
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -31,6 +32,11 @@ pub(crate) struct Arguments {
 
     #[command(flatten)]
     condition: FlightCondition,
+
+    /// A state that is no trim, e.g. velocity=7702ft/s,alpha=1.5deg, in the place of that of a trim; what is not given is as the
+    /// flight condition has it, or 0. Inputs are then those of --input, and all others 0
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    state: Vec<String>,
 
     /// Inputs, in their order in u [default: those of the model's path]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
@@ -55,32 +61,60 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim.
 pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    about_trim::<M>(arguments, &arguments.vehicle.vehicle()?)
+    about_point::<M>(arguments, &arguments.vehicle.vehicle()?)
 }
 
-fn about_trim<M: GeneratedModel>(
+fn about_point<M: GeneratedModel>(
     arguments: &Arguments,
     vehicle: &Vehicle<M>,
 ) -> Result<(), Failure> {
-    let flight = arguments.condition.flight(vehicle)?;
-    let trim = vehicle.trim(&flight)?;
-    let system = vehicle.linear(
-        (&trim.state, &trim.input),
-        &arguments.inputs,
-        &arguments.outputs,
-    )?;
+    let (flight, point) = match arguments.state.as_slice() {
+        [] => {
+            let flight = arguments.condition.flight(vehicle)?;
+            let trim = vehicle.trim(&flight)?;
+            (flight, (trim.state, trim.input))
+        }
+        texts => given(arguments, vehicle, texts)?,
+    };
+    let system = vehicle.linear((&point.0, &point.1), &arguments.inputs, &arguments.outputs)?;
+    let json = json(vehicle, &flight, &point, &system);
     if let Some(path) = &arguments.out {
-        write(
-            path,
-            vehicle,
-            &system,
-            &json(vehicle, &flight, &trim, &system),
-        )?;
+        write(path, vehicle, &system, &json)?;
     }
     match arguments.json {
-        true => output::print_json(&json(vehicle, &flight, &trim, &system)),
-        false => print(&text(vehicle, &flight, &system)),
+        true => output::print_json(&json),
+        false => print(&text(vehicle, &point, &system)),
     }
+}
+
+/// A steady state that is asked for, and a state with an input.
+type At<M> = (
+    SteadyState<<M as Model>::Input>,
+    (<M as Model>::State, <M as Model>::Input),
+);
+
+/// The state that is given, which is no trim.
+fn given<M: GeneratedModel>(
+    arguments: &Arguments,
+    vehicle: &Vehicle<M>,
+    texts: &[String],
+) -> Result<At<M>, Failure> {
+    let (mut flight, inputs) = arguments.condition.flight_and_inputs(vehicle)?;
+    let states = Assignments::parse::<M::State>("--state", texts, vehicle.units)?;
+    let (mut state, mut input) = (M::State::splat(0.0), M::Input::splat(0.0));
+    for (name, value) in flight.given().collect::<Vec<_>>() {
+        let value = states.get::<M::State>(name).unwrap_or(value);
+        flight = flight.with(name, value);
+        if let Some(index) = M::State::index_of(name) {
+            state.set(index, value);
+        }
+    }
+    states.apply(&mut state, &[]);
+    inputs.apply(&mut input, &[]);
+    vehicle
+        .moves(&state)
+        .map_err(|why| Failure::Request(format!("--state: {why}")))?;
+    Ok((flight, (state, input)))
 }
 
 impl<M: GeneratedModel> Vehicle<M> {
@@ -143,6 +177,7 @@ struct Json<'a> {
     units: Pairs<&'static str>,
     state: Pairs<f64>,
     input: Pairs<f64>,
+    output_values: Pairs<f64>,
     #[serde(rename = "A")]
     a: Vec<Vec<f64>>,
     #[serde(rename = "B")]
@@ -156,18 +191,20 @@ struct Json<'a> {
 fn json<'a, M: GeneratedModel>(
     vehicle: &'a Vehicle<M>,
     flight: &SteadyState<M::Input>,
-    trim: &Trim<M::State, M::Input>,
+    (state, input): &(M::State, M::Input),
     system: &'a LinearSystem,
 ) -> Json<'a> {
+    let point = vehicle.point(state, input);
     Json {
         heading: vehicle.heading(),
         condition: Named::given::<M>(flight),
         states: &system.states,
         inputs: &system.inputs,
         outputs: &system.outputs,
-        units: Pairs::units_of_both::<M::State, M::Input>(vehicle.units),
-        state: Pairs::of(&trim.state),
-        input: Pairs::of(&trim.input),
+        units: point.units,
+        state: point.state,
+        input: point.input,
+        output_values: point.outputs,
         a: rows(&system.a),
         b: rows(&system.b),
         c: rows(&system.c),
@@ -247,7 +284,7 @@ fn csv<M: GeneratedModel>(
 
 fn text<M: GeneratedModel>(
     vehicle: &Vehicle<M>,
-    flight: &SteadyState<M::Input>,
+    (state, input): &(M::State, M::Input),
     system: &LinearSystem,
 ) -> String {
     let LinearSystem {
@@ -269,10 +306,11 @@ fn text<M: GeneratedModel>(
         .map(|(name, matrix, rows, columns)| format!("\n{name}\n{}", block(matrix, rows, columns)))
         .concat();
     format!(
-        "{}: linear system, {}\n{}{matrices}",
+        "{}: linear system, {}\nabout\n{}\n{}{matrices}",
         M::NAME,
-        vehicle.at(flight),
-        vehicle.described()
+        vehicle.described(),
+        describe(state, vehicle.units),
+        describe(input, vehicle.units)
     )
 }
 

@@ -16,7 +16,7 @@ use crate::csv_file::CsvFile;
 use crate::failure::{Failure, print};
 use crate::flight_condition::FlightCondition;
 use crate::number::{Shown, cell};
-use crate::output;
+use crate::output::{self, Pairs};
 use crate::vehicle::{Heading, Vehicle, VehicleArgs};
 
 /// Poles of a model about its trim, with their modes, and zeros from inputs to outputs.
@@ -61,6 +61,8 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
 struct Roots<'a, M: GeneratedModel> {
     vehicle: &'a Vehicle<M>,
     place: String,
+    state: M::State,
+    input: M::Input,
     inputs: Vec<&'static str>,
     outputs: Vec<&'static str>,
     poles: Vec<Pole>,
@@ -74,6 +76,10 @@ struct Json<'a> {
     #[serde(flatten)]
     heading: Heading<'a>,
     place: &'a str,
+    state: Pairs<f64>,
+    input: Pairs<f64>,
+    output_values: Pairs<f64>,
+    units: Pairs<&'static str>,
     poles: Vec<[f64; 2]>,
     zeros: Vec<[f64; 2]>,
     modes: Vec<JsonMode>,
@@ -125,6 +131,8 @@ fn about_trim<M: GeneratedModel>(
         idle: idle.map(|(&input, _)| input).collect(),
         vehicle,
         place: vehicle.at(&flight),
+        state: trim.state,
+        input: trim.input,
         poles: poles(&system, M::MODES).map_err(failed)?,
         zeros: zeros(&system).map_err(failed)?,
         inputs: system.inputs,
@@ -220,9 +228,14 @@ impl<M: GeneratedModel> Roots<'_, M> {
             frequency: frequency(zero.value),
             decoupling: decoupling(zero),
         });
+        let point = self.vehicle.point(&self.state, &self.input);
         Json {
             heading: self.vehicle.heading(),
             place: &self.place,
+            state: point.state,
+            input: point.input,
+            output_values: point.outputs,
+            units: point.units,
             poles: self.poles.iter().map(|it| pair(it.value)).collect(),
             zeros: self.zeros.finite.iter().map(|it| pair(it.value)).collect(),
             modes: modes.collect(),

@@ -153,10 +153,10 @@ pub(crate) struct Heading<'a> {
 /// A point of a flight, by name.
 #[derive(Serialize)]
 pub(crate) struct PointJson {
-    state: Pairs<f64>,
-    input: Pairs<f64>,
-    outputs: Pairs<f64>,
-    units: Pairs<&'static str>,
+    pub(crate) state: Pairs<f64>,
+    pub(crate) input: Pairs<f64>,
+    pub(crate) outputs: Pairs<f64>,
+    pub(crate) units: Pairs<&'static str>,
 }
 
 /// What a table says of a model, in the units that the model was generated with.

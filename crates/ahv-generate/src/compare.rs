@@ -186,7 +186,7 @@ pub(crate) fn checked_in_irs(
             OnDisk::Missing => missing.push(Difference::without_text(path, Status::Missing)),
         }
     }
-    // Whether there must be an audit the emitter knows.
+    // A manifest that lists one tells whether it is missing.
     if let OnDisk::Text(text) = read(&out.join(ir_path(AUDIT)))? {
         irs.insert(AUDIT.to_owned(), text);
     }

@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::number::{Shown, cell, time};
 use crate::output::Pairs;
 use crate::signals::interrupted;
-use crate::vehicle::Heading;
+use crate::vehicle::{Heading, PointJson};
 
 /// Of the times, every so many is printed.
 const STRIDE: usize = 5;
@@ -26,7 +26,9 @@ const STRIDE: usize = 5;
 pub(super) struct Json<'a> {
     #[serde(flatten)]
     heading: Heading<'a>,
-    units: Pairs<&'static str>,
+    /// Where the flights start.
+    #[serde(flatten)]
+    point: PointJson,
     members: u64,
     /// Whether all members were flown.
     complete: bool,
@@ -177,7 +179,7 @@ impl<M: GeneratedModel> Outcome<'_, M> {
         let stationary = self.stationary_std();
         Json {
             heading: self.vehicle.heading(),
-            units: Pairs::units::<M::State>(self.vehicle.units),
+            point: self.vehicle.point(&self.start.0, &self.start.1),
             members: self.members,
             complete: self.is_complete(),
             seed: self.arguments.seed,

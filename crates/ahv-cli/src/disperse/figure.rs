@@ -21,7 +21,7 @@ const ZEROS: (Colour, Colour) = (Colour::Orange, Colour::Vermillion);
 /// Members whose roots are drawn, at most: more hide each other.
 const DRAWN: usize = 400;
 
-/// Inputs and flexible deflection over the angle of attack, a dot a member.
+/// What people look at of a trim over the first of it, a dot a member.
 pub(super) fn trim<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
     let quantities = &outcome.nominal.quantities;
     let place = |name: &str| {
@@ -29,8 +29,9 @@ pub(super) fn trim<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String
             .iter()
             .position(|it| it.kind == Kind::Trim && it.name == name)
     };
-    let panels = ["delta_e", "phi", "eta_1"].into_iter().filter_map(|name| {
-        let (x, y) = (place("alpha")?, place(name)?);
+    let shown = M::TRIM.shown;
+    let panels = shown.iter().skip(1).take(3).filter_map(|name| {
+        let (x, y) = (place(shown.first()?)?, place(name)?);
         Some(scatter(outcome, x, y))
     });
     Figure::new(outcome.mark(), 3, panels.collect()).svg()

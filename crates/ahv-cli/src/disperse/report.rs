@@ -18,12 +18,15 @@ use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::number::{Shown, cell};
 use crate::output::Pairs;
-use crate::vehicle::Heading;
+use crate::vehicle::{Heading, PointJson};
 
 #[derive(Serialize)]
 pub(super) struct Json<'a> {
     #[serde(flatten)]
     heading: Heading<'a>,
+    /// The trim of the vehicle about which is drawn.
+    #[serde(flatten)]
+    point: PointJson,
     distribution: Distribution,
     seed: u64,
     members: usize,
@@ -109,6 +112,10 @@ impl<M: GeneratedModel> Outcome<'_, M> {
         };
         Json {
             heading: self.vehicle.heading(),
+            point: {
+                let trim = &self.nominal.solution.trim;
+                self.vehicle.point(&trim.state, &trim.input)
+            },
             distribution: self.draws.distribution(),
             seed: self.arguments.seed,
             members: self.members.len(),
@@ -276,7 +283,8 @@ impl<M: GeneratedModel> Outcome<'_, M> {
         let values = self.nominal.values();
         let quantities = || self.nominal.quantities.iter().enumerate();
         let trim = quantities().filter(|(_, it)| {
-            it.kind == Kind::Trim && ["alpha", "phi", "delta_e"].contains(&it.name.as_str())
+            let numbered = it.name.ends_with(|last: char| last.is_ascii_digit());
+            it.kind == Kind::Trim && !numbered
         });
         let rightmost = |kind: Kind| {
             let real = quantities().filter(|(_, it)| it.kind == kind && it.part == Part::Real);

@@ -12,7 +12,7 @@ use crate::assignment::{interval, show};
 use crate::flights::Settings;
 use crate::number::{self, Shown};
 use crate::output::Pairs;
-use crate::vehicle::Heading;
+use crate::vehicle::{Heading, PointJson};
 
 /// How many times as large as that of the others a standard deviation is that a few members make.
 const SWAMPED: f64 = 3.0;
@@ -22,7 +22,9 @@ const SWAMPED: f64 = 3.0;
 pub(super) struct Json<'a> {
     #[serde(flatten)]
     heading: Heading<'a>,
-    units: Pairs<&'static str>,
+    /// Where the flights start.
+    #[serde(flatten)]
+    point: PointJson,
     members: u64,
     asked: u64,
     complete: bool,
@@ -88,7 +90,7 @@ impl<M: GeneratedModel> Told<'_, M> {
         };
         Json {
             heading: self.ready.vehicle.heading(),
-            units: Pairs::units::<M::State>(self.ready.vehicle.units),
+            point: self.ready.point(),
             members: outcome.members,
             asked: outcome.asked,
             complete: self.is_complete(),

@@ -65,11 +65,7 @@ impl<M: GeneratedModel> Flight<'_, M> {
         drop(progress);
         table.finish()?;
         let report = Report {
-            model: M::NAME,
-            set: &vehicle.set,
-            choices: &vehicle.choices,
-            condition: vehicle.described(),
-            units: vehicle.units,
+            vehicle,
             grid,
             seed: self.seed,
             initial_state: start,

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use ahv_core::{Outside, Vector};
+use ahv_core::{GeneratedModel, Outside};
 use ahv_integrate::TimeGrid;
 use serde::Serialize;
 
 use crate::failure::{Failure, complain, print};
 use crate::number::Shown;
 use crate::output::{self, Pairs, describe, describe_outside};
-use crate::units::Units;
+use crate::vehicle::{Heading, PointJson, Vehicle};
 
 /// The first departure from the validity box.
 #[derive(Clone, Copy)]
@@ -19,18 +19,13 @@ pub(super) struct Departure {
 }
 
 /// A finished simulation.
-pub(super) struct Report<'a, X, U> {
-    pub(super) model: &'static str,
-    pub(super) set: &'a str,
-    pub(super) choices: &'a [(&'static str, Option<&'static str>)],
-    /// Set and choices for a person.
-    pub(super) condition: String,
-    pub(super) units: Units,
+pub(super) struct Report<'a, M: GeneratedModel> {
+    pub(super) vehicle: &'a Vehicle<M>,
     pub(super) grid: &'a TimeGrid,
     pub(super) seed: Option<u64>,
-    pub(super) initial_state: X,
-    pub(super) final_state: X,
-    pub(super) input: U,
+    pub(super) initial_state: M::State,
+    pub(super) final_state: M::State,
+    pub(super) input: M::Input,
     pub(super) out: &'a Path,
     pub(super) departure: Option<Departure>,
     pub(super) input_outside: Option<Outside>,
@@ -38,18 +33,17 @@ pub(super) struct Report<'a, X, U> {
 
 #[derive(Serialize)]
 struct Json<'a> {
-    model: &'static str,
-    set: &'a str,
-    choices: Pairs<Option<&'static str>>,
-    unit_system: &'static str,
+    #[serde(flatten)]
+    heading: Heading<'a>,
+    /// Where the run ends.
+    #[serde(flatten)]
+    point: PointJson,
     steps: u32,
     t_end: f64,
     dt: f64,
     seed: Option<u64>,
     initial_state: Pairs<f64>,
     final_state: Pairs<f64>,
-    input: Pairs<f64>,
-    units: Pairs<&'static str>,
     out: String,
     left_validity_box: Option<JsonDeparture>,
     input_outside_validity_box: Option<JsonInput>,
@@ -68,7 +62,7 @@ struct JsonInput {
     value: f64,
 }
 
-impl<X: Vector<f64>, U: Vector<f64>> Report<'_, X, U> {
+impl<M: GeneratedModel> Report<'_, M> {
     /// Warns of departures from the validity box, then tells the outcome on stdout.
     ///
     /// # Errors
@@ -76,13 +70,15 @@ impl<X: Vector<f64>, U: Vector<f64>> Report<'_, X, U> {
     /// [`Failure::Request`] if stdout cannot be written.
     pub(super) fn tell(&self, json: bool) -> Result<(), Failure> {
         if let Some(outside) = &self.input_outside {
-            let place = describe_outside(outside, self.units.label::<U>(outside.name));
+            let place =
+                describe_outside(outside, self.vehicle.units.label::<M::Input>(outside.name));
             complain(&format!(
                 "warning: the input {place}; the model is not valid there"
             ));
         }
         if let Some(Departure { time, outside }) = &self.departure {
-            let place = describe_outside(outside, self.units.label::<X>(outside.name));
+            let place =
+                describe_outside(outside, self.vehicle.units.label::<M::State>(outside.name));
             complain(&format!(
                 "warning: at {time} s {place}; the model is not valid from there on"
             ));
@@ -92,18 +88,14 @@ impl<X: Vector<f64>, U: Vector<f64>> Report<'_, X, U> {
 
     fn json(&self) -> Result<String, Failure> {
         let json = Json {
-            model: self.model,
-            set: self.set,
-            choices: Pairs(self.choices.to_vec()),
-            unit_system: self.units.name(),
+            heading: self.vehicle.heading(),
+            point: self.vehicle.point(&self.final_state, &self.input),
             steps: self.grid.steps(),
             t_end: self.grid.end(),
             dt: self.grid.dt(),
             seed: self.seed,
             initial_state: Pairs::of(&self.initial_state),
             final_state: Pairs::of(&self.final_state),
-            input: Pairs::of(&self.input),
-            units: Pairs::units_of_both::<X, U>(self.units),
             out: self.out.display().to_string(),
             left_validity_box: self
                 .departure
@@ -128,11 +120,11 @@ impl<X: Vector<f64>, U: Vector<f64>> Report<'_, X, U> {
         let plural = if steps == 1 { "step" } else { "steps" };
         format!(
             "{}: {steps} {plural} of {dt} s to {t_end} s{seed}, written to {}\n{}\nheld:\n{}\nat the end:\n{}",
-            self.model,
+            M::NAME,
             self.out.display(),
-            self.condition,
-            describe(&self.input, self.units),
-            describe(&self.final_state, self.units)
+            self.vehicle.described(),
+            describe(&self.input, self.vehicle.units),
+            describe(&self.final_state, self.vehicle.units)
         )
     }
 }
