@@ -54,6 +54,9 @@ _PAIRS = {"ft": "m", "slug": "kg", "lb": "N"}
 _WORDS = {IMPERIAL: {si: ft for ft, si in _PAIRS.items()}, SI: _PAIRS}
 _SIZES = {"ft": _FOOT, "lb": _POUND_FORCE, "slug": _POUND_FORCE / _FOOT}
 
+# Of a unit; no equation has so many. pint adds up what it reads one call inside the other.
+_MOST_FACTORS = 32
+
 _KNOWN = "ft, slug, lb, m, kg, N, s, rad, deg"
 
 Dimensions = dict[str, float]
@@ -81,6 +84,9 @@ def _parse(text: str) -> pint.Unit:
     if not _GRAMMAR.fullmatch(text):
         example = "written like `slug/ft^3` or `(ft*slug)^0.5/s`"
         raise UnitError(f"`{shortened(text)}` is not a unit; known are {_KNOWN}, {example}")
+    factors = 1 + len(re.findall("[*/]", text))
+    if factors > _MOST_FACTORS:
+        raise UnitError(f"`{shortened(text)}` has too many factors, {factors}; there may be {_MOST_FACTORS}")
     return _REGISTRY.parse_units(text)
 
 

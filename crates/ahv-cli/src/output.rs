@@ -228,7 +228,7 @@ pub fn json(value: &impl Serialize) -> Result<String, Failure> {
 ///
 /// # Errors
 ///
-/// As [`json`] and [`print`].
+/// As [`json`] and [`print()`].
 pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     print(&json(value)?)
 }

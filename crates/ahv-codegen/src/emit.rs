@@ -172,7 +172,12 @@ pub fn emit(
         options,
         version: env!("CARGO_PKG_VERSION"),
     };
-    tree.insert("Cargo.toml".to_owned(), render(&cargo)? + "\n");
+    let cargo = render(&cargo)? + "\n";
+    check_package(&options.package, &cargo)?;
+    for subject in &subjects {
+        check_sets(subject, &tree)?;
+    }
+    tree.insert("Cargo.toml".to_owned(), cargo);
     let mut manifest = manifest(tables, irs, &options.passes);
     // The IRs are listed already.
     let files = tree
@@ -320,6 +325,59 @@ fn check_names(model: &Model) -> Result<(), EmitError> {
                 "the basis `{basis}` of model `{}` holds a name twice",
                 model.name
             )));
+        }
+    }
+    Ok(())
+}
+
+/// Crates that every Rust program has.
+const OWN_CRATES: [&str; 5] = ["alloc", "core", "proc_macro", "std", "test"];
+
+/// The package's name must be one for a crate, and none of those that its manifest takes in.
+fn check_package(package: &str, cargo: &str) -> Result<(), EmitError> {
+    let in_code = |name: &str| name.replace('-', "_");
+    let name = in_code(package);
+    let refused = |why: &str| {
+        let message =
+            format!("the package cannot be called `{package}`: {why}; choose another name");
+        Err(EmitError::Mismatch(message))
+    };
+    if syn::parse_str::<syn::Ident>(&name).is_err() {
+        return refused("Rust has a word of its own like that");
+    }
+    let document = cargo.parse::<toml_edit::DocumentMut>();
+    let document = document.map_err(|error| EmitError::Manifest(error.to_string()))?;
+    let dependencies = document
+        .get("dependencies")
+        .and_then(|it| it.as_table_like());
+    let mut dependencies = dependencies.into_iter().flat_map(|it| it.iter());
+    if dependencies.any(|(dependency, _)| in_code(dependency) == name) {
+        return refused("it needs a package of that name itself");
+    }
+    if OWN_CRATES.contains(&name.as_str()) {
+        return refused("Rust has a crate of that name");
+    }
+    Ok(())
+}
+
+/// A set is a constant beside those that the models have anyway, whichever they are: all are in the tree by now.
+fn check_sets(subject: &Subject<'_>, tree: &Tree) -> Result<(), EmitError> {
+    let models = &subject.document.models;
+    let own = |path: &str| {
+        let mut modules = models.iter().map(|model| format!("src/{}/", model.name));
+        modules.any(|module| path.starts_with(&module))
+    };
+    for set in subject.document.sets.iter().skip(1) {
+        for constant in home::constants(&set.name) {
+            let definition = format!("\npub const {constant}:");
+            let files = tree.iter().filter(|(path, _)| own(path));
+            if files.filter(|(_, text)| text.contains(&definition)).count() > 1 {
+                return Err(EmitError::Mismatch(format!(
+                    "the set `{}` of {} would become the constant {constant}, which the models have already; choose another \
+                     name",
+                    set.name, subject.table.file_name
+                )));
+            }
         }
     }
     Ok(())

@@ -139,10 +139,7 @@ pub(crate) fn shared(document: &Document) -> Vec<String> {
     .map(str::to_owned)
     .into();
     for set in document.sets.iter().skip(1) {
-        names.extend([
-            constant(&set.name),
-            format!("{}_PROVENANCE", constant(&set.name)),
-        ]);
+        names.extend(constants(&set.name));
     }
     names.extend(
         document
@@ -237,6 +234,13 @@ fn choice(choice: &Choice) -> ChoiceText {
         type_name: choice.type_name.clone(),
         options: options.collect(),
     }
+}
+
+/// The constants that a set becomes: its values, and where they come from.
+pub(crate) fn constants(set: &str) -> [String; 2] {
+    let values = constant(set);
+    let provenance = format!("{values}_PROVENANCE");
+    [values, provenance]
 }
 
 /// The name of a set as a constant: `section5.3` becomes `SECTION5_3`.

@@ -409,3 +409,53 @@ fn a_path_with_quotes_and_backslashes_is_a_toml_string() {
         Some("C:\\new\\x\"y")
     );
 }
+
+/// A name is refused by what it is in Rust or in the package, whichever name that is.
+#[test]
+fn names_that_would_not_compile_are_refused() {
+    let packaged = |package: &str| {
+        let options = Options {
+            package: package.to_owned(),
+            ..Options::default()
+        };
+        emit(&[table("flexible_mode")], &irs(), &options)
+    };
+    for (package, why) in [
+        ("fn", "Rust has a word of its own"),
+        ("self", "Rust has a word of its own"),
+        ("ahv-core", "it needs a package of that name itself"),
+        ("ahv_core", "it needs a package of that name itself"),
+        ("nalgebra", "it needs a package of that name itself"),
+        ("std", "Rust has a crate of that name"),
+    ] {
+        let message = packaged(package).unwrap_err().to_string();
+        assert!(
+            message.contains(why) && message.contains(&format!("`{package}`")),
+            "{message}"
+        );
+    }
+    assert!(packaged("my-models2").is_ok());
+}
+
+#[test]
+fn a_set_does_not_take_the_name_of_what_the_models_have() {
+    let renamed = |name: &str| {
+        let mut irs = irs();
+        let quoted = |name: &str| format!("\"{name}\"");
+        let ir = irs["dcom"].replace(&quoted("section5.3"), &quoted(name));
+        irs.insert("dcom".to_owned(), ir);
+        let text = fs::read_to_string(root().join("generator/tables/dcom.toml")).unwrap();
+        let text = text.replace("[sets.\"section5.3\"", &format!("[sets.\"{name}\""));
+        let table = Table::parse("dcom.toml", &text).unwrap();
+        emit(&[table], &irs, &Options::default())
+    };
+    for name in ["hessian-pattern", "diffusion.pattern", "noise_class"] {
+        let message = renamed(name).unwrap_err().to_string();
+        let words = "which the models have already; choose another name";
+        assert!(
+            message.contains(name) && message.contains(words),
+            "{message}"
+        );
+    }
+    assert!(renamed("heavy").is_ok());
+}

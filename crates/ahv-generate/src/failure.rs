@@ -5,7 +5,9 @@ use std::io::{self, IsTerminal as _};
 use std::ops::Range;
 use std::path::Path;
 
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, NamedSource, SourceSpan};
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, SourceSpan};
+
+use crate::excerpt::Excerpt;
 
 /// Something that a table may not say, with the place where it says so.
 #[derive(Debug, thiserror::Error, Diagnostic)]
@@ -16,7 +18,7 @@ pub struct TableFault {
     #[help]
     help: Option<String>,
     #[source_code]
-    table: NamedSource<String>,
+    table: Excerpt,
     #[label]
     span: SourceSpan,
 }
@@ -32,11 +34,12 @@ impl TableFault {
         // An empty table has no text to point at.
         let end = span.end.min(text.len());
         let start = span.start.min(end);
+        let table = Excerpt::new(file, &visible(text), start..end);
         Self {
             message: message.into(),
             help,
-            table: NamedSource::new(file, visible(text)),
-            span: (start..end).into(),
+            span: table.span.clone().into(),
+            table,
         }
     }
 }

@@ -7,6 +7,7 @@
 mod args;
 mod compare;
 mod derive;
+mod excerpt;
 mod failure;
 mod files;
 mod interrupt;
@@ -123,12 +124,9 @@ pub fn check(args: &Args, surroundings: &Surroundings) -> Result<Checked, Failur
         let (tree, owners, _) = derive_and_emit(args, surroundings, &project)?;
         (compare::differences(&project.out, &tree)?, owners)
     };
-    Ok(Checked::new(
-        &project,
-        differences,
-        &owners,
-        args.mending_command(&project),
-    ))
+    // A command that would refuse is no advice.
+    let mending = write::check(&project, &differences).map(|()| args.mending_command(&project));
+    Ok(Checked::new(&project, differences, &owners, mending))
 }
 
 fn derive_and_emit(

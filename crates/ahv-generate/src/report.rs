@@ -8,6 +8,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::compare::{Difference, Status};
+use crate::failure::Failure;
 use crate::project::Project;
 use crate::tables::Tables;
 
@@ -150,7 +151,8 @@ pub struct Checked {
     /// One a difference: the table that the file comes from.
     tables: Vec<String>,
     places: (String, String),
-    command: String,
+    /// The command that brings the tree up to date, or why none does.
+    mending: Result<String, Failure>,
 }
 
 impl Checked {
@@ -158,7 +160,7 @@ impl Checked {
         project: &Project,
         differences: Vec<Difference>,
         owners: &Owners,
-        command: String,
+        mending: Result<String, Failure>,
     ) -> Self {
         let places = (project.shown(&project.out), project.shown(&project.tables));
         let all = format!("a table in {}", places.1);
@@ -172,7 +174,7 @@ impl Checked {
             differences: shown(project, differences),
             tables,
             places,
-            command,
+            mending,
         }
     }
 
@@ -211,17 +213,22 @@ impl Checked {
             1 => ("1 file differs".to_owned(), "it"),
             count => (format!("{count} files differ"), "them"),
         };
-        let _ = match kept {
-            0 => writeln!(
-                text,
-                "{count}. To bring {it} up to date, run:  {}",
-                self.command
-            ),
+        let _ = match (kept, &self.mending) {
             _ if kept == total => writeln!(text, "{count}. Move {it} away: {KEPT_BY_HAND}"),
-            _ => writeln!(
+            (_, Err(failure)) => {
+                let why = failure.to_string();
+                let why = why.strip_prefix("error: ").unwrap_or(&why);
+                writeln!(
+                    text,
+                    "{count}, and no command brings {it} up to date: {why}"
+                )
+            }
+            (0, Ok(command)) => {
+                writeln!(text, "{count}. To bring {it} up to date, run:  {command}")
+            }
+            (_, Ok(command)) => writeln!(
                 text,
-                "{count}. Move the stray files away ({KEPT_BY_HAND}), and run:  {}",
-                self.command
+                "{count}. Move the stray files away ({KEPT_BY_HAND}), and run:  {command}"
             ),
         };
         text
@@ -241,7 +248,8 @@ impl Checked {
         let value = json!({
             "agree": self.agrees(),
             "differing": differing.collect::<Vec<_>>(),
-            "command": self.command,
+            "command": self.mending.as_ref().ok(),
+            "obstacle": self.mending.as_ref().err().map(Failure::to_string),
         });
         format!("{value:#}\n")
     }

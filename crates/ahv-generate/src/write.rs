@@ -19,14 +19,26 @@ const IR_MARK: &str = "\"schema_version\"";
 /// Writes what differs or is missing, and removes what ahv wrote and no table gives any more.
 pub(crate) fn apply(project: &Project, differences: &[Difference]) -> Result<(), Failure> {
     let out = &project.out;
-    refuse_foreign(project, differences)?;
+    check(project, differences)?;
     let changes = || differences.iter().filter(|it| it.kept.is_none());
-    refuse_links(project, changes())?;
     Transaction::stage(out, changes())?.commit()?;
     for stray in changes().filter(|it| it.status == Status::Stray) {
         remove_emptied(out, &out.join(&stray.path));
     }
     Ok(())
+}
+
+/// Whether the tree may be brought up to date.
+///
+/// # Errors
+/// What is in the way, and what to do about it.
+pub(crate) fn check(project: &Project, differences: &[Difference]) -> Result<(), Failure> {
+    if project.out.exists() && !project.out.is_dir() {
+        let message = format!("{} is not a folder", project.shown(&project.out));
+        return Err(Failure::new(message).with_help("name another folder with --out"));
+    }
+    refuse_foreign(project, differences)?;
+    refuse_links(project, differences.iter().filter(|it| it.kept.is_none()))
 }
 
 /// Nothing is overwritten that may be somebody's own: a manifest of ahv must list the file, or the file must

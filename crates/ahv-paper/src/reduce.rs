@@ -149,7 +149,7 @@ pub struct ReducedMode {
 
 /// The modes of (36) with σ = 100, as section 5.1 has them.
 pub fn section_5_1() -> [Mode; 3] {
-    SETS.map(|(_, set)| Mode {
+    SETS.map(|set| set.parameters).map(|set| Mode {
         omega: set.omega,
         zeta: set.zeta,
         sigma: set.sigma,

@@ -20,6 +20,9 @@ const KNOWN: [(&str, [f64; 4], f64); 9] = [
     ("deg", [0.0, 0.0, 0.0, 1.0], Unit::DEGREE),
 ];
 
+/// Of one unit, as the generator has it.
+const MOST_FACTORS: usize = 32;
+
 const FOOT: f64 = 0.3048;
 
 /// The force that gives 0.45359237 kg standard gravity, in N.
@@ -39,6 +42,9 @@ impl Unit {
     /// Reads `slug/ft^3`, `(ft*slug)^0.5/s`, `1/rad`; `None` if it is no unit. The grammar is that of the generator:
     /// brackets hold names alone, so that no text is too deep.
     pub(super) fn parse(text: &str) -> Option<Self> {
+        if text.matches(['*', '/']).count() >= MOST_FACTORS {
+            return None;
+        }
         let mut rest = text;
         let unit = product(&mut rest, power)?;
         rest.is_empty().then_some(unit)

@@ -26,6 +26,34 @@ fn text_that_is_not_toml() {
     );
 }
 
+/// A line that nobody could read is cut about the place; line and column are those of the whole.
+#[test]
+fn a_line_without_end_is_cut() {
+    let scratch = Scratch::new();
+    let long = format!("[C_L] # {}", "x".repeat(1_000_000));
+    scratch.edit(COM, "[C_L]", &long);
+    let comment = format!(
+        "\"alpha\" = {{ unit = \"{}\", unit = 1 }} # ",
+        "y".repeat(1_000_000)
+    );
+    scratch.edit(COM, "\"alpha\" = {", &format!("{comment}{{"));
+    let message = scratch.refusal();
+    assert!(
+        message.len() < 2000 && message.contains("yyy...") | message.contains("...yyy"),
+        "{message}"
+    );
+    let column = comment.find("unit = 1").expect("there") + 1;
+    let lines = scratch.read(COM);
+    let line = 1 + lines
+        .lines()
+        .position(|line| line.starts_with("\"alpha\" = { unit"))
+        .expect("there");
+    assert!(
+        message.contains(&format!("com.toml:{line}:{column}]")),
+        "{message}"
+    );
+}
+
 #[test]
 fn an_entry_that_stands_twice() {
     let scratch = Scratch::new();

@@ -50,6 +50,40 @@ fn the_manifest_of_another_program_gives_no_leave() {
     }
 }
 
+/// A check gives no advice that would be refused.
+#[test]
+fn a_check_among_files_of_others_says_what_is_in_the_way() {
+    let scratch = Scratch::small();
+    fs::create_dir_all(scratch.path("ext")).expect("made");
+    scratch.write("ext/manifest.json", "{ \"manifest_version\": 3 }\n");
+    scratch.write("file", "Mine.\n");
+    for (out, why) in [
+        (
+            "ext",
+            "ext/manifest.json was not generated, and would be lost",
+        ),
+        ("file", "file is not a folder"),
+    ] {
+        let refused = scratch.generate(&["--out", out]).err().expect("refused");
+        assert!(refused.to_string().contains(why), "{refused}");
+        let checked = scratch.check(&["--out", out]).expect("checked");
+        let text = checked.text();
+        assert!(
+            text.contains("no command brings them up to date") && text.contains(why),
+            "{text}"
+        );
+        assert!(text.contains("name another folder with --out"), "{text}");
+        assert!(!text.contains("run:  "), "{text}");
+        let json: serde_json::Value = serde_json::from_str(&checked.json()).expect("JSON");
+        assert!(json["command"].is_null());
+        assert!(
+            json["obstacle"].as_str().is_some_and(|it| it.contains(why)),
+            "{json}"
+        );
+    }
+    assert_eq!(scratch.read("file"), "Mine.\n");
+}
+
 #[test]
 fn a_table_that_went_takes_its_files_along() {
     let scratch = Scratch::small();

@@ -1,10 +1,9 @@
 //! Tables 2 and 3, and Fig. 6: trims, poles and zeros of COM, DCOM and SDCOM.
 
-use ahv_analysis::linearize::{PATH_INPUTS, PATH_OUTPUTS, linearize};
-use ahv_analysis::parametric::Parametric;
-use ahv_analysis::poles::{Mode, Pole, poles, zeros};
-use ahv_analysis::trim::{SteadyFlight, Trim, trim};
-use ahv_core::Vector;
+use ahv_analysis::linearize::linearize;
+use ahv_analysis::poles::{Pole, poles, zeros};
+use ahv_analysis::trim::{SteadyState, Trim, trim};
+use ahv_core::{GeneratedModel, Vector};
 use ahv_models::dcom::{Canard, Earth};
 use ahv_models::{com, com_rigid, dcom, sdcom};
 
@@ -80,27 +79,29 @@ pub fn vehicles() -> Vec<Vehicle> {
             canard: canard.map(Canard::name),
             earth: earth.name(),
         };
-        let [(set, parameters), ..] = com::SETS;
-        let parameters = parameters.with_earth(of_com);
-        let rigid = com_rigid::Model::with_parameters(&parameters);
-        vehicles.push(vehicle(condition("com_rigid", set, None), &rigid));
-        let model = com::Model::with_parameters(&parameters);
-        vehicles.push(vehicle(condition("com", set, None), &model));
-        for (set, parameters) in dcom::SETS {
+        let [own, ..] = com::SETS;
+        let (set, parameters) = (own.name, own.parameters.with_earth(of_com));
+        let rigid = condition("com_rigid", set, None);
+        vehicles.push(vehicle::<com_rigid::Model<f64>>(rigid, &parameters));
+        let flexible = condition("com", set, None);
+        vehicles.push(vehicle::<com::Model<f64>>(flexible, &parameters));
+        for set in dcom::SETS {
             for canard in [Canard::None, Canard::Slaved] {
-                let parameters = parameters.with_earth(earth).with_canard(canard);
-                let model = dcom::Model::with_parameters(&parameters);
-                vehicles.push(vehicle(condition("dcom", set, Some(canard)), &model));
-                let model = sdcom::Model::with_parameters(&parameters);
-                vehicles.push(vehicle(condition("sdcom", set, Some(canard)), &model));
+                let parameters = set.parameters.with_earth(earth).with_canard(canard);
+                let of = |model| condition(model, set.name, Some(canard));
+                vehicles.push(vehicle::<dcom::Model<f64>>(of("dcom"), &parameters));
+                vehicles.push(vehicle::<sdcom::Model<f64>>(of("sdcom"), &parameters));
             }
         }
     }
     vehicles
 }
 
-fn vehicle<M: Parametric>(condition: Condition, model: &M) -> Vehicle {
-    let flight = SteadyFlight::new(TABLE_2.velocity, TABLE_2.altitude);
+fn vehicle<M: GeneratedModel>(condition: Condition, parameters: &M::ParametersOf<f64>) -> Vehicle {
+    let flight = SteadyState::new(&M::TRIM)
+        .with("velocity", TABLE_2.velocity)
+        .with("altitude", TABLE_2.altitude);
+    let model = &M::with_parameters(parameters);
     let mut vehicle = Vehicle {
         condition,
         trim: None,
@@ -113,7 +114,7 @@ fn vehicle<M: Parametric>(condition: Condition, model: &M) -> Vehicle {
             alpha_deg: named(&trim.state, "alpha").to_degrees(),
             phi: named(&trim.input, "phi"),
             delta_e_deg: named(&trim.input, "delta_e").to_degrees(),
-            eta: model.deflections(&trim.state, &trim.input),
+            eta: deflections::<M>(parameters, &trim),
             residual_max: trim.residual_max,
         });
         roots_at(model, &trim)
@@ -125,10 +126,19 @@ fn vehicle<M: Parametric>(condition: Condition, model: &M) -> Vehicle {
     vehicle
 }
 
-fn roots_at<M: Parametric>(model: &M, trim: &Trim<M::State, M::Input>) -> Result<Roots, String> {
-    let system = linearize(model, &trim.state, &trim.input, &PATH_INPUTS, &PATH_OUTPUTS);
+fn roots_at<M: GeneratedModel>(
+    model: &M,
+    trim: &Trim<M::State, M::Input>,
+) -> Result<Roots, String> {
+    let system = linearize(
+        model,
+        &trim.state,
+        &trim.input,
+        M::DEFAULT_INPUTS,
+        M::DEFAULT_OUTPUTS,
+    );
     let system = system.map_err(|error| error.to_string())?;
-    let poles = poles(&system).map_err(|error| error.to_string())?;
+    let poles = poles(&system, M::MODES).map_err(|error| error.to_string())?;
     let zeros = zeros(&system).map_err(|error| error.to_string())?;
     let pole_kinds: Vec<Kind> = poles.iter().map(kind_of_pole).collect();
     let poles: Vec<Root> = poles
@@ -164,12 +174,27 @@ fn roots_at<M: Parametric>(model: &M, trim: &Trim<M::State, M::Input>) -> Result
 }
 
 fn kind_of_pole(pole: &Pole) -> Kind {
+    let is = |name: &str| pole.mode.is_some_and(|mode| mode.starts_with(name));
     match pole.mode {
-        Some(Mode::Flexible(_)) => Kind::Flexible,
-        Some(Mode::ColouredNoise(_) | Mode::Gust) => Kind::Noise,
-        Some(Mode::ShortPeriod | Mode::Phugoid | Mode::Height) => Kind::Rigid,
         None => Kind::of_place([pole.value.re, pole.value.im]),
+        _ if is("flexible") => Kind::Flexible,
+        _ if is("coloured noise") || is("gust") => Kind::Noise,
+        _ => Kind::Rigid,
     }
+}
+
+/// The deflections of the flexible modes: states, or what follows the rigid body.
+fn deflections<M: GeneratedModel>(
+    parameters: &M::ParametersOf<f64>,
+    trim: &Trim<M::State, M::Input>,
+) -> Vec<f64> {
+    let outputs = M::outputs(&M::generic(parameters), &trim.state, &trim.input);
+    let value = |name: &&str| {
+        let state = M::State::index_of(name).and_then(|index| trim.state.get(index));
+        state.or_else(|| outputs.get(M::OutputsOf::<f64>::index_of(name)?))
+    };
+    let names = M::TRIM.shown.iter().filter(|name| name.starts_with("eta_"));
+    names.filter_map(value).collect()
 }
 
 /// A component that every vehicle has.

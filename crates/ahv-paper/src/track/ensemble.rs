@@ -5,8 +5,8 @@ use std::sync::atomic::Ordering;
 use ahv_analysis::actuator::{Actuator, Limits};
 use ahv_analysis::monte_carlo::Control;
 use ahv_analysis::ordered::in_order;
-use ahv_analysis::trim::{SteadyFlight, Trim, TrimError, trim};
-use ahv_core::{Bounds, Outside, first_outside};
+use ahv_analysis::trim::{SteadyState, Trim, TrimError, trim};
+use ahv_core::{GeneratedModel, Outside, first_outside};
 use ahv_integrate::WienerSource;
 use ahv_models::dcom::{self, INPUT_BOUNDS, Parameters, STATE_BOUNDS};
 use ahv_models::sdcom;
@@ -158,7 +158,7 @@ impl Trial {
     /// [`TrackError`]
     pub fn linear(&self) -> Result<LinearTracker, TrackError> {
         let model = sdcom::Model::new(&self.believed);
-        let at = trim(&model, &self.level(&sdcom::INPUT_BOUNDS))?;
+        let at = trim(&model, &self.level::<sdcom::Model<f64>>())?;
         Ok(LinearTracker::new(&model, &at.state, &at.input)?)
     }
 
@@ -172,7 +172,7 @@ impl Trial {
         model: &'a dcom::Model<f64>,
         controller: &'a C,
     ) -> Result<(ClosedLoop<'a, C>, LoopState<C::Memory>), TrackError> {
-        let Trim { state, input, .. } = trim(model, &self.level(&INPUT_BOUNDS))?;
+        let Trim { state, input, .. } = trim(model, &self.level::<dcom::Model<f64>>())?;
         let closed = ClosedLoop {
             model,
             actuators: self.actuators,
@@ -207,12 +207,12 @@ impl Trial {
         })
     }
 
-    fn level<U, B>(&self, bounds: &B) -> SteadyFlight<U>
-    where
-        U: ahv_core::Vector<f64>,
-        B: ahv_core::Vector<Bounds>,
-    {
-        SteadyFlight::new(self.manoeuvre.velocity.from, self.manoeuvre.altitude.from).within(bounds)
+    /// Level flight where the manoeuvre starts.
+    fn level<M: GeneratedModel>(&self) -> SteadyState<M::Input> {
+        SteadyState::new(&M::TRIM)
+            .with("velocity", self.manoeuvre.velocity.from)
+            .with("altitude", self.manoeuvre.altitude.from)
+            .within(&M::INPUT_BOUNDS)
     }
 
     fn member<C: Controller>(

@@ -2,6 +2,7 @@
 
 use ahv_analysis::linearize::{LinearizeError, linearize};
 use ahv_analysis::lqr::{LqrError, Regulator, bryson, deviations};
+use ahv_core::GeneratedModel;
 use ahv_models::sdcom::{Input, Model, State};
 use nalgebra::{Matrix4, SMatrix, Vector4};
 
@@ -58,8 +59,8 @@ impl LinearTracker {
         u: &Input<f64>,
     ) -> Result<Self, LinearTrackerError> {
         let system = linearize(model, x, u, &INPUTS, &[])?;
-        let efforts = deviations::<Input<f64>>();
-        let q = bryson(&deviations::<State<f64>>().to_array());
+        let efforts = deviations::<Input<f64>>(Model::<f64>::DEVIATIONS);
+        let q = bryson(&deviations::<State<f64>>(Model::<f64>::DEVIATIONS).to_array());
         let r = bryson(&[efforts.phi, efforts.delta_e]);
         let regulator = Regulator::new(&system.a, &system.b, &q, &r)?;
         let (by_state, by_input) = (&system.a, &system.b);

@@ -212,7 +212,7 @@ fn a_table_in_si_is_the_same_vehicle() {
 
 #[test]
 fn faults_are_told_with_their_place() {
-    let bad: [(&str, &str, &str, &[&str]); 14] = [
+    let bad: [(&str, &str, &str, &[&str]); 15] = [
         (
             "com.toml",
             "\"alpha\" = { value = 4.6773",
@@ -231,6 +231,17 @@ fn faults_are_told_with_their_place() {
                 "unknown monomial `alpha^4`",
                 "generated without it",
                 "ahv generate",
+            ],
+        ),
+        // Keys are listed as tables write them.
+        (
+            "com.toml",
+            "[T]\n",
+            "[T]\n\"0\" = { value = 1.0, unit = \"lb/ft\" }\n",
+            &[
+                "unknown monomial `0`; the constant part has the key `1`. Known: ",
+                "phi*alpha^3",
+                ", 1. The models",
             ],
         ),
         (
