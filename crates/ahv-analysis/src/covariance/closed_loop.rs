@@ -135,7 +135,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
     /// [`CovarianceError::NotAtRest`], [`CovarianceError::UndampedMode`] for a mode that does not decay, those of [`lyapunov`].
     pub fn stationary<M>(&self, model: &M) -> Result<DMatrix<f64>, CovarianceError>
     where
-        M: GeneratedModel + DifferentiableModel<State = X, Input = U>,
+        M: GeneratedModel<StateOf<f64> = X, InputOf<f64> = U>,
     {
         self.stationary_among(model, M::MODES)
     }
