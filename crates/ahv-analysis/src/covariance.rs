@@ -81,7 +81,7 @@ pub enum CovarianceError {
     #[error("there is no stationary covariance: the {mode} mode has the pole {:+.6} {:+.6}i 1/s, which does not decay", Shown(*real), Shown(*imaginary))]
     UndampedMode {
         /// The mode.
-        mode: String,
+        mode: &'static str,
         /// Real part of its pole, in 1/s.
         real: f64,
         /// Imaginary part, in rad/s.

@@ -230,6 +230,7 @@ fn outputs_without_a_function_are_their_closed_form() {
     assert_eq!(theta.0, 6);
     let p = flexible_mode::NOMINAL;
     let (x, u) = (Vector::splat(0.3), flexible_mode::Input { force: 7.0 });
-    let eta = GeneratedModel::outputs(&flexible_mode::Model::new(&p), &x, &u).eta_static;
+    let model = flexible_mode::Model::new(&p);
+    let eta = <flexible_mode::Model<f64> as GeneratedModel>::outputs(&model, &x, &u).eta_static;
     assert!((eta - 7.0 / (p.omega * p.omega)).abs() <= 1e-16);
 }

@@ -1,6 +1,6 @@
 //! A flight and its linear closed loop: state and inputs together, with the root of their covariance.
 
-use ahv_core::{DifferentiableModel, StochasticModel, Vector};
+use ahv_core::{DifferentiableModel, GeneratedModel, ModeOfMotion, StochasticModel, Vector};
 use ahv_integrate::LinearTransition;
 use nalgebra::{DMatrix, DVector};
 
@@ -135,6 +135,22 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
     /// [`CovarianceError::NotAtRest`], [`CovarianceError::UndampedMode`] for a mode that does not decay, those of [`lyapunov`].
     pub fn stationary<M>(&self, model: &M) -> Result<DMatrix<f64>, CovarianceError>
     where
+        M: GeneratedModel<StateOf<f64> = X, InputOf<f64> = U>,
+    {
+        self.stationary_among(model, M::MODES)
+    }
+
+    /// As [`Self::stationary`], of a model with these modes.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::stationary`].
+    pub fn stationary_among<M>(
+        &self,
+        model: &M,
+        modes: &[ModeOfMotion],
+    ) -> Result<DMatrix<f64>, CovarianceError>
+    where
         M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
     {
         let z = self.joint();
@@ -162,14 +178,13 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
             d: DMatrix::zeros(0, 0),
         };
         check("A", &system.a, moved.len())?;
-        let poles = poles(&system, &[])?;
+        let poles = poles(&system, modes)?;
         let rightmost = poles
             .iter()
             .max_by(|p, q| p.value.re.total_cmp(&q.value.re));
         if let Some(pole) = rightmost.filter(|pole| pole.value.re >= 0.0) {
-            let mode = pole.mode.map(|mode| mode.to_string());
             return Err(CovarianceError::UndampedMode {
-                mode: mode.unwrap_or_else(|| "actuator".to_owned()),
+                mode: pole.mode.unwrap_or("actuator"),
                 real: pole.value.re,
                 imaginary: pole.value.im,
             });

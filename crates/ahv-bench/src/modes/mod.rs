@@ -35,7 +35,7 @@ pub(crate) type Sums = [[f64; 4]; STEPS];
 
 /// The parameters of the three modes.
 pub(crate) fn parameters() -> [Parameters<f64>; MODES] {
-    SETS.map(|(_, parameters)| parameters)
+    SETS.map(|set| set.parameters)
 }
 
 /// What the equations of the peers hold, as the generated functions answer to units.
