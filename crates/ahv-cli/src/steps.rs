@@ -15,11 +15,13 @@ pub fn allowed(t_end: f64, dt: f64, steps: f64, most: f64) -> Result<u64, Failur
     if (1.0..=most).contains(&steps) {
         return Ok(steps as u64);
     }
-    let advice = if steps < 1.0 { "smaller" } else { "larger" };
+    let (made, advice) = match steps < 1.0 {
+        true => (Shown(steps).to_string(), "smaller"),
+        false => (format!("{:.3e}", Shown(steps)), "larger"),
+    };
     Err(Failure::Request(format!(
-        "--t-end {} with --dt {} makes {} steps; 1 to {most:e} are allowed, so take a {advice} --dt",
+        "--t-end {} with --dt {} makes {made} steps; 1 to {most:e} are allowed, so take a {advice} --dt",
         Shown(t_end),
         Shown(dt),
-        Shown(steps)
     )))
 }

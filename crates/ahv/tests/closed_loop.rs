@@ -242,13 +242,13 @@ fn gains_of_another_vehicle_or_flight_are_refused() {
         ),
         (
             &["--velocity", "7800"],
-            "velocity 7800.0, the flights 7702.0808",
+            "velocity 7800, the flights 7702.0808",
         ),
         (
             &["--altitude", "86000"],
-            "altitude 86000.0, the flights 85000.0",
+            "altitude 86000, the flights 85000",
         ),
-        (&["--gamma", "1"], "gamma in deg 1.0, the flights 0.0"),
+        (&["--gamma", "1"], "gamma in deg 1, the flights 0"),
     ];
     for (options, words) in cases {
         let (file, _) = designed(folder.path(), options);

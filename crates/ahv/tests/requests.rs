@@ -43,7 +43,7 @@ fn a_flight_of_too_many_steps_is_refused() {
     }
     refused(
         "covariance --model sdcom --dt 1e-9",
-        &["1000000000 steps; 1 to 1e8"],
+        &["1.000e9 steps; 1 to 1e8"],
     );
     refused("reduce --dt 1e-300", &["--dt 1e-300 makes"]);
     refused("reduce --dt 1e300", &["makes 0 steps", "smaller --dt"]);

@@ -202,7 +202,7 @@ fn covariance_reports_the_flights_that_were_flown() {
         "--t-end",
         "0.2",
         "--dt",
-        "0.001",
+        "0.002",
         "--members",
         "1000000",
         "--json",

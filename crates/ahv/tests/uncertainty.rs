@@ -183,7 +183,10 @@ fn slips_are_explained() {
         &["--vary: unknown parameter `weight`"],
     );
     fails(&with(&["--vary", "g"]), &["nothing to draw"]);
-    fails(&["covariance", "--model", "com"], &["no noise"]);
+    fails(
+        &["covariance", "--model", "com"],
+        &["possible values: dcom, sdcom"],
+    );
 }
 
 #[test]

@@ -66,6 +66,8 @@ impl Arithmetic for Straight<f64> {
 pub(super) struct In<R>(PhantomData<R>);
 
 impl<F: GeneratedModel, R: Arithmetic> Member<F> for In<R> {
+    const SIDE_BY_SIDE: bool = true;
+
     type Scalar = R;
     type Model = F::With<R>;
 
@@ -80,6 +82,8 @@ impl<F: GeneratedModel, R: Arithmetic> Member<F> for In<R> {
 pub(super) struct Called<K>(PhantomData<K>);
 
 impl<F: GeneratedModel, K: Member<F>> Member<F> for Called<K> {
+    const SIDE_BY_SIDE: bool = false;
+
     type Scalar = K::Scalar;
     type Model = Outlined<K::Model>;
 

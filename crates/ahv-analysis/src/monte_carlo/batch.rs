@@ -184,6 +184,9 @@ struct Advance<'b, 'c, F: GeneratedModel, S: Copy, A> {
 
 /// Makes a member's model of the batch's.
 pub(super) trait Member<F: GeneratedModel>: Copy {
+    /// Whether a loop over such members becomes vector instructions.
+    const SIDE_BY_SIDE: bool;
+
     type Scalar: Arithmetic;
     type Model: ahv_core::StochasticModel<
             Scalar = Self::Scalar,
@@ -311,7 +314,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
     {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         match pulp::x86::V3::try_new() {
-            Some(machine) => pulp::Simd::vectorize(
+            Some(machine) if A::SIDE_BY_SIDE => pulp::Simd::vectorize(
                 machine,
                 Advance {
                     batch: self,
@@ -319,7 +322,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
                     arithmetic: PhantomData::<(A, E)>,
                 },
             ),
-            None => pulp::WithSimd::with_simd(
+            _ => pulp::WithSimd::with_simd(
                 Advance {
                     batch: self,
                     until,

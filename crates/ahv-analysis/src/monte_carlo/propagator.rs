@@ -14,8 +14,7 @@ use super::experiment::{Control, Experiment, Seen};
 use super::lanes::{LANES, Packed, packed};
 use super::rare::{Goal, Particle, Passed, pass};
 use super::scheme::{
-    Dri1, EulerMaruyama, Heun, InStratonovichSense, MOST_NORMALS, Milstein, Scheme, Splitting,
-    Sra1, Stepping, Steps, column,
+    EulerMaruyama, Heun, MOST_NORMALS, OneByOne, Scheme, Splitting, Stepping, Steps, column,
 };
 
 /// Steps between two looks at whether to stop.
@@ -70,10 +69,9 @@ impl<F: GeneratedModel> Experiment<F> {
             }
             Scheme::Heun => side_by_side::<F, Heun>(self),
             Scheme::EulerMaruyama => side_by_side::<F, EulerMaruyama>(self),
-            Scheme::StratonovichHeun => one_by_one::<F, InStratonovichSense>(self),
-            Scheme::Milstein => one_by_one::<F, Milstein>(self),
-            Scheme::Sra1 => one_by_one::<F, Sra1>(self),
-            Scheme::Dri1 => one_by_one::<F, Dri1>(self),
+            Scheme::StratonovichHeun | Scheme::Milstein | Scheme::Sra1 | Scheme::Dri1 => {
+                BatchPropagator::<F, OneByOne, Called<In<f64>>, In<f64>>::new(self)
+            }
         }
     }
 }
@@ -87,17 +85,6 @@ where
     S: Steps<F, F::With<Straight<f64>>> + Steps<F, Outlined<F::With<f64>>> + 'static,
 {
     BatchPropagator::<F, S, In<Straight<f64>>, In<f64>>::new(experiment)
-}
-
-/// Members one by one: for schemes whose loops take long to compile.
-fn one_by_one<F, S>(
-    experiment: &Experiment<F>,
-) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError>
-where
-    F: GeneratedModel,
-    S: Steps<F, Outlined<F::With<f64>>> + 'static,
-{
-    BatchPropagator::<F, S, Called<In<f64>>, In<f64>>::new(experiment)
 }
 
 /// An experiment by the splitting.
@@ -140,11 +127,12 @@ fn dynamics<F: GeneratedModel, S: Stepping<F>>(
 ) -> Result<Dynamics<F, S>, MonteCarloError> {
     let model = packed::<F>(parameters);
     let (x, u) = generic_point::<F>();
-    let scheme =
-        S::new(&model, &x, &u, experiment.dt).map_err(|reason| MonteCarloError::Scheme {
+    let scheme = S::new(experiment.scheme, &model, &x, &u, experiment.dt).map_err(|reason| {
+        MonteCarloError::Scheme {
             scheme: experiment.scheme.name(),
             reason,
-        })?;
+        }
+    })?;
     Ok(Dynamics { model, scheme })
 }
 
@@ -164,7 +152,7 @@ where
             return Err(MonteCarloError::StepSize(experiment.dt));
         }
         let shared: Dynamics<F, S> = dynamics(experiment, &[experiment.parameters; LANES])?;
-        let normals = F::NoiseOf::<Packed>::LEN + S::EXTRA;
+        let normals = F::NoiseOf::<Packed>::LEN + shared.scheme.extra();
         if normals > MOST_NORMALS {
             return Err(MonteCarloError::Normals { normals });
         }
@@ -176,7 +164,7 @@ where
         }
         extra
             .iter_mut()
-            .take(S::EXTRA)
+            .take(shared.scheme.extra())
             .for_each(|used| *used = true);
         Ok(Box::new(Self {
             experiment,

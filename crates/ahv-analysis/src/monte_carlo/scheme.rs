@@ -63,8 +63,9 @@ impl Scheme {
 
 /// A scheme, made ready for the members of a batch.
 pub(super) trait Stepping<F: GeneratedModel>: Sized + Copy + Send + Sync {
-    /// The scheme for `model` at (x, u), with steps of `dt`, in s.
+    /// The stepper `scheme` for `model` at (x, u), with steps of `dt`, in s.
     fn new(
+        scheme: Scheme,
         model: &F::With<Packed>,
         x: &F::StateOf<Packed>,
         u: &F::InputOf<Packed>,
@@ -72,7 +73,7 @@ pub(super) trait Stepping<F: GeneratedModel>: Sized + Copy + Send + Sync {
     ) -> Result<Self, NoiseError>;
 
     /// Normal numbers that a step takes beside one for each Wiener process.
-    const EXTRA: usize;
+    fn extra(&self) -> usize;
 
     /// Whether a step uses the number of the Wiener process that moves `column`.
     fn uses(model: &F::With<Packed>, column: &F::StateOf<Packed>) -> bool {
@@ -117,6 +118,7 @@ macro_rules! plain {
 
         impl<F: GeneratedModel> Stepping<F> for $name {
             fn new(
+                _: Scheme,
                 _: &F::With<Packed>,
                 _: &F::StateOf<Packed>,
                 _: &F::InputOf<Packed>,
@@ -125,7 +127,9 @@ macro_rules! plain {
                 Ok(Self { root: dt.sqrt() })
             }
 
-            const EXTRA: usize = 0;
+            fn extra(&self) -> usize {
+                0
+            }
         }
 
         impl<F: GeneratedModel, M: $bound<Scalar: Arithmetic>> Steps<F, M> for $name {
@@ -149,7 +153,6 @@ macro_rules! plain {
 plain! {
     EulerMaruyama, ItoEulerMaruyama, StochasticModel;
     Heun, ItoHeun, ItoCorrected;
-    InStratonovichSense, StratonovichHeun, StochasticModel;
 }
 
 /// The exact transitions of `N` states of coloured noise around a step of Heun's.
@@ -161,6 +164,7 @@ pub(super) struct Splitting<const N: usize> {
 
 impl<F: GeneratedModel, const N: usize> Stepping<F> for Splitting<N> {
     fn new(
+        _: Scheme,
         model: &F::With<Packed>,
         x: &F::StateOf<Packed>,
         u: &F::InputOf<Packed>,
@@ -172,7 +176,9 @@ impl<F: GeneratedModel, const N: usize> Stepping<F> for Splitting<N> {
         })
     }
 
-    const EXTRA: usize = 2 * N;
+    fn extra(&self) -> usize {
+        2 * N
+    }
 
     fn uses(model: &F::With<Packed>, column: &F::StateOf<Packed>) -> bool {
         (0..F::StateOf::<Packed>::LEN).any(|state| {
@@ -277,81 +283,40 @@ restricted! {
     Sra1, AdditiveChannels, StochasticModel;
 }
 
-impl<F: GeneratedModel> Stepping<F> for Milstein {
-    fn new(
-        model: &F::With<Packed>,
-        x: &F::StateOf<Packed>,
-        u: &F::InputOf<Packed>,
-        _: f64,
-    ) -> Result<Self, NoiseError> {
-        Self::made(model, x, u)
-    }
-
-    const EXTRA: usize = 0;
-}
-
-impl<F: GeneratedModel, M: DifferentiableNoise<Scalar: Arithmetic>> Steps<F, M> for Milstein {
-    fn step(
-        &self,
-        dt: f64,
-        _: impl Fn(&Packed) -> M::Scalar + Copy,
-        model: &M,
-        x: &mut M::State,
-        u: &M::Input,
-        normal: impl Fn(usize) -> f64 + Copy,
-    ) -> Result<(), StepError<M::Scalar>> {
-        let dw = increments::<M>(dt.sqrt(), normal);
-        ItoMilstein::new(dt).step(&self.channels(model, dt)?, x, u, &dw)
-    }
-}
-
-impl<F: GeneratedModel> Stepping<F> for Sra1 {
-    fn new(
-        model: &F::With<Packed>,
-        x: &F::StateOf<Packed>,
-        u: &F::InputOf<Packed>,
-        _: f64,
-    ) -> Result<Self, NoiseError> {
-        Self::made(model, x, u)
-    }
-
-    const EXTRA: usize = <F::NoiseOf<()> as Vector<()>>::LEN;
-}
-
-impl<F: GeneratedModel, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Sra1 {
-    fn step(
-        &self,
-        dt: f64,
-        _: impl Fn(&Packed) -> M::Scalar + Copy,
-        model: &M,
-        x: &mut M::State,
-        u: &M::Input,
-        normal: impl Fn(usize) -> f64 + Copy,
-    ) -> Result<(), StepError<M::Scalar>> {
-        let first = increments::<M>(1.0, normal);
-        let second = increments::<M>(1.0, |channel| normal(M::Noise::LEN + channel));
-        let integrals = WienerIntegrals::from_normals(dt, first, second);
-        ItoSra1::new(dt).step(&self.channels(model, dt)?, x, u, &integrals)
-    }
-}
-
+/// A scheme whose members are stepped one by one: one loop serves them all, for each takes long to compile.
 #[derive(Clone, Copy)]
-pub(super) struct Dri1;
-
-impl<F: GeneratedModel> Stepping<F> for Dri1 {
-    fn new(
-        _: &F::With<Packed>,
-        _: &F::StateOf<Packed>,
-        _: &F::InputOf<Packed>,
-        _: f64,
-    ) -> Result<Self, NoiseError> {
-        Ok(Self)
-    }
-
-    const EXTRA: usize = 0;
+pub(super) enum OneByOne {
+    StratonovichHeun,
+    Milstein(Milstein),
+    Sra1(Sra1),
+    Dri1,
 }
 
-impl<F: GeneratedModel, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for Dri1 {
+impl<F: GeneratedModel> Stepping<F> for OneByOne {
+    fn new(
+        scheme: Scheme,
+        model: &F::With<Packed>,
+        x: &F::StateOf<Packed>,
+        u: &F::InputOf<Packed>,
+        _: f64,
+    ) -> Result<Self, NoiseError> {
+        Ok(match scheme {
+            Scheme::Milstein => Self::Milstein(Milstein::made(model, x, u)?),
+            Scheme::Sra1 => Self::Sra1(Sra1::made(model, x, u)?),
+            Scheme::Dri1 => Self::Dri1,
+            _ => Self::StratonovichHeun,
+        })
+    }
+
+    fn extra(&self) -> usize {
+        match self {
+            Self::Sra1(_) => <F::NoiseOf<()> as Vector<()>>::LEN,
+            Self::StratonovichHeun | Self::Milstein(_) | Self::Dri1 => 0,
+        }
+    }
+}
+
+impl<F: GeneratedModel, M: DifferentiableNoise<Scalar: Arithmetic>> Steps<F, M> for OneByOne {
     fn step(
         &self,
         dt: f64,
@@ -361,7 +326,25 @@ impl<F: GeneratedModel, M: StochasticModel<Scalar: Arithmetic>> Steps<F, M> for 
         u: &M::Input,
         normal: impl Fn(usize) -> f64 + Copy,
     ) -> Result<(), StepError<M::Scalar>> {
-        let increments = WeakIncrements::from_normals(dt, normal);
-        ItoDri1::new(dt).step(model, x, u, &increments)
+        match self {
+            Self::StratonovichHeun => {
+                let dw = increments::<M>(dt.sqrt(), normal);
+                StratonovichHeun::new(dt).step(model, x, u, &dw)
+            }
+            Self::Milstein(scheme) => {
+                let dw = increments::<M>(dt.sqrt(), normal);
+                ItoMilstein::new(dt).step(&scheme.channels(model, dt)?, x, u, &dw)
+            }
+            Self::Sra1(scheme) => {
+                let first = increments::<M>(1.0, normal);
+                let second = increments::<M>(1.0, |channel| normal(M::Noise::LEN + channel));
+                let integrals = WienerIntegrals::from_normals(dt, first, second);
+                ItoSra1::new(dt).step(&scheme.channels(model, dt)?, x, u, &integrals)
+            }
+            Self::Dri1 => {
+                let increments = WeakIncrements::from_normals(dt, normal);
+                ItoDri1::new(dt).step(model, x, u, &increments)
+            }
+        }
     }
 }

@@ -105,8 +105,10 @@ fn a_numeric_failure_leaves_the_old_file() {
             "velocity ",
         ],
     );
+    let deep = with(&DCOM, &["--initial", "altitude=-1e300ft"]);
+    bench.fail(&deep, 3, &["after 0 s ", "the last good state, at 0 s"]);
     let still = with(&DCOM, &["--initial", "velocity=0"]);
-    bench.fail(&still, 3, &["after 0 s ", "the last good state, at 0 s"]);
+    bench.fail(&still, 2, &["velocity must be above 0"]);
     assert_eq!(bench.text(), "precious");
     assert_eq!(bench.files(), ["run.csv"]);
 }
