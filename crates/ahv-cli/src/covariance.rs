@@ -19,6 +19,7 @@ use crate::flights::{default_scheme, deviations};
 use crate::number::{Shown, positive};
 use crate::output::{self, Pairs};
 use crate::progress::{Progress, Work};
+use crate::registry::without_noise;
 use crate::signals::Stoppable;
 use crate::steps::{MOST_STEPS, allowed};
 use crate::vehicle::{Vehicle, VehicleArgs};
@@ -88,10 +89,11 @@ pub(crate) struct Arguments {
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim or the
 /// flight diverges.
 pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    if <M::Noise as Vector<f64>>::LEN == 0 {
+    let spreads = !(arguments.state_std.is_empty() && arguments.input_std.is_empty());
+    if <M::Noise as Vector<f64>>::LEN == 0 && !spreads {
         return Err(Failure::Request(format!(
-            "--model: {} has no noise",
-            M::NAME
+            "--model: {}; without --state-std or --input-std nothing spreads",
+            without_noise::<M>()
         )));
     }
     spread::<M>(arguments, default_scheme::<M>())

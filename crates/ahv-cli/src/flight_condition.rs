@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use ahv_analysis::trim::{SteadyState, Trim, TrimError, trim};
-use ahv_core::{GeneratedModel, Given, Vector, first_outside};
+use ahv_core::{Bounds, GeneratedModel, Given, Vector, first_outside};
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
 use crate::assignment::{Assignments, show, show_beside};
@@ -13,6 +13,9 @@ use crate::output::describe_outside;
 use crate::registry::models;
 use crate::units::Units;
 use crate::vehicle::{Vehicle, hyphenated};
+
+/// Where in the validity box it is asked whether an input moves a state.
+const SHARE: f64 = 0.618;
 
 /// What is given of a steady state, and the inputs that are held.
 pub(crate) struct FlightCondition {
@@ -285,32 +288,48 @@ impl<M: GeneratedModel> Vehicle<M> {
     /// Refuses an input other than 0 that changes nothing at any point of the validity box: it is a misunderstanding. None at
     /// all may be said, as reports do.
     pub(crate) fn check_effect(&self, inputs: &Assignments) -> Result<(), Failure> {
-        let middle = |bounds: ahv_core::Bounds| {
-            let value = bounds.min + 0.618 * (bounds.max - bounds.min);
-            if value.is_finite() { value } else { 1.0 }
-        };
-        let x = M::map_state(&self.state_bounds, |&bounds| middle(bounds));
-        let u = M::map_input(&self.input_bounds, |&bounds| middle(bounds));
-        let (_, by_input) = self.model.jacobians(&x, &u);
-        for (index, name) in M::Input::NAMES.iter().enumerate() {
-            let moved = inputs
-                .get::<M::Input>(name)
-                .is_some_and(|value| value != 0.0);
-            let mut rows = (0..M::State::LEN).filter_map(|row| by_input.get(row)?.get(index));
-            if moved && rows.all(|entry| entry == 0.0) {
-                let chosen: Vec<String> = self
-                    .choices
-                    .iter()
-                    .map(|(name, option)| format!("{name} {}", option.unwrap_or("of the table")))
-                    .collect();
-                return Err(Failure::Request(format!(
-                    "--input: {name} has no effect on {} with {}",
-                    M::NAME,
-                    names::list(&chosen.iter().map(String::as_str).collect::<Vec<_>>())
-                )));
+        for name in M::Input::NAMES {
+            let moved = inputs.get::<M::Input>(name);
+            if moved.is_some_and(|value| value != 0.0)
+                && let Some(why) = self.idle(name)
+            {
+                return Err(Failure::Request(format!("--input: {why}")));
             }
         }
         Ok(())
+    }
+
+    /// What to say of an input that moves no state, and by which option it would; `None` if it moves one.
+    pub(crate) fn idle(&self, input: &str) -> Option<String> {
+        if self.moved_by(&self.parameters, input) {
+            return None;
+        }
+        let choices = self.choices.iter().filter_map(|(name, chosen)| {
+            let mut known = M::TABLE.choices.iter();
+            let choice = known.find(|choice| choice.name == *name)?;
+            let mut options = choice.options.iter();
+            let option = options.find(|it| self.moved_by(&it.apply(self.parameters), input))?;
+            let chosen = chosen.unwrap_or("of the table");
+            Some(format!(
+                " with the {name} {chosen}; choose --{name} {}",
+                option.name
+            ))
+        });
+        let advice = choices.take(1).collect::<String>();
+        Some(format!("{input} has no effect{advice}"))
+    }
+
+    /// Whether an input moves a state of the model with these parameters, at a point of the validity box with nothing special.
+    fn moved_by(&self, parameters: &M::ParametersOf<f64>, input: &str) -> bool {
+        let within = |bounds: &Bounds| {
+            let value = bounds.min + SHARE * (bounds.max - bounds.min);
+            if value.is_finite() { value } else { 1.0 }
+        };
+        let x = M::map_state(&self.state_bounds, within);
+        let u = M::map_input(&self.input_bounds, within);
+        let (_, by_input) = M::with_parameters(parameters).jacobians(&x, &u);
+        let mut rows = (0..M::State::LEN).filter_map(|row| by_input.get(row));
+        M::Input::index_of(input).is_some_and(|index| rows.any(|row| row.get(index) != Some(0.0)))
     }
 
     /// Where a steady state is, for a person.

@@ -18,6 +18,7 @@ use crate::flight_condition::FlightCondition;
 use crate::number::positive;
 use crate::number::{self, Shown};
 use crate::progress::Progress;
+use crate::registry::without_noise;
 use crate::signals::Stoppable;
 use crate::steps::allowed;
 use crate::vehicle::{PointJson, Vehicle, VehicleArgs};
@@ -122,6 +123,13 @@ impl Flights {
         flight: &SteadyState<M::Input>,
         (state, input): (M::State, M::Input),
     ) -> Result<Experiment<M>, Failure> {
+        let spreads = !(self.state_std.is_empty() && self.input_std.is_empty());
+        if <M::Noise as Vector<f64>>::LEN == 0 && !(spreads || self.disperse) {
+            return Err(Failure::Request(format!(
+                "--model: {}; without --disperse, --state-std or --input-std all members are one",
+                without_noise::<M>()
+            )));
+        }
         let steps = (self.t_end / self.dt).round();
         let steps = allowed(self.t_end, self.dt, steps, MOST_STEPS)?;
         let named = |name: &str| Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);

@@ -131,20 +131,15 @@ fn held<U: Vector<f64>>(flight: &SteadyState<U>, input: &U) -> Vec<(&'static str
 fn split(text: &str, given: &[String]) -> Result<(String, Named<f64>), String> {
     let fault = |error: serde_json::Error| error.to_string();
     let keys: Named<Box<RawValue>> = serde_json::from_str(text).map_err(fault)?;
-    let (own, rest): (Vec<_>, Vec<_>) = keys.0.iter().partition(|(name, _)| given.contains(name));
-    let missing = given
-        .iter()
-        .find(|name| own.iter().all(|(known, _)| known != *name));
-    if let Some(name) = missing {
-        return Err(format!("missing field `{name}`"));
-    }
-    let condition = own.into_iter().map(|(name, value)| {
+    let condition = given.iter().map(|name| {
+        let found = keys.0.iter().find(|(known, _)| known == name);
+        let (_, value) = found.ok_or_else(|| format!("missing field `{name}`"))?;
         let value: f64 = serde_json::from_str(value.get()).map_err(fault)?;
         Ok((name, value))
     });
     let condition = condition.collect::<Result<Vec<_>, String>>()?;
+    let rest = keys.0.iter().filter(|(name, _)| !given.contains(name));
     let rest: Vec<String> = rest
-        .into_iter()
         .map(|(name, value)| {
             format!(
                 "{}: {}",

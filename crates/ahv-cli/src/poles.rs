@@ -166,12 +166,6 @@ fn decoupling(zero: &Zero) -> Option<&'static str> {
 }
 
 impl<M: GeneratedModel> Roots<'_, M> {
-    /// What to say of an input that moves no state.
-    fn without_effect(&self, input: &str) -> String {
-        let described = self.vehicle.described();
-        format!("{input} has no effect ({described}): no derivative of a state depends on it\n")
-    }
-
     /// How many finite zeros there are, and why.
     fn count(&self) -> String {
         let Zeros {
@@ -190,7 +184,11 @@ impl<M: GeneratedModel> Roots<'_, M> {
             ),
             false => String::new(),
         };
-        let idle = self.idle.iter().map(|&input| self.without_effect(input));
+        let idle = self.idle.iter().map(|&input| {
+            let why = self.vehicle.idle(input);
+            let why = why.unwrap_or_else(|| format!("{input} has no effect here"));
+            format!("{why}: no derivative of a state depends on it\n")
+        });
         let rank = idle.collect::<String>() + &rank;
         let list = |numbers: &[usize]| {
             let texts: Vec<String> = numbers.iter().map(usize::to_string).collect();

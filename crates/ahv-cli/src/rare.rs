@@ -16,6 +16,7 @@ use crate::flights::{Flights, Ready, Settings, watched};
 use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
+use crate::registry::without_noise;
 use crate::signals::interrupted;
 use crate::vehicle::{Heading, Vehicle};
 
@@ -59,6 +60,12 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
 
 impl Arguments {
     fn run<M: GeneratedModel>(&self) -> Result<(), Failure> {
+        if <M::Noise as Vector<f64>>::LEN == 0 {
+            let why = without_noise::<M>();
+            return Err(Failure::Request(format!(
+                "--model: {why}, by which copies part"
+            )));
+        }
         let mut ready: Ready<M> = self.flights.ready()?;
         // The validity box is not reported.
         ready.experiment.watched.clear();

@@ -8,6 +8,7 @@ use ahv_core::{
 
 use crate::ModelCommand;
 use crate::failure::Failure;
+use crate::names;
 
 /// A model, behind what is the same for all.
 pub(crate) struct Registered {
@@ -19,7 +20,9 @@ pub(crate) struct Registered {
     pub(crate) table: &'static Table,
     /// What a steady state of it is.
     pub(crate) trim: TrimProblem,
-    /// Name, unit and SI unit of a state or input.
+    /// Whether noise drives it.
+    pub(crate) has_noise: bool,
+    /// Unit and SI unit of a state.
     units: fn(&str) -> Option<[&'static str; 2]>,
     /// Names of the choices that change anything in it.
     pub(crate) choices: fn() -> Vec<&'static str>,
@@ -34,6 +37,7 @@ impl Registered {
             title: M::TITLE,
             table: M::TABLE,
             trim: M::TRIM,
+            has_noise: <M::Noise as Vector<f64>>::LEN > 0,
             units: |name| {
                 let index = <M::State as Vector<f64>>::index_of(name)?;
                 let unit = <M::State as Vector<f64>>::UNITS.get(index)?;
@@ -85,4 +89,11 @@ pub(crate) fn register<L: ModelList>() {
 /// The models that this program knows.
 pub(crate) fn models() -> &'static [Registered] {
     REGISTRY.get().map_or(&[], Vec::as_slice)
+}
+
+/// What to say of a model without noise where noise is needed.
+pub(crate) fn without_noise<M: GeneratedModel>() -> String {
+    let noisy = models().iter().filter(|model| model.has_noise);
+    let noisy: Vec<_> = noisy.map(|model| model.name).collect();
+    format!("{} has no noise; {} have", M::NAME, names::list(&noisy))
 }

@@ -12,6 +12,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::flight_condition::FlightCondition;
+use crate::registry::without_noise;
 use crate::vehicle::{Vehicle, VehicleArgs};
 use flight::Flight;
 use grid::grid;
@@ -94,8 +95,8 @@ fn noisy<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
     let channels = <M::Noise as Vector<f64>>::LEN;
     if channels == 0 {
         return Err(Failure::Request(format!(
-            "--stochastic: {} has no noise",
-            M::NAME
+            "--stochastic: {}",
+            without_noise::<M>()
         )));
     }
     let grid = grid(arguments.t_end, arguments.dt)?;

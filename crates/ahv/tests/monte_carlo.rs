@@ -220,10 +220,6 @@ fn files_hold_what_was_flown_and_feedback_follows_the_gains() {
 fn bad_requests_are_refused_with_a_reason() {
     for (options, words) in [
         (&["--scheme", "milstein"][..], "do not commute"),
-        (
-            &["--scheme", "dri1", "--mode", "f32-drift"],
-            "no mode f32-drift",
-        ),
         (&["--limit", "alpha=3"], "NAME=LOW..HIGH"),
         (&["--limit", "alpha=3deg..2deg"], "not below"),
         (&["--state-std", "alpah=1deg"], "alpha"),

@@ -183,10 +183,7 @@ fn slips_are_explained() {
         &["--vary: unknown parameter `weight`"],
     );
     fails(&with(&["--vary", "g"]), &["nothing to draw"]);
-    fails(
-        &["covariance", "--model", "com"],
-        &["possible values: dcom, sdcom"],
-    );
+    fails(&["covariance", "--model", "com"], &["com has no noise"]);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use crate::assignment::show;
 use crate::named::{Named, shown_as};
 use crate::number::Shown;
 use crate::output::{Pairs, describe, describe_outside};
+use crate::registry::models;
 use crate::vehicle::{Heading, PointJson, Vehicle};
 
 /// The trim, or the point that comes nearest to one.
@@ -49,6 +50,13 @@ pub(super) struct Json<'a> {
     #[serde(flatten)]
     point: Option<PointJson>,
     residuals: Option<Pairs<f64>>,
+}
+
+/// What a name with a number, such as that of a mode, has in common with others: `eta` of `eta_1`.
+fn kind(name: &str) -> Option<&str> {
+    let (kind, number) = name.rsplit_once('_')?;
+    let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+    is_number.then_some(kind)
 }
 
 /// A number, or those of one kind.
@@ -140,11 +148,7 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
         let mut shown: Vec<(String, ShownValue)> = Vec::new();
         for name in M::TRIM.shown {
             let value = self.value(name);
-            let kind = name.trim_end_matches(|c: char| c.is_ascii_digit());
-            let Some(kind) = kind
-                .strip_suffix('_')
-                .filter(|kind| kind.len() + 1 < name.len())
-            else {
+            let Some(kind) = kind(name) else {
                 let (name, factor) = shown_as(name, 1.0, self.vehicle.unit(name));
                 shown.push((name, ShownValue::One(value.map(|value| value * factor))));
                 continue;
@@ -155,6 +159,13 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
                     kind.to_owned(),
                     ShownValue::Several(value.into_iter().collect()),
                 )),
+            }
+        }
+        // What other models have several of, this one has none of.
+        let others = models().iter().flat_map(|model| model.trim.shown);
+        for kind in others.filter_map(|name| kind(name)) {
+            if shown.iter().all(|(known, _)| known != kind) {
+                shown.push((kind.to_owned(), ShownValue::Several(Vec::new())));
             }
         }
         Named::new(shown)

@@ -149,7 +149,7 @@ fn without_a_trim_there_is_no_system() {
         3,
         &[
             "com: no trim with delta_e <= 20 deg",
-            "7000 ft/s and 110000 ft",
+            "velocity 7000 ft/s, altitude 110000 ft",
         ],
     );
     assert!(output.stdout.is_empty());

@@ -48,7 +48,7 @@ fn the_modes_of_the_sdcom_rest_where_those_of_the_dcom_do() {
     }
     let told = text(&["trim", "--model", "sdcom"]);
     for part in [
-        "sdcom: trim, level flight at 7702.0808 ft/s and 85000 ft",
+        "sdcom: trim, velocity 7702.0808 ft/s, altitude 85000 ft, gamma 0 deg",
         "set section5.1, canard none, earth flat, noise independent, reduction printed",
         "quasi-static eta: 0.627555, -0.013698, -0.037191",
         "inside the validity box",
@@ -148,7 +148,7 @@ fn flight_conditions_without_steady_flight_are_refused_everywhere() {
             ("--gamma=-90", "between -90 deg and 90 deg"),
         ] {
             let words = [command, &["--model", "sdcom", option]].concat();
-            let output = fail(&words, 2, &["outside the domain of steady flight", word]);
+            let output = fail(&words, 2, &["outside the domain of steady states", word]);
             assert!(output.stdout.is_empty(), "{words:?}");
         }
     }
@@ -280,7 +280,7 @@ fn a_map_is_a_table_and_a_picture() {
         20.0 - converged
     );
     let svg = fs::read_to_string(out.join("trim_map.svg")).expect("it is written");
-    for part in ["Angle of attack", "delta_e &lt;= 20 deg", "altitude [ft]"] {
+    for part in ["alpha [deg]", "delta_e &lt;= 20 deg", "altitude [ft]"] {
         assert!(svg.contains(part), "no {part:?}");
     }
     let told = text(&words);

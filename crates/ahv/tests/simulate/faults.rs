@@ -84,7 +84,7 @@ fn bad_times_are_explained() {
         &["1.000e12 steps", "--dt"],
     );
     bench.fail(
-        &["--model", "flexible_mode", "--t-end", "1", "--dt", "0.1"],
+        &["--model", "flexible", "--t-end", "1", "--dt", "0.1"],
         2,
         &["com_rigid", "dcom"],
     );
