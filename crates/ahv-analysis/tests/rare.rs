@@ -456,12 +456,19 @@ fn what_cannot_be_estimated_is_told() {
         done: AtomicU64::new(0),
         stop: AtomicBool::new(true),
     };
-    let nothing = RareError::Stopped {
-        levels: Vec::new(),
-        repetitions: 0,
-        asked: far.repetitions,
-        member_steps: 0,
+    // The limit is the one level that was given; a pilot has set none yet.
+    let piloted = RareEvent {
+        levels: None,
+        ..far.clone()
     };
-    assert_eq!(find(&far, &stopped), Err(nothing.into()));
+    for (event, levels) in [(&far, vec![limit]), (&piloted, Vec::new())] {
+        let nothing = RareError::Stopped {
+            levels,
+            repetitions: 0,
+            asked: far.repetitions,
+            member_steps: 0,
+        };
+        assert_eq!(find(event, &stopped), Err(nothing.into()));
+    }
     assert_eq!(stopped.done.load(Ordering::Relaxed), 0);
 }
