@@ -1,8 +1,8 @@
-//! Models of a flexible air-breathing hypersonic vehicle, generated from tables of curve-fitted coefficients.
+//! {{ about }}.
 //!
-//! Units are {{ units }}; forces, mass and inertia are per unit of vehicle width.
+//! Units are {{ units }}; every field says its own.
 //! Every function is generic over the scalar ([`ahv_core::Real`]), has no branches and no heap, and follows IEEE
-//! arithmetic: outside a model's domain (velocity > 0) a result may be infinite or NaN.
+//! arithmetic: outside a model's domain a result may be infinite or NaN.
 #![no_std]
 #![forbid(unsafe_code)]
 

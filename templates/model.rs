@@ -1,4 +1,4 @@
-//! {{ label }}: {{ model.title }}, eq. {{ model.equations }}.
+//! {{ model.heading() }}.
 
 {% for module in modules %}mod {{ module }};
 {% endfor %}

@@ -1,7 +1,13 @@
 //! What the table says beside its numbers.
 
-use super::nominal::{UNIT_SYSTEM, VALIDITY};
-use ahv_core::{Choice, ChoiceOption, Entry, Interval, Rule, Sign, Table, Term};
+use super::nominal::{UNIT_SYSTEM, {% if !document.validity.is_empty() %}VALIDITY{% endif %}};
+use ahv_core::{
+    {%- if !document.choices.is_empty() %}Choice, ChoiceOption, {% endif -%}
+    Entry,
+    {%- if !document.validity.is_empty() %} Interval,{% endif -%}
+    {%- if !document.rules.is_empty() %} Rule, Sign,{% endif %} Table
+    {%- if !document.rules.is_empty() %}, Term{% endif -%}
+};
 
 /// Entries, choices, validity box and rules of the table.
 pub const TABLE: Table = Table {

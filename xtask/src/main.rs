@@ -8,6 +8,7 @@ mod determinism;
 mod firmware;
 mod instructions;
 mod no_panic;
+mod own_vehicle;
 mod plot;
 mod python;
 mod shell;
@@ -40,6 +41,8 @@ enum Task {
     },
     /// Compare the bits of every stepper between builds of all optimisation levels
     Determinism,
+    /// Generate models of other tables than this repository's, and run an `ahv` of their own over each
+    OwnVehicle,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
     /// Measure the generated functions and the steppers beside CasADi's C
@@ -73,6 +76,7 @@ fn main() -> ExitCode {
         Task::Test => steps::run(),
         Task::Audit { points, seeds } => audit(points).and_then(|()| coverage(seeds)),
         Task::Determinism => determinism::run(),
+        Task::OwnVehicle => own_vehicle::run(),
         Task::Vectors => vectors::run(),
         Task::Bench { peers } => bench::run(peers),
         Task::Instructions { write } => instructions::run(write),

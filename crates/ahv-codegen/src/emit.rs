@@ -77,12 +77,15 @@ impl Options {
 #[template(path = "manifest.toml", escape = "none")]
 struct CargoTemplate<'a> {
     options: &'a Options,
+    /// As TOML has it, with its quotes.
+    about: String,
     version: &'a str,
 }
 
 #[derive(Template)]
 #[template(path = "lib.rs")]
 struct LibTemplate<'a> {
+    about: &'a str,
     modules: &'a [Module],
     units: &'static str,
 }
@@ -153,7 +156,9 @@ pub fn emit(
     let audit = tree.contains_key(AUDIT_PAGE).then(audit_page);
     let further: Vec<Page> = audit.into_iter().chain([docs::passes_page()]).collect();
     tree.extend(docs::emit_index(&subjects, &further)?);
+    let about = about(&subjects);
     let lib = render(&LibTemplate {
+        about: &about,
         modules: &modules,
         units: units.first().copied().unwrap_or_default(),
     })?;
@@ -168,6 +173,7 @@ pub fn emit(
     }
     let cargo = CargoTemplate {
         options,
+        about: toml_edit::Value::from(about).to_string(),
         version: env!("CARGO_PKG_VERSION"),
     };
     let cargo = render(&cargo)? + "\n";
@@ -188,6 +194,18 @@ pub fn emit(
     Ok(tree)
 }
 
+/// What the package is, in a sentence.
+fn about(subjects: &[Subject<'_>]) -> String {
+    let names: Vec<_> = subjects.iter().map(|it| visible(&it.table.name)).collect();
+    match names.as_slice() {
+        [first @ .., second, last] => {
+            let first: String = first.iter().map(|name| format!("{name}, ")).collect();
+            format!("Models generated from the tables {first}{second} and {last}")
+        }
+        _ => format!("Models generated from the table {}", names.concat()),
+    }
+}
+
 /// The modules of the package, one a model.
 fn modules<'a>(
     documents: impl Iterator<Item = (&'a Table, &'a Document)>,
@@ -201,10 +219,9 @@ fn modules<'a>(
                     table.file_name, model.name
                 )));
             }
-            let label = model.name.to_uppercase();
             modules.push(Module {
                 name: model.name.clone(),
-                doc: format!("{label}: {}, eq. {}.", model.title, model.equations),
+                doc: format!("{}.", model.heading()),
             });
         }
     }

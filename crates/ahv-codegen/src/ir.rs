@@ -263,7 +263,7 @@ pub struct Model {
     pub name: String,
     /// What it is.
     pub title: String,
-    /// Equations of the paper.
+    /// Equations of the paper; empty where the model is from none.
     pub equations: String,
     /// States, inputs, and where the model has them Wiener processes, modes and further arguments.
     pub bases: BTreeMap<Basis, Vec<Variable>>,
@@ -504,6 +504,15 @@ impl Document {
 }
 
 impl Model {
+    /// Name, what it is, and from which equations.
+    pub(crate) fn heading(&self) -> String {
+        let name = self.name.to_uppercase();
+        match self.equations.as_str() {
+            "" => format!("{name}: {}", self.title),
+            equations => format!("{name}: {}, eq. {equations}", self.title),
+        }
+    }
+
     /// Multiplies the numbers of trim and deviations with the factor of their state or input.
     pub(crate) fn scale_description(&mut self, factor: impl Fn(&str) -> f64) {
         for given in &mut self.trim.given {

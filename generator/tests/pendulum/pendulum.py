@@ -32,7 +32,7 @@ def build_pendulum(table: Table) -> Model:
         outputs=("angle",),
         deviations={"angle": 0.1, "torque": 1.0},
     )
-    m = Model("pendulum", "a pendulum", "none", table, {"state": (ANGLE, RATE), "input": (TORQUE,)}, traits)
+    m = Model("pendulum", "a pendulum", "", table, {"state": (ANGLE, RATE), "input": (TORQUE,)}, traits)
     mass, length, gravity = (m.parameter(name) for name in ("mass", "length", "gravity"))
     symbols = {p.name: m.parameter(p.name) for p in table.parameters} | {"rate": m["rate"]}
     (fit,) = table.schema.quantities
@@ -44,7 +44,7 @@ def build_pendulum(table: Table) -> Model:
     define("height", length * (1 - ca.cos(m["angle"])), "h", "ft", "height above the lowest point")
     weight = mass * gravity * length * ca.sin(m["angle"])
     rates = {"angle": m["rate"], "rate": (m["torque"] - friction - weight) / (mass * length**2)}
-    add_drift_and_derivatives(m, rates, "none")
+    add_drift_and_derivatives(m, rates, "")
     m.add_outputs("height")
     return m
 

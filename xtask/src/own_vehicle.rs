@@ -1,0 +1,121 @@
+//! The proof that the general crates know no model: packages of a stranger's tables, each with an `ahv` of its own, built
+//! outside the workspace and run.
+
+mod tables;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use ahv_codegen::{Core, Options, Table};
+use ahv_generate::{Args, Surroundings};
+use clap::Parser as _;
+
+use crate::{python, shell};
+
+const PLACE: &str = "tests/own-vehicle";
+/// Where the packages find `ahv-core`.
+const CORE: &str = "../../../../crates/ahv-core";
+/// A family in a file of its own.
+const PENDULUM: &str = "generator/tests/pendulum";
+/// Derives with that family beside the others.
+const DERIVE: &str = "import sys
+from ahv_generator import models
+models.__path__.append(sys.argv.pop(1))
+from ahv_generator.__main__ import main
+sys.exit(main())
+";
+
+/// Makes the packages, builds their programs and runs them.
+pub(crate) fn run() -> Result<(), String> {
+    let place = shell::root().join(PLACE);
+    for (package, table, made_by) in [
+        ("own-models", "dcom", tables::two_modes as fn(&str) -> _),
+        ("dcom-alone", "dcom", tables::dcom_alone),
+        ("com-rigid-alone", "com", tables::com_rigid_alone),
+    ] {
+        let table = shell::root().join(format!("generator/tables/{table}.toml"));
+        let text = made_by(&read(&table)?)?;
+        let folder = place.join(format!("made/tables-of-{package}"));
+        write(&folder.join("own.toml"), &text)?;
+        generate(&place, package)?;
+    }
+    generate_pendulum(&place)?;
+    build(&place)?;
+    Ok(())
+}
+
+/// The command line of `ahv generate`.
+#[derive(clap::Parser)]
+struct GenerateLine {
+    #[command(flatten)]
+    args: Args,
+}
+
+fn generate(place: &Path, package: &str) -> Result<(), String> {
+    let line = format!(
+        "generate --tables made/tables-of-{package} --out made/{package} --package {package} --core-path {CORE}"
+    );
+    let args = GenerateLine::parse_from(line.split(' ')).args;
+    let surroundings = Surroundings::of_process().map_err(|failure| failure.to_string())?;
+    let surroundings = Surroundings {
+        current_dir: place.to_owned(),
+        ..surroundings
+    };
+    let done = ahv_generate::generate(&args, &surroundings);
+    done.map(drop).map_err(|failure| failure.to_string())
+}
+
+/// A family that is not among those of the generator: its IR comes from Python with that family, the package from the emitter.
+fn generate_pendulum(place: &Path) -> Result<(), String> {
+    let (file, made) = ("pendulum.toml", place.join("made"));
+    let [family, irs] = [shell::root().join(PENDULUM), made.join("pendulum-ir")];
+    fs::create_dir_all(&irs).map_err(problem("make", &irs))?;
+    let mut derive = shell::program(python::generation()?);
+    derive.current_dir(shell::root().join("generator"));
+    derive.args(["-c", DERIVE]).arg(&family);
+    derive.args(["derive", "--out"]).arg(&irs);
+    shell::output(derive.arg(family.join(file)))?;
+
+    let table = Table::parse(file, &read(&family.join(file))?).map_err(|error| error.to_string())?;
+    let ir = read(&irs.join("pendulum.json"))?;
+    let irs = BTreeMap::from([("pendulum".to_owned(), ir)]);
+    let options = Options {
+        package: "pendulum-models".to_owned(),
+        core: Core::Path(CORE.to_owned()),
+        ..Options::default()
+    };
+    let tree = ahv_codegen::emit(&[table], &irs, &options).map_err(|error| error.to_string())?;
+    for (path, text) in tree {
+        write(&made.join(&options.package).join(path), &text)?;
+    }
+    Ok(())
+}
+
+/// Builds all programs, of the versions that the workspace is locked to.
+fn build(place: &Path) -> Result<(), String> {
+    let lock = place.join("Cargo.lock");
+    fs::copy(shell::root().join("Cargo.lock"), &lock).map_err(problem("write", &lock))?;
+    let mut cargo = shell::cargo();
+    cargo.args(["build", "--manifest-path"]).arg(place.join("Cargo.toml"));
+    shell::run(cargo.arg("--target-dir").arg(shell::target()))
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(problem("read", path))
+}
+
+/// Writes a file where it is not like that already, so that cargo builds nothing anew for it.
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    if fs::read_to_string(path).is_ok_and(|found| found == text) {
+        return Ok(());
+    }
+    let folder = path.parent().unwrap_or(path);
+    fs::create_dir_all(folder).map_err(problem("make", folder))?;
+    fs::write(path, text).map_err(problem("write", path))
+}
+
+fn problem(deed: &str, path: &Path) -> impl FnOnce(std::io::Error) -> String {
+    let message = format!("error: cannot {deed} {}", path.display());
+    move |error| format!("{message}: {error}")
+}

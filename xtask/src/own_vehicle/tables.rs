@@ -1,0 +1,80 @@
+//! Tables that a stranger might write, made from those of this repository.
+
+use toml_edit::{Array, DocumentMut, Item, TableLike, value};
+
+/// Flexible modes that are left.
+const MODES: usize = 2;
+const HEAVY: &str = r#"
+[sets."heavy".vehicle]
+m = { value = 360.0, unit = "slug/ft" }
+I_yy = { value = 6.0e5, unit = "slug*ft" }
+"#;
+
+/// The DCOM's table with two of its three modes, and a set of its own.
+pub(super) fn two_modes(dcom: &str) -> Result<String, String> {
+    let mut table = read(dcom)?;
+    rename(&mut table, "own", &["dcom", "sdcom"])?;
+    without_gust(&mut table)?;
+    table.remove("sets");
+    table.remove(&format!("C_N_{}", MODES + 1));
+    let third = format!("_{}", MODES + 1);
+    for section in ["modes", "noise", "C_T", "C_L", "C_D", "C_M"] {
+        let section = inside(&mut table, section)?;
+        let names: Vec<String> = section.iter().map(|(name, _)| name.to_owned()).collect();
+        for name in names.iter().filter(|name| name.ends_with(&third)) {
+            section.remove(name);
+        }
+    }
+    Ok(table.to_string() + HEAVY)
+}
+
+/// The DCOM's table with `dcom` alone.
+pub(super) fn dcom_alone(dcom: &str) -> Result<String, String> {
+    let mut table = read(dcom)?;
+    rename(&mut table, "alone", &["dcom"])?;
+    without_gust(&mut table)?;
+    Ok(table.to_string())
+}
+
+/// The COM's table with its rigid model alone.
+pub(super) fn com_rigid_alone(com: &str) -> Result<String, String> {
+    let mut table = read(com)?;
+    rename(&mut table, "rigid", &["com_rigid"])?;
+    for name in ["modes", "N_1", "N_2"] {
+        table.remove(name);
+    }
+    for name in ["eta", "eta_dot"] {
+        inside(&mut table, "validity")?.remove(name);
+    }
+    for (_, set) in inside(&mut table, "sets")?.iter_mut() {
+        set.as_table_like_mut().map(|set| set.remove("modes"));
+    }
+    Ok(table.to_string())
+}
+
+fn read(text: &str) -> Result<DocumentMut, String> {
+    text.parse().map_err(|error| format!("error: a table cannot be read: {error}"))
+}
+
+fn inside<'a>(table: &'a mut DocumentMut, section: &str) -> Result<&'a mut dyn TableLike, String> {
+    let found = table.get_mut(section).and_then(Item::as_table_like_mut);
+    found.ok_or_else(|| format!("error: the table has no [{section}]"))
+}
+
+/// Another name, other models, and another name for the values as they stand.
+fn rename(table: &mut DocumentMut, name: &str, models: &[&str]) -> Result<(), String> {
+    let head = inside(table, "table")?;
+    head.insert("name", value(name));
+    head.insert("models", value(models.iter().copied().collect::<Array>()));
+    head.insert("set", value("own"));
+    Ok(())
+}
+
+/// What only `sdcom_gust` has a use for.
+fn without_gust(table: &mut DocumentMut) -> Result<(), String> {
+    for name in ["gust_rms", "gust_time"] {
+        inside(table, "noise")?.remove(name);
+    }
+    inside(table, "validity")?.remove("alpha_gust");
+    Ok(())
+}
