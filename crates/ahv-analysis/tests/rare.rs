@@ -437,7 +437,7 @@ fn what_cannot_be_estimated_is_told() {
         stop: AtomicBool::new(true),
     };
     let nothing = RareError::Stopped {
-        levels: Vec::new(),
+        levels: vec![limit],
         repetitions: 0,
         asked: far.repetitions,
         member_steps: 0,

@@ -105,7 +105,7 @@ pub enum RareError {
         "stopped after {repetitions} of {asked} repetitions, before there was an estimate: it takes {FEWEST_REPETITIONS} at least"
     )]
     Stopped {
-        /// Levels that the pilot had set, that of the limit included if it came so far.
+        /// Levels that were given or that the pilot had set, the limit included if it came so far.
         levels: Vec<f64>,
         /// Repetitions that were flown.
         repetitions: u64,
