@@ -6,6 +6,8 @@ use ahv_core::{
     GeneratedModel, ModelList, ModelVisitor, ParameterSetOf, Table, TrimProblem, Vector,
 };
 
+use ahv_table::Family;
+
 use crate::ModelCommand;
 use crate::failure::Failure;
 
@@ -17,6 +19,8 @@ pub(crate) struct Registered {
     pub(crate) title: &'static str,
     /// Its table.
     pub(crate) table: &'static Table,
+    /// Its table, for the check of another.
+    pub(crate) family: Family,
     /// What a steady state of it is.
     pub(crate) trim: TrimProblem,
     /// Name, unit and SI unit of a state or input.
@@ -33,6 +37,7 @@ impl Registered {
             name: M::NAME,
             title: M::TITLE,
             table: M::TABLE,
+            family: Family::of::<M>(),
             trim: M::TRIM,
             units: |name| {
                 let index = <M::State as Vector<f64>>::index_of(name)?;
