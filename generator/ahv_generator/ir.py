@@ -59,7 +59,13 @@ def _parameter(p: Parameter) -> dict[str, object]:
 
 def _interval(v: VariableSpec, table: Table) -> dict[str, object]:
     unit = units.converted(v.unit, table.units)
-    return {"name": v.name, "symbol": v.symbol, "unit": unit, "doc": v.doc, "models": table.only_for("validity", v.name)}
+    return {
+        "name": v.name,
+        "symbol": v.symbol,
+        "unit": unit,
+        "doc": v.doc,
+        "models": table.only_for("validity", v.name),
+    }
 
 
 def _replacement(p: Parameter) -> dict[str, object]:

@@ -158,10 +158,8 @@ pub struct Parameter {
     /// What it is.
     pub doc: String,
     /// What kind of entry it is.
-    #[serde(default)]
     pub kind: EntryKind,
     /// The models whose tables have it; empty if all have it.
-    #[serde(default)]
     pub models: Vec<String>,
     /// Key of its source.
     pub source: String,
@@ -172,11 +170,10 @@ pub struct Parameter {
 }
 
 /// A kind of entry, by the constructors of `ahv_core::Entry`.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum EntryKind {
     /// A parameter.
-    #[default]
     Parameter,
     /// A coefficient that a table may leave out.
     Coefficient,

@@ -137,7 +137,7 @@ fn name(rest: &mut &str) -> Option<Unit> {
     Some(Unit { powers, size })
 }
 
-/// One or two digits, and up to three behind a point.
+/// One or two digits, and up to three behind a point; not 0.
 fn exponent(rest: &mut &str) -> Option<f64> {
     let text = taken(rest, |c| c.is_ascii_digit() || c == '.');
     let (whole, fraction) = match text.split_once('.') {
@@ -146,7 +146,7 @@ fn exponent(rest: &mut &str) -> Option<f64> {
     };
     let allowed = (1..=2).contains(&whole.len())
         && fraction.is_none_or(|it| (1..=3).contains(&it.len()) && !it.contains('.'));
-    text.parse().ok().filter(|_| allowed)
+    text.parse().ok().filter(|&it: &f64| allowed && it > 0.0)
 }
 
 /// Takes the longest start of `rest` whose characters all are `wanted`.
