@@ -16,7 +16,7 @@ pub const TABLE: Table = Table {
     unit_system: UNIT_SYSTEM,
     entries: &[
 {%- for p in document.parameters %}
-        Entry::new({{ p.path.0|text }}, {{ p.path.1|text }}, {{ p.doc|text }}),
+        Entry::{{ p.kind }}({% if p.kind.is_of_section() %}{{ p.path.0|text }}, {% endif %}{{ p.path.1|text }}, {{ p.doc|text }}){{ only_for(p.models) }},
 {%- endfor %}
     ],
     choices: &[
@@ -32,7 +32,7 @@ pub const TABLE: Table = Table {
     ],
     validity: &[
 {%- for v in document.validity %}
-        Interval::new("{{ v.name }}", {{ v.unit|text }}, VALIDITY.{{ v.name }}, &{{ bounded(v.name)|texts }}),
+        Interval::new("{{ v.name }}", {{ v.unit|text }}, VALIDITY.{{ v.name }}, &{{ bounded(v.name)|texts }}){{ only_for(v.models) }},
 {%- endfor %}
     ],
     rules: &[

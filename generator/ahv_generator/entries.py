@@ -93,8 +93,8 @@ class Entries:
             return None
         return number
 
-    def unit(self, text: object, path: Path, expected: str) -> None:
-        """Faults of a unit that is not the expected one."""
+    def unit(self, text: object, path: Path, expected: str, *, degrees: bool = False) -> None:
+        """Faults of a unit that is not the expected one, or that in degrees where they are allowed."""
         if not isinstance(text, str):
             self.faults.value("unit", path, "`unit` must be a text")
             return
@@ -103,7 +103,8 @@ class Entries:
         except units.UnitError as error:
             self.faults.value("unit", path, str(error), f"the unit here is `{expected}`")
             return
-        if scale != 1.0:
+        wanted = math.radians(1.0) if degrees and "deg" in text else 1.0
+        if not math.isclose(scale, wanted, rel_tol=1e-9):
             self.faults.value(
                 "unit",
                 path,

@@ -34,11 +34,10 @@ def render(table: Table, models: list[Model]) -> str:
         "units": _units(table, models),
         "choices": [_choice(c) for c in table.schema.choices],
         "sets": [{"name": s.name, "parameters": [_Line(_replacement(p)) for p in s.parameters]} for s in table.sets],
-        "parameters": [_Line(_parameter(p)) for p in table.parameters],
-        "validity": [
-            _Line({"name": v.name, "symbol": v.symbol, "unit": units.converted(v.unit, table.units), "doc": v.doc})
-            for v in table.schema.validity
+        "parameters": [
+            _Line(_parameter(p) | {"kind": p.kind, "models": table.only_for(*p.path)}) for p in table.parameters
         ],
+        "validity": [_Line(_interval(v, table)) for v in table.schema.validity],
         "rules": [_Line(_rule(r)) for r in table.schema.rules()],
         "models": [_model(m) for m in models],
     }
@@ -55,6 +54,17 @@ def _parameter(p: Parameter) -> dict[str, object]:
         "source": p.source,
         "status": p.status,
         "uncertainty": p.uncertainty,
+    }
+
+
+def _interval(v: VariableSpec, table: Table) -> dict[str, object]:
+    unit = units.converted(v.unit, table.units)
+    return {
+        "name": v.name,
+        "symbol": v.symbol,
+        "unit": unit,
+        "doc": v.doc,
+        "models": table.only_for("validity", v.name),
     }
 
 

@@ -28,7 +28,7 @@ class Rule:
         """Whether parameters of these values keep the rule; one that is not a number does not."""
         # A product overflows to infinity, a power to an exception.
         value = sum(factor * math.prod(values[name] for name in names) for factor, names in self.terms)
-        return {POSITIVE: value > 0, NOT_NEGATIVE: value >= 0, NOT_ZERO: value != 0}[self.must]
+        return {POSITIVE: value > 0, NOT_NEGATIVE: value >= 0, NOT_ZERO: abs(value) > 0}[self.must]
 
     def parameters(self) -> tuple[str, ...]:
         """The parameters that it is about, the one at which a fault is told first."""
@@ -126,6 +126,14 @@ class Schema:
     quantities: tuple[QuantitySpec, ...] = ()
     variables: tuple[VariableSpec, ...] = ()
     laws: tuple[Rule, ...] = ()
+
+    def holds(self, section: str, key: str) -> bool:
+        """Whether a table has an entry of this key in this section, or may have it in the polynomial of a quantity."""
+        keys = {
+            "choices": [choice.name for choice in self.choices],
+            "validity": [variable.name for variable in self.validity],
+        } | {name: [spec.key for spec in specs] for name, specs in self.parameters.items()}
+        return key in keys.get(section, ()) or any(section == quantity.key for quantity in self.quantities)
 
     def rules(self) -> tuple[Rule, ...]:
         """The ranges of the parameters, then the laws."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -26,7 +25,10 @@ CHOICES = "choices"
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter or coefficient of a table; its value stays in the table."""
+    """A parameter or coefficient of a table; its value stays in the table.
+
+    `kind` is one of `parameter`, `coefficient`, `required` (a coefficient that must be listed) and `switch`.
+    """
 
     name: str
     path: tuple[str, ...]
@@ -36,6 +38,7 @@ class Parameter:
     source: str
     status: str
     uncertainty: float
+    kind: str
 
 
 @dataclass(frozen=True)
@@ -48,13 +51,17 @@ class ParameterSet:
 
 @dataclass(frozen=True)
 class Table:
-    """A checked table: parameters in order, and the polynomial of each quantity."""
+    """A checked table: parameters in order, and the polynomial of each quantity.
+
+    `schemas` are what a table of one of the models by itself holds.
+    """
 
     name: str
     models: tuple[str, ...]
     units: str
     family: Family
     schema: Schema
+    schemas: Mapping[str, Schema]
     parameters: tuple[Parameter, ...]
     polynomials: dict[str, Polynomial]
     sets: tuple[ParameterSet, ...]
@@ -62,6 +69,11 @@ class Table:
     def build(self) -> list[Model]:
         """The models that it lists."""
         return [self.family.builders[name](self) for name in self.models]
+
+    def only_for(self, section: str, key: str) -> list[str]:
+        """The models whose tables have this entry; none if all have it."""
+        models = [name for name, schema in self.schemas.items() if schema.holds(section, key)]
+        return [] if len(models) == len(self.models) else models
 
 
 def load(path: Path) -> Table:
@@ -109,7 +121,9 @@ class _Reader:
         self._validity(schema.validity)
         sets = (ParameterSet(own_set, ()), *self._sets(own_set, schema))
         self._rules(schema.rules(), sets)
-        return Table(name, models, system, family, schema, tuple(self.parameters.values()), polynomials, sets)
+        schemas = {model: family.schema((model,), self.document) for model in models}
+        parameters = tuple(self.parameters.values())
+        return Table(name, models, system, family, schema, schemas, parameters, polynomials, sets)
 
     def add(self, parameter: Parameter) -> None:
         """Takes up a parameter of the table."""
@@ -119,11 +133,12 @@ class _Reader:
             message = f"{places[0]} and {places[1]} would both be called `{parameter.name}`"
             self.faults.key("duplicate-name", parameter.path, message)
 
-    def parameter(self, path: tuple[str, ...], name: str, spec: ParameterSpec, provenance: Provenance) -> Parameter:
+    def parameter(
+        self, path: tuple[str, ...], name: str, spec: ParameterSpec, of: Provenance, kind: str = "parameter"
+    ) -> Parameter:
         """The parameter of a checked entry."""
         unit = units.converted(spec.unit, self.entries.system)
-        of = provenance
-        return Parameter(name, path, spec.symbol, unit, spec.doc, of.source, of.status, of.uncertainty)
+        return Parameter(name, path, spec.symbol, unit, spec.doc, of.source, of.status, of.uncertainty, kind)
 
     def _identity(self) -> tuple[str, str, str]:
         self.entries.only(("table",), self.header, _HEADER_KEYS)
@@ -139,12 +154,12 @@ class _Reader:
             help_line = suggestion(str(system), units.SYSTEMS)
             self.faults.value("unit-system", ("table", "units"), f"unknown unit system `{system}`", help_line)
             system = units.IMPERIAL
-        own_set = str(self.header.get("set", ""))
-        if "set" in self.header and not names.SET_NAME.fullmatch(own_set):
+        own_set = self.header.get("set", "")
+        if "set" in self.header and not (isinstance(own_set, str) and names.SET_NAME.fullmatch(own_set)):
             message = f"`set` must name the table's own parameter set, in {names.SET_LETTERS}"
             self.faults.value("set-name", ("table", "set"), message)
         self.entries.defaults = self.entries.provenance(self.header, ("table",))
-        return str(name), str(system), own_set
+        return str(name), str(system), str(own_set)
 
     def _sources(self) -> None:
         for key, text in self.entries.section("sources").items():
@@ -153,7 +168,7 @@ class _Reader:
                 self.faults.key("source", ("sources", key), message)
 
     def _models(self) -> tuple[Family, tuple[str, ...]]:
-        """The family of the models that the table lists; after a fault, one that has some of them."""
+        """The family of the first model of the table that is known."""
         path = ("table", "models")
         every = families()
         known = [model for family in every for model in family.models]
@@ -162,7 +177,7 @@ class _Reader:
         unknown = [m for m in models if m not in known]
         for model in unknown:
             self.faults.value("unknown-model", path, f"unknown model `{model}`", suggestion(model, known))
-        family = next((f for f in every if set(models) & set(f.models)), every[0])
+        family = next((f for m in models for f in every if m in f.models), every[0])
         ordered = tuple(m for m in family.models if m in models)
         if "models" in self.header and not unknown and (not models or ordered != models):
             message = "`models` must list models of one family, each once, in this order"
@@ -202,7 +217,7 @@ class _Reader:
                 help_line = suggestion(str(chosen), options)
                 self.faults.value("unknown-option", path, f"`{chosen}` is no {choice.doc}", help_line)
             for spec in choice.switches:
-                self.add(self.parameter(path, spec.name, spec, Provenance(CHOICES, "assumed", 0.0)))
+                self.add(self.parameter(path, spec.name, spec, Provenance(CHOICES, "assumed", 0.0), "switch"))
 
     def _validity(self, specs: Iterable[VariableSpec]) -> None:
         content = self.entries.section("validity")
@@ -228,8 +243,8 @@ class _Reader:
         if low is not None and high is not None and low >= high:
             self.faults.value("range", (*path, "min"), "`min` must be below `max`")
         # An angle may be in degrees here; nothing else is converted.
-        text = re.sub(r"\bdeg\b", "rad", box["unit"]) if isinstance(box["unit"], str) else box["unit"]
-        self.entries.unit(text, (*path, "unit"), units.converted(spec.unit, self.entries.system))
+        expected = units.converted(spec.unit, self.entries.system)
+        self.entries.unit(box["unit"], (*path, "unit"), expected, degrees=True)
 
     def _sets(self, own: str, schema: Schema) -> Iterable[ParameterSet]:
         """The sets of `[sets]`."""
@@ -274,7 +289,7 @@ class _Reader:
         provenance = self.entries.entry(path, parameter.unit)
         if provenance is not None:
             spec = ParameterSpec(parameter.name, parameter.symbol, parameter.unit, parameter.doc)
-            yield self.parameter(path, parameter.name, spec, provenance)
+            yield self.parameter(path, parameter.name, spec, provenance, parameter.kind)
 
     def _rules(self, rules: Iterable[Rule], sets: Iterable[ParameterSet]) -> None:
         """Holds the table, and every set that says something of a rule, against the rules."""
@@ -305,7 +320,7 @@ class _Quantity:
         content = self.reader.entries.section(spec.key)
         terms: list[Term] = []
         seen: dict[Powers, str] = {}
-        if not content and spec.key in self.reader.document:
+        if not content and self.reader.entries.has(spec.key):
             self.faults.key("no-coefficient", section, f"`[{spec.key}]` has no coefficient")
         for key in content:
             powers = self._monomial(key)
@@ -349,7 +364,8 @@ class _Quantity:
         doc = f"coefficient of {key} in {spec.key}" if powers else f"constant part of {spec.key}"
         # In the words of the table: `1/rad/s`, where the quotient above says `1/s/rad`.
         written = ParameterSpec(key, self._symbol(powers), self.reader.entries.units[path], doc)
-        self.reader.add(self.reader.parameter(path, name, written, provenance))
+        kind = "required" if powers in [((variable, 1),) for variable in spec.required] else "coefficient"
+        self.reader.add(self.reader.parameter(path, name, written, provenance, kind))
         return [Term(name, powers)]
 
     def _symbol(self, powers: Powers) -> str:

@@ -47,7 +47,8 @@ _SHORT = {
 
 # Brackets hold names alone. The reader of `ahv ... --table` has the same grammar; `tests/units.txt` holds for both.
 _NAME = "(?:ft|slug|lb|m|kg|N|s|rad|deg)"
-_ATOM = rf"(?:1|{_NAME}|\({_NAME}(?:[*/]{_NAME})*\))(?:\^[0-9]{{1,2}}(?:\.[0-9]{{1,3}})?)?"
+_POSITIVE = r"(?!0+(?:\.0+)?(?:[*/]|$))"  # An exponent of 0 is an exception of pint.
+_ATOM = rf"(?:1|{_NAME}|\({_NAME}(?:[*/]{_NAME})*\))(?:\^{_POSITIVE}[0-9]{{1,2}}(?:\.[0-9]{{1,3}})?)?"
 _GRAMMAR = re.compile(rf"{_ATOM}(?:[*/]{_ATOM})*")
 
 _PAIRS = {"ft": "m", "slug": "kg", "lb": "N"}

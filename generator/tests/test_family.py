@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 import sys
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,7 @@ from ahv_generator.diagnostics import TableError
 from ahv_generator.family import builders, families
 from ahv_generator.graph import Graph
 from ahv_generator.model import Model
-from ahv_generator.schema import NOT_NEGATIVE, NOT_ZERO, POSITIVE, Rule
+from ahv_generator.schema import NOT_NEGATIVE, NOT_ZERO, POSITIVE, Rule, Schema
 from ahv_generator.table import Table, load
 from ahv_generator.traits import Equation, Given, Mode, Sought, Traits, Trim
 
@@ -296,3 +298,24 @@ def test_two_coefficients_of_one_name_are_told(tmp_path: Path, pendulum: Path, m
     (fault,) = caught.value.diagnostics
     assert (fault.rule, fault.path) == ("duplicate-name", ("C_F", "rate_3"))
     assert "`rate_3` in `C_F` and `rate^3` in `C_F` would both be called `c_f_rate_3`" in fault.message
+
+
+def entries_of(schema: Schema, document: dict[str, Any]) -> set[tuple[str, str]]:
+    """What a table of this schema holds, of all that the document does."""
+    every = {(section, key) for section, content in document.items() for key in content}
+    return {(section, key) for section, key in every if schema.holds(section, key)}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_models_together_need_what_each_needs(name: str) -> None:
+    """The generated table says of each entry which models need it; a table at run time may list any of them."""
+    table = load(TABLES / f"{name}.toml")
+    document = tomllib.loads((TABLES / f"{name}.toml").read_text(encoding="utf-8"))
+    whole = entries_of(table.schema, document)
+    assert len(whole) == len([p for p in table.parameters if p.kind != "switch"]) + len(table.schema.validity) + len(
+        table.schema.choices
+    )
+    for count in range(1, len(table.models) + 1):
+        for chosen in itertools.combinations(table.models, count):
+            needed = [entries_of(table.schemas[model], document) for model in chosen]
+            assert entries_of(table.family.schema(chosen, document), document) == set().union(*needed)

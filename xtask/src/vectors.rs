@@ -1,27 +1,39 @@
 //! `cargo xtask vectors`: the reference vectors of `tests/vectors`, drawn and computed again.
 
+use std::fs;
+
 use crate::{python, shell};
 
 /// Points for each model: `cargo xtask audit` draws many more.
 const POINTS: &str = "30";
 const SEED: &str = "1";
-/// Models, each with its table.
-const MODELS: [(&str, &str); 7] = [
-    ("com", "com"),
-    ("com_rigid", "com"),
-    ("dcom", "dcom"),
-    ("sdcom", "dcom"),
-    ("sdcom_printed", "dcom"),
-    ("sdcom_gust", "dcom"),
-    ("flexible_mode", "flexible_mode"),
-];
+/// The models of the package, each with its table, as the IRs list them.
+fn models() -> Result<Vec<(String, String)>, String> {
+    let folder = shell::root().join("generated/ir");
+    let unreadable = |error: &dyn std::fmt::Display| format!("{}: {error}", folder.display());
+    let mut models = Vec::new();
+    for entry in fs::read_dir(&folder).map_err(|error| unreadable(&error))? {
+        let path = entry.map_err(|error| unreadable(&error))?.path();
+        let text = fs::read_to_string(&path).map_err(|error| unreadable(&error))?;
+        let ir: serde_json::Value =
+            serde_json::from_str(&text).map_err(|error| unreadable(&error))?;
+        let table = ir["provenance"]["table"].as_str().unwrap_or_default();
+        // The audit lists no models.
+        for model in ir["models"].as_array().into_iter().flatten() {
+            let name = model["name"].as_str().unwrap_or_default();
+            models.push((name.to_owned(), table.to_owned()));
+        }
+    }
+    models.sort();
+    Ok(models)
+}
 
 /// Writes the oracle's points and values and CasADi's values at the same points, then SciPy's flights, Riccati
 /// solutions, poles and zeros, and mpmath's elementary functions and normal numbers. SLICOT's zeros, `zeros.txt`, are made by
 /// hand, since `slycot` is no requirement: `generator/ahv_oracle/zeros.py` says how.
 pub(crate) fn run() -> Result<(), String> {
     let python = python::development()?;
-    for (model, table) in MODELS {
+    for (model, table) in models()? {
         let table = format!("tables/{table}.toml");
         let points = format!("../tests/vectors/{model}.sympy.txt");
         let values = format!("../tests/vectors/{model}.casadi.txt");
@@ -35,11 +47,11 @@ pub(crate) fn run() -> Result<(), String> {
             "--seed",
             SEED,
         ]);
-        oracle.args(["--table", &table, "--model", model, "--out", &points]);
+        oracle.args(["--table", &table, "--model", &model, "--out", &points]);
         shell::run(oracle.current_dir(shell::root().join("generator")))?;
         let mut casadi = shell::program(&python);
         casadi.args(["-m", "ahv_generator", "evaluate", "--points", &points]);
-        casadi.args(["--table", &table, "--model", model, "--out", &values]);
+        casadi.args(["--table", &table, "--model", &model, "--out", &values]);
         shell::run(casadi.current_dir(shell::root().join("generator")))?;
         println!("tests/vectors/{model}.sympy.txt\ntests/vectors/{model}.casadi.txt");
     }

@@ -183,8 +183,9 @@ pub fn noise_intensity<M: StochasticModel<Scalar = f64>>(
         let unit = M::Noise::from_fn(|other| if other == channel { 1.0 } else { 0.0 });
         column(&model.noise_increment(x, u, &unit))
     });
-    let g = DMatrix::from_columns(&columns.collect::<Vec<_>>());
-    &g * g.transpose()
+    // A model may have no channel.
+    let none = DMatrix::zeros(M::State::LEN, M::State::LEN);
+    columns.fold(none, |sum, g| sum + &g * g.transpose())
 }
 
 /// A vector whose components have names, as a column.

@@ -9,7 +9,7 @@ use ahv_analysis::monte_carlo::{Control, Experiment, LANES, Mode, MonteCarloErro
 use ahv_analysis::trim::SteadyState;
 use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 
 use crate::assignment::Assignments;
@@ -44,12 +44,12 @@ pub(crate) struct Flights {
     dt: f64,
 
     /// Stepper [default: splitting, which steps coloured noise exactly; for a model that has none heun]
-    #[arg(long, value_parser = names(Scheme::ALL.map(Scheme::name)))]
-    scheme: Option<String>,
+    #[arg(long, value_parser = one_of(Scheme::ALL, Scheme::name))]
+    scheme: Option<Scheme>,
 
     /// Arithmetic: exact; f32-noise, normal numbers in single precision
-    #[arg(long, default_value = "exact", value_parser = names(Mode::ALL.map(Mode::name)))]
-    mode: String,
+    #[arg(long, default_value = "exact", value_parser = one_of(Mode::ALL, Mode::name))]
+    mode: Mode,
 
     /// Seed of noise and dispersion
     #[arg(long, default_value_t = 0)]
@@ -75,8 +75,16 @@ pub(crate) struct Flights {
     feedback: feedback::FeedbackArguments,
 }
 
-fn names<const N: usize>(names: [&'static str; N]) -> PossibleValuesParser {
-    names.into()
+/// Reads one of these by its name.
+fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let names = PossibleValuesParser::new(all.map(name));
+    names.try_map(move |text| {
+        let found = all.into_iter().find(|&it| name(it) == text);
+        found.ok_or_else(|| format!("there is no {text}"))
+    })
 }
 
 /// The stepper where none is asked for: the splitting steps coloured noise exactly.
@@ -132,7 +140,6 @@ impl Flights {
         }
         let steps = (self.t_end / self.dt).round();
         let steps = allowed(self.t_end, self.dt, steps, MOST_STEPS)?;
-        let named = |name: &str| Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);
         Ok(Experiment {
             parameters: vehicle.parameters,
             dispersion: self.dispersion(vehicle)?,
@@ -140,15 +147,8 @@ impl Flights {
             input: [input, deviations("--input-std", &self.input_std, vehicle)?],
             feedback: self.feedback.read::<M>(vehicle, flight)?,
             watched: vec![vehicle.state_bounds],
-            scheme: self
-                .scheme
-                .as_deref()
-                .and_then(named)
-                .unwrap_or_else(default_scheme::<M>),
-            mode: Mode::ALL
-                .into_iter()
-                .find(|mode| mode.name() == self.mode)
-                .unwrap_or_default(),
+            scheme: self.scheme.unwrap_or_else(default_scheme::<M>),
+            mode: self.mode,
             dt: self.dt,
             snapshots: vec![steps],
             seed: self.seed,

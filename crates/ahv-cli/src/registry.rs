@@ -6,6 +6,8 @@ use ahv_core::{
     GeneratedModel, ModelList, ModelVisitor, ParameterSetOf, Table, TrimProblem, Vector,
 };
 
+use ahv_table::Family;
+
 use crate::ModelCommand;
 use crate::failure::Failure;
 use crate::names;
@@ -18,6 +20,8 @@ pub(crate) struct Registered {
     pub(crate) title: &'static str,
     /// Its table.
     pub(crate) table: &'static Table,
+    /// Its table, for the check of another.
+    pub(crate) family: Family,
     /// What a steady state of it is.
     pub(crate) trim: TrimProblem,
     /// Whether noise drives it.
@@ -36,6 +40,7 @@ impl Registered {
             name: M::NAME,
             title: M::TITLE,
             table: M::TABLE,
+            family: Family::of::<M>(),
             trim: M::TRIM,
             has_noise: <M::Noise as Vector<f64>>::LEN > 0,
             units: |name| {

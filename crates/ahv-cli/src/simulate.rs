@@ -7,8 +7,8 @@ mod report;
 use std::path::PathBuf;
 
 use ahv_core::{GeneratedModel, Vector};
-use ahv_integrate::{ItoEulerMaruyama, NormalStream, Rk4};
-use clap::Args;
+use ahv_integrate::{Euler, Heun, ItoEulerMaruyama, ItoHeun, NormalStream, Rk4, StratonovichHeun};
+use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;
 use crate::flight_condition::FlightCondition;
@@ -22,8 +22,8 @@ const MEMBER: u64 = 0;
 
 /// Simulates a model with held inputs and writes the trajectory as CSV.
 ///
-/// The run starts at the trim of the flight condition and holds the trim's inputs. Models with coloured noise are stochastic
-/// (Euler-Maruyama, Ito), others deterministic (Runge-Kutta of order 4) unless asked otherwise. An unstable vehicle diverges
+/// The run starts at the trim of the flight condition and holds the trim's inputs. Models with coloured noise are stochastic, others
+/// deterministic unless asked otherwise. An unstable vehicle diverges
 /// within seconds once it is off its trim.
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -38,9 +38,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "S", value_parser = crate::number::positive, allow_negative_numbers = true)]
     dt: f64,
 
-    /// Drive a model without coloured noise with its noise too (Euler-Maruyama, Ito)
+    /// Drive a model without coloured noise with its noise too
     #[arg(long)]
     stochastic: bool,
+
+    /// Stepper [default: rk4 without noise, euler-maruyama with it]
+    #[arg(long, value_enum)]
+    scheme: Option<Scheme>,
 
     /// Seed of the noise: the same seed gives the same numbers on every machine
     #[arg(long, default_value_t = 0)]
@@ -63,6 +67,30 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+/// A stepper with a fixed step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Scheme {
+    /// Euler, of order 1; without noise
+    Euler,
+    /// Heun, of order 2 without noise; with noise in the sense of Ito, of order 1
+    Heun,
+    /// The classical method of Runge and Kutta, of order 4; without noise
+    Rk4,
+    /// Euler-Maruyama, Ito; with noise
+    EulerMaruyama,
+    /// Heun in the sense of Stratonovich; with noise
+    StratonovichHeun,
+}
+
+/// What to say of a scheme that is not for such a flight.
+fn other_scheme(scheme: Scheme, flight: &str, known: &str) -> Failure {
+    let name = scheme.to_possible_value();
+    let name = name.as_ref().map_or("this", |it| it.get_name());
+    Failure::Request(format!(
+        "--scheme: {name} is not for a flight {flight}; {known} are"
+    ))
+}
+
 /// Runs the command.
 ///
 /// # Errors
@@ -77,21 +105,32 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
     }
 }
 
-/// Without noise, by Runge-Kutta.
+/// Without noise.
 fn calm<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    let scheme = arguments.scheme.unwrap_or(Scheme::Rk4);
+    if matches!(scheme, Scheme::EulerMaruyama | Scheme::StratonovichHeun) {
+        return Err(other_scheme(scheme, "without noise", "rk4, heun and euler"));
+    }
     let grid = grid(arguments.t_end, arguments.dt)?;
     let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
     let flight = Flight {
         vehicle: &vehicle,
         seed: None,
     };
-    flight.simulate(arguments, &grid, |x, u, _, dt| {
-        Rk4::new(dt).step(&vehicle.model, x, u)
+    flight.simulate(arguments, &grid, |x, u, _, dt| match scheme {
+        Scheme::Euler => Euler::new(dt).step(&vehicle.model, x, u),
+        Scheme::Heun => Heun::new(dt).step(&vehicle.model, x, u),
+        _ => Rk4::new(dt).step(&vehicle.model, x, u),
     })
 }
 
-/// With noise, by Euler-Maruyama.
+/// With noise.
 fn noisy<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+    let scheme = arguments.scheme.unwrap_or(Scheme::EulerMaruyama);
+    if matches!(scheme, Scheme::Rk4 | Scheme::Euler) {
+        let known = "euler-maruyama, heun and stratonovich-heun";
+        return Err(other_scheme(scheme, "with noise", known));
+    }
     let channels = <M::Noise as Vector<f64>>::LEN;
     if channels == 0 {
         return Err(Failure::Request(format!(
@@ -113,6 +152,10 @@ fn noisy<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
             .iter_mut()
             .map(|normals| normals.normal(step.into()));
         let dw = M::Noise::from_fn(|_| normals.next().unwrap_or(0.0) * dt.sqrt());
-        ItoEulerMaruyama::new(dt).step(&vehicle.model, x, u, &dw)
+        match scheme {
+            Scheme::Heun => ItoHeun::new(dt).step(&vehicle.model, x, u, &dw),
+            Scheme::StratonovichHeun => StratonovichHeun::new(dt).step(&vehicle.model, x, u, &dw),
+            _ => ItoEulerMaruyama::new(dt).step(&vehicle.model, x, u, &dw),
+        }
     })
 }

@@ -1,128 +1,117 @@
 //! `--table`: a table whose values take the place of those that the models were generated with.
 
-mod unit;
-mod values;
-
-use std::ops::Range;
 use std::path::Path;
 use std::{fs, io};
 
-use toml_edit::{Document, Item};
+use ahv_core::{Bounds, GeneratedModel, Table, Vector};
+use ahv_table::{Checked, Family, Fault, Set, Text};
 
 use crate::failure::Failure;
 use crate::names;
-use crate::units::Units;
-use unit::Unit;
+use crate::registry::models;
+use crate::vehicle::Values;
 
-/// The text of a table.
-pub(crate) struct Table {
-    shown: String,
-    text: String,
-    document: Document<String>,
+/// More faults than these are counted, not listed.
+const MOST_LISTED: usize = 20;
+
+/// The values of the table at `path` for the model `M`, and for the set called `set` or the table's own.
+///
+/// # Errors
+///
+/// [`Failure::Request`] with all faults of the table and their places; also if it lacks the model or the set.
+pub(crate) fn values<M: GeneratedModel>(
+    path: &Path,
+    set: Option<&str>,
+) -> Result<Values<M>, Failure> {
+    let shown = path.display().to_string();
+    let text =
+        text_of(path).map_err(|error| Failure::Request(format!("cannot read {shown}: {error}")))?;
+    let table = Text::parse(text.clone())
+        .map_err(|unreadable| Failure::Request(unreadable.line(&shown, &text)))?;
+    let checked = ahv_table::check(&table, &families())
+        .map_err(|faults| Failure::Request(listed(&table, &shown, &faults)))?;
+    if !checked.models.contains(&M::NAME) {
+        let fault = Fault::other_model(M::NAME);
+        return Err(Failure::Request(table.line(&shown, &fault)));
+    }
+    let set = chosen(&checked.sets, set, &shown)?;
+    Ok(of_model(&checked, set))
 }
 
-impl Table {
-    /// Reads a table.
-    ///
-    /// # Errors
-    ///
-    /// [`Failure::Request`] if it cannot be read, or is not TOML.
-    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
-        let shown = path.display().to_string();
-        let text = text_of(path)
-            .map_err(|error| Failure::Request(format!("cannot read {shown}: {error}")))?;
-        match Document::parse(text.clone()) {
-            Ok(document) => Ok(Self {
-                shown,
-                text,
-                document,
-            }),
-            Err(error) => {
-                let message = error.message().trim().replace('\n', "; ");
-                Err(fault(&shown, &text, error.span(), &message))
-            }
+/// The families of the models that this program has, each once.
+fn families() -> Vec<Family> {
+    let mut families: Vec<Family> = models().iter().map(|model| model.family).collect();
+    families.dedup_by_key(|family| family.table.models);
+    families
+}
+
+fn listed(table: &Text, shown: &str, faults: &[Fault]) -> String {
+    let mut lines: Vec<String> = faults
+        .iter()
+        .take(MOST_LISTED)
+        .map(|fault| table.line(shown, fault))
+        .collect();
+    if let more @ 1.. = faults.len().saturating_sub(MOST_LISTED) {
+        lines.push(format!("{shown}: {more} more faults"));
+    }
+    lines.join("\n")
+}
+
+fn chosen<'a>(sets: &'a [Set], name: Option<&str>, shown: &str) -> Result<&'a Set, Failure> {
+    let mut known = sets.iter();
+    let found = known.find(|set| name.is_none_or(|name| name == set.name));
+    found.ok_or_else(|| {
+        let known: Vec<&str> = sets.iter().map(|set| set.name.as_str()).collect();
+        let problem = names::unknown("set of parameters", name.unwrap_or_default(), &known);
+        Failure::Request(format!("--set: {problem} (in {shown})"))
+    })
+}
+
+/// The values of a set, in the units that the model was generated in. What the set does not replace is the table's own.
+fn of_model<M: GeneratedModel>(checked: &Checked, set: &Set) -> Values<M> {
+    let from_si = checked.unit_system != M::TABLE.unit_system;
+    let own = checked.sets.first();
+    let number = |index: usize| {
+        let of = |set: &Set| set.entries.get(index).copied().flatten();
+        of(set).or_else(|| own.and_then(of))
+    };
+    // A coefficient that the table does not list is 0, and so is what only other models have.
+    let parameters = M::ParametersOf::<f64>::from_fn(|index| {
+        let factor = factor::<M::ParametersOf<f64>, f64>(index, from_si);
+        number(index).map_or(0.0, |number| number.value * factor)
+    });
+    let choices = checked.choices.iter();
+    Values {
+        set: set.name.clone().into(),
+        parameters: choices.fold(parameters, |parameters, option| option.apply(parameters)),
+        uncertainty: M::ParametersOf::<f64>::from_fn(|index| {
+            number(index).map_or(0.0, |number| number.uncertainty)
+        }),
+        state_bounds: bounds(M::TABLE, checked, M::STATE_BOUNDS, from_si),
+        input_bounds: bounds(M::TABLE, checked, M::INPUT_BOUNDS, from_si),
+    }
+}
+
+/// The table's intervals for the components of `built_in`.
+fn bounds<B: Vector<Bounds>>(table: &Table, checked: &Checked, built_in: B, from_si: bool) -> B {
+    let mut bounds = built_in;
+    for (index, name) in B::NAMES.iter().enumerate() {
+        let mut intervals = table.validity.iter().zip(&checked.validity);
+        let interval = intervals.find(|(interval, _)| interval.variables.contains(name));
+        if let Some((_, Some(Bounds { min, max }))) = interval {
+            let factor = factor::<B, Bounds>(index, from_si);
+            // The index is one of the names.
+            let _ = bounds.set(index, Bounds::new(min * factor, max * factor));
         }
     }
+    bounds
+}
 
-    /// The units of the table's values.
-    fn units(&self) -> Result<Units, Failure> {
-        let path = ["table", "units"];
-        let text = self.word(&path)?;
-        let known = [Units::FootSlug, Units::Si];
-        let found = known.into_iter().find(|it| it.name() == text);
-        found.ok_or_else(|| {
-            let problem = names::unknown("units", text, &known.map(Units::name));
-            self.fault(&path, &problem)
-        })
-    }
-
-    /// The factor that turns the value of the entry at `path` into the unit `expected`: 1, or a degree where `degrees`
-    /// are allowed.
-    fn unit(&self, path: &[&str], expected: &str, degrees: bool) -> Result<f64, Failure> {
-        let path = [path, &["unit"]].concat();
-        let text = self.word(&path)?;
-        let help = format!("the unit here is `{expected}`");
-        let found = Unit::parse(text).ok_or_else(|| {
-            let known = "known are ft, slug, lb, m, kg, N, s, rad and deg, with *, / and ^";
-            let text = shortened(text);
-            self.fault(&path, &format!("`{text}` is no unit; {known}; {help}"))
-        })?;
-        match Unit::parse(expected).and_then(|expected| found.in_terms_of(&expected)) {
-            Some(ratio) if is_about(ratio, 1.0) => Ok(1.0),
-            Some(ratio) if degrees && is_about(ratio, Unit::DEGREE) => Ok(Unit::DEGREE),
-            Some(_) => {
-                let own = self.units()?.name();
-                let message =
-                    format!("`{text}` measures the right thing, but the table is in {own}");
-                Err(self.fault(
-                    &path,
-                    &format!("{message}; write the value in `{expected}`"),
-                ))
-            }
-            None => Err(self.fault(&path, &format!("the unit `{text}` does not fit; {help}"))),
-        }
-    }
-
-    fn number(&self, path: &[&str]) -> Result<f64, Failure> {
-        let item = self.item(path);
-        let number =
-            item.and_then(|it| it.as_float().or_else(|| it.as_integer().map(|n| n as f64)));
-        let finite = number.filter(|number| number.is_finite());
-        finite.ok_or_else(|| {
-            self.fault(
-                path,
-                &format!("`{}` should be a finite number", path.join(".")),
-            )
-        })
-    }
-
-    fn word(&self, path: &[&str]) -> Result<&str, Failure> {
-        let text = self.item(path).and_then(Item::as_str);
-        text.ok_or_else(|| self.fault(path, &format!("`{}` should be a text", path.join("."))))
-    }
-
-    fn item(&self, path: &[&str]) -> Option<&Item> {
-        path.iter()
-            .try_fold(self.document.as_item(), |item, key| item.get(key))
-    }
-
-    /// A fault at the value of `path`, or of the innermost entry around it that is there.
-    fn fault(&self, path: &[&str], message: &str) -> Failure {
-        let mut lengths = (0..=path.len()).rev();
-        let span = lengths.find_map(|length| self.item(path.get(..length)?)?.span());
-        fault(&self.shown, &self.text, span, message)
-    }
-
-    /// A fault at the key at the end of `path`.
-    fn key_fault(&self, path: &[&str], message: &str) -> Failure {
-        let key = path.split_last().and_then(|(key, section)| {
-            let (key, _) = self.item(section)?.as_table_like()?.get_key_value(key)?;
-            key.span()
-        });
-        match key {
-            Some(span) => fault(&self.shown, &self.text, Some(span), message),
-            None => self.fault(path, message),
-        }
+/// What turns component `index` of a `V` of the table into the unit of the generated models.
+fn factor<V: Vector<T>, T>(index: usize, from_si: bool) -> f64 {
+    match V::SI_FACTORS.get(index) {
+        Some(factor) if from_si => 1.0 / factor,
+        _ => 1.0,
     }
 }
 
@@ -135,33 +124,4 @@ pub(crate) fn text_of(path: &Path) -> io::Result<String> {
         let message = "it is a pipe, a socket or a device, not a file";
         Err(io::Error::new(io::ErrorKind::InvalidInput, message))
     }
-}
-
-/// The start of a text, in characters that do not act on a terminal.
-fn shortened(text: &str) -> String {
-    const LONGEST: usize = 60;
-    let start: String = text.chars().take(LONGEST).collect();
-    let more = if start.len() < text.len() { "..." } else { "" };
-    format!("{}{more}", start.escape_debug())
-}
-
-fn is_about(ratio: f64, expected: f64) -> bool {
-    (ratio / expected - 1.0).abs() < 1e-9
-}
-
-/// A fault at its line and column, or in a file as a whole.
-fn fault(shown: &str, text: &str, span: Option<Range<usize>>, message: &str) -> Failure {
-    // What stands in a table must not act on a terminal.
-    let acts =
-        |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let message = message.replace(acts, "\u{fffd}");
-    let before = span.and_then(|span| text.get(..span.start));
-    Failure::Request(match before {
-        Some(before) => {
-            let line = before.matches('\n').count() + 1;
-            let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-            format!("{shown}:{line}:{column}: {message}")
-        }
-        None => format!("{shown}: {message}"),
-    })
 }

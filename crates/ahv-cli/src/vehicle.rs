@@ -13,7 +13,7 @@ use crate::failure::{Failure, complain};
 use crate::names;
 use crate::output::Pairs;
 use crate::registry::{Registered, heeded, models};
-use crate::table::Table;
+use crate::table;
 use crate::units::Units;
 
 /// Model, parameters, choices and units. What is not given is as the table has it.
@@ -252,7 +252,7 @@ impl VehicleArgs {
     /// The values of the table, or those that the model was generated with.
     fn values<M: GeneratedModel>(&self) -> Result<Values<M>, Failure> {
         if let Some(path) = &self.table {
-            return Table::read(path)?.values(self.set.as_deref());
+            return table::values(path, self.set.as_deref());
         }
         let name = self.set.as_deref();
         let mut sets = M::SETS.iter();

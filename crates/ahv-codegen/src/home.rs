@@ -36,6 +36,14 @@ struct TableTemplate<'a> {
 }
 
 impl TableTemplate<'_> {
+    /// What limits an entry to some models.
+    fn only_for(&self, models: &[String]) -> String {
+        match models {
+            [] => String::new(),
+            models => format!(".only_for(&{models:?})"),
+        }
+    }
+
     /// States and inputs of the table's models that an entry of the validity box bounds, as a list.
     fn bounded(&self, entry: &str) -> Vec<String> {
         let mut found = Vec::new();

@@ -157,12 +157,43 @@ pub struct Parameter {
     pub unit: String,
     /// What it is.
     pub doc: String,
+    /// What kind of entry it is.
+    pub kind: EntryKind,
+    /// The models whose tables have it; empty if all have it.
+    pub models: Vec<String>,
     /// Key of its source.
     pub source: String,
     /// How far its value can be trusted.
     pub status: Status,
     /// Relative uncertainty.
     pub uncertainty: f64,
+}
+
+/// A kind of entry, by the constructors of `ahv_core::Entry`.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum EntryKind {
+    /// A parameter.
+    Parameter,
+    /// A coefficient that a table may leave out.
+    Coefficient,
+    /// A coefficient that a table must list.
+    Required,
+    /// A parameter that a choice sets.
+    Switch,
+}
+
+impl EntryKind {
+    /// Whether it stands in a section of its own, not among the choices.
+    pub fn is_of_section(&self) -> bool {
+        *self != Self::Switch
+    }
+}
+
+impl fmt::Display for EntryKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&format!("{self:?}").to_lowercase())
+    }
 }
 
 /// A polynomial of parameters that must have a sign, as `ahv_core::Rule`.
@@ -253,6 +284,9 @@ pub struct Variable {
     /// The entry of the validity box that bounds it.
     #[serde(default)]
     pub validity: Option<String>,
+    /// Of an entry of the validity box: the models whose tables have it; empty if all have it.
+    #[serde(default)]
+    pub models: Vec<String>,
 }
 
 /// A model: named vectors, quantities in evaluation order, functions.

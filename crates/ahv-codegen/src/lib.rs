@@ -33,10 +33,11 @@ mod wording;
 
 use std::collections::BTreeMap;
 
+pub use ahv_table::{Part, Unreadable};
 pub use emit::{AUDIT, Core, Options, emit};
 pub use manifest::{Manifest, sha256};
 pub use passes::{Pass, Passes, UnknownPass};
-pub use table::{Part, Table, TableError};
+pub use table::Table;
 
 /// Files by their path relative to the folder of the generated package, with `/` between its parts.
 pub type Tree = BTreeMap<String, String>;

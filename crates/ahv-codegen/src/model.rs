@@ -184,6 +184,7 @@ impl<'a> ModelEmitter<'a> {
             unit: p.unit.clone(),
             doc: p.doc.clone(),
             validity: None,
+            models: Vec::new(),
         });
         Ok(Self {
             model,

@@ -1,9 +1,10 @@
 //! The text of a table: its values and the places where they stand.
 
+use ahv_table::{Part, Text, Unreadable};
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
 use std::ops::Range;
-use toml_edit::{Document, Item, TableLike, Value};
+use toml_edit::{Item, TableLike, Value};
 
 use crate::manifest::sha256;
 
@@ -14,94 +15,44 @@ pub struct Table {
     pub name: String,
     /// Name of the file.
     pub file_name: String,
-    document: Document<String>,
-}
-
-/// Text that is not TOML.
-#[derive(Debug, thiserror::Error)]
-#[error("{message}")]
-pub struct TableError {
-    /// What is wrong.
-    pub message: String,
-    /// Where, in bytes.
-    pub span: Option<Range<usize>>,
-}
-
-/// The side of an entry that a fault concerns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Its key.
-    Key,
-    /// Its value.
-    Value,
+    text: Text,
 }
 
 impl Table {
     /// Reads TOML text.
     ///
     /// # Errors
-    /// [`TableError`] with the place of the fault; a key that stands twice is one.
-    pub fn parse(file_name: &str, text: &str) -> Result<Self, TableError> {
-        let document = Document::parse(text.to_owned()).map_err(|error| TableError {
-            message: error.message().trim().replace('\n', "; "),
-            span: error.span(),
-        })?;
-        let name = document
-            .get("table")
-            .and_then(|table| table.get("name"))
-            .and_then(Item::as_str)
-            .unwrap_or_default()
-            .to_owned();
+    /// [`Unreadable`] with the place of the fault; a duplicate key is one.
+    pub fn parse(file_name: &str, text: &str) -> Result<Self, Unreadable> {
+        let text = Text::parse(text.to_owned())?;
+        let name = text.item(&["table", "name"]).and_then(Item::as_str);
         Ok(Self {
-            name,
+            name: name.unwrap_or_default().to_owned(),
             file_name: file_name.to_owned(),
-            document,
+            text,
         })
     }
 
     /// The number at a path of keys.
     pub fn number(&self, path: &[&str]) -> Option<f64> {
-        let mut item = self.document.as_item();
-        for key in path {
-            item = item.get(key)?;
-        }
+        let item = self.text.item(path)?;
         item.as_float()
             .or_else(|| item.as_integer().map(|n| n as f64))
     }
 
     /// The text at a path of keys.
     pub fn text(&self, path: &[&str]) -> Option<&str> {
-        let mut item = self.document.as_item();
-        for key in path {
-            item = item.get(key)?;
-        }
-        item.as_str()
+        self.text.item(path)?.as_str()
     }
 
     /// Where the key or the value at a path stands, in bytes; of the nearest enclosing entry where it is missing.
     pub fn span(&self, path: &[&str], part: Part) -> Option<Range<usize>> {
-        let mut table: &dyn TableLike = self.document.as_table();
-        let mut found = None;
-        for (depth, key) in path.iter().enumerate() {
-            let Some((name, item)) = table.get_key_value(key) else {
-                break;
-            };
-            let last = depth + 1 == path.len();
-            found = match part {
-                Part::Value if last => item.span().or_else(|| name.span()),
-                _ => name.span().or_else(|| item.span()),
-            };
-            match item.as_table_like() {
-                Some(inner) => table = inner,
-                None => break,
-            }
-        }
-        found
+        self.text.span(path, part)
     }
 
     /// SHA-256 of the values: comments, order and layout do not count.
     pub fn sha256(&self) -> String {
-        sha256(&canonical_table(self.document.as_table()).to_string())
+        sha256(&canonical_table(self.text.root()).to_string())
     }
 }
 

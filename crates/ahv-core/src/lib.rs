@@ -59,5 +59,7 @@ pub use provenance::{Provenance, Status};
 pub use real::Real;
 pub use shown::Shown;
 pub use straight::Straight;
-pub use table::{Choice, ChoiceOption, Entry, Interval, ParameterSet, Rule, Sign, Table, Term};
+pub use table::{
+    Choice, ChoiceOption, Entry, EntryKind, Interval, ParameterSet, Rule, Sign, Table, Term,
+};
 pub use vector::Vector;

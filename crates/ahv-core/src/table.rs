@@ -22,21 +22,81 @@ pub struct Table {
     pub rules: &'static [Rule],
 }
 
+impl Table {
+    /// Whether a table that lists `models` has what is for the models `only`: one of them, or any where `only` is empty.
+    pub fn has(only: &[&str], models: &[&str]) -> bool {
+        only.is_empty() || only.iter().any(|model| models.contains(model))
+    }
+}
+
 /// Where a parameter stands in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// Section.
     pub section: &'static str,
-    /// Key: a name, or a monomial. For a parameter of the section `choices` the choice that sets it.
+    /// Key: a name, or a monomial. For a switch the choice that sets it.
     pub key: &'static str,
     /// What it is.
     pub doc: &'static str,
+    /// What kind of entry it is.
+    pub kind: EntryKind,
+    /// The models whose tables have it; empty if all have it.
+    pub models: &'static [&'static str],
+}
+
+/// A kind of [`Entry`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EntryKind {
+    /// A parameter, which a table must list.
+    Parameter,
+    /// A coefficient of a polynomial; one that a table does not list is 0.
+    Coefficient,
+    /// A coefficient that a table must list.
+    RequiredCoefficient,
+    /// A parameter that a choice sets.
+    Switch,
 }
 
 impl Entry {
-    /// From its fields.
-    pub const fn new(section: &'static str, key: &'static str, doc: &'static str) -> Self {
-        Self { section, key, doc }
+    /// A parameter of a section.
+    pub const fn parameter(section: &'static str, key: &'static str, doc: &'static str) -> Self {
+        Self::new(EntryKind::Parameter, section, key, doc)
+    }
+
+    /// The coefficient of the monomial `key` in the polynomial `section`.
+    pub const fn coefficient(section: &'static str, key: &'static str, doc: &'static str) -> Self {
+        Self::new(EntryKind::Coefficient, section, key, doc)
+    }
+
+    /// A coefficient that a table must list.
+    pub const fn required(section: &'static str, key: &'static str, doc: &'static str) -> Self {
+        Self::new(EntryKind::RequiredCoefficient, section, key, doc)
+    }
+
+    /// A parameter that the choice `choice` sets.
+    pub const fn switch(choice: &'static str, doc: &'static str) -> Self {
+        Self::new(EntryKind::Switch, "choices", choice, doc)
+    }
+
+    /// The entry, in tables of these models alone.
+    #[must_use]
+    pub const fn only_for(self, models: &'static [&'static str]) -> Self {
+        Self { models, ..self }
+    }
+
+    const fn new(
+        kind: EntryKind,
+        section: &'static str,
+        key: &'static str,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            section,
+            key,
+            doc,
+            kind,
+            models: &[],
+        }
     }
 }
 
@@ -111,6 +171,8 @@ pub struct Interval {
     pub bounds: Bounds,
     /// The states and inputs of the table's models that it bounds.
     pub variables: &'static [&'static str],
+    /// The models whose tables have it; empty if all have it.
+    pub models: &'static [&'static str],
 }
 
 impl Interval {
@@ -126,7 +188,14 @@ impl Interval {
             unit,
             bounds,
             variables,
+            models: &[],
         }
+    }
+
+    /// The interval, in tables of these models alone.
+    #[must_use]
+    pub const fn only_for(self, models: &'static [&'static str]) -> Self {
+        Self { models, ..self }
     }
 }
 
@@ -161,7 +230,15 @@ impl Rule {
 
     /// Whether these parameters obey it. A value that is not a number obeys nothing.
     pub fn holds<P: Vector<f64>>(&self, parameters: &P) -> bool {
-        let value: f64 = self.terms.iter().map(|term| term.value(parameters)).sum();
+        self.holds_for(|name| {
+            let value = P::index_of(name).and_then(|index| parameters.get(index));
+            value.unwrap_or(f64::NAN)
+        })
+    }
+
+    /// Whether parameters obey it whose values by name are `value`.
+    pub fn holds_for(&self, value: impl Fn(&str) -> f64) -> bool {
+        let value: f64 = self.terms.iter().map(|term| term.value(&value)).sum();
         match self.must {
             Sign::Positive => value > 0.0,
             Sign::NotNegative => value >= 0.0,
@@ -196,11 +273,8 @@ impl Term {
         Self { factor, parameters }
     }
 
-    fn value<P: Vector<f64>>(&self, parameters: &P) -> f64 {
-        let values = self.parameters.iter().map(|name| {
-            let value = P::index_of(name).and_then(|index| parameters.get(index));
-            value.unwrap_or(f64::NAN)
-        });
+    fn value(&self, value: &impl Fn(&str) -> f64) -> f64 {
+        let values = self.parameters.iter().map(|name| value(name));
         values.fold(self.factor, |product, value| product * value)
     }
 }

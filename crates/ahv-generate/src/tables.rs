@@ -29,6 +29,7 @@ pub(crate) struct Tables {
 /// What the derivation finds wrong with a table: a key path, whose position only the text knows.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Diagnostic {
+    rule: String,
     file: String,
     path: Vec<String>,
     part: DiagnosticPart,
@@ -95,6 +96,7 @@ impl Tables {
             } else {
                 continue;
             };
+            let message = with_rule(&message, "table-name");
             faults.push(self.fault(index, &["table", "name"], Part::Value, message, None));
         }
         faults
@@ -113,7 +115,8 @@ impl Tables {
                 DiagnosticPart::Key => Part::Key,
                 DiagnosticPart::Value => Part::Value,
             };
-            faults.push(self.fault(index, &path, part, diagnostic.message, diagnostic.help));
+            let message = with_rule(&diagnostic.message, &diagnostic.rule);
+            faults.push(self.fault(index, &path, part, message, diagnostic.help));
         }
         Failure::Tables(faults)
     }
@@ -131,6 +134,11 @@ impl Tables {
         let span = self.parsed[index].span(path, part).unwrap_or(0..0);
         TableFault::new(message, help, &source.shown, &source.text, span)
     }
+}
+
+/// A message with the name of the rule that is broken, as `ahv ... --table` shows it, too.
+fn with_rule(message: &str, rule: &str) -> String {
+    format!("{message} [{rule}]")
 }
 
 fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
@@ -166,7 +174,7 @@ fn parse(path: &Path, shown: &str, bytes: Vec<u8>) -> Result<(String, Table), Bo
         let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
         let replaced = char::REPLACEMENT_CHARACTER.len_utf8();
         Box::new(TableFault::new(
-            "this is not UTF-8 text",
+            with_rule("this is not UTF-8 text", "unreadable"),
             None,
             shown,
             &text,
@@ -179,7 +187,7 @@ fn parse(path: &Path, shown: &str, bytes: Vec<u8>) -> Result<(String, Table), Bo
         Err(error) => {
             let span = error.span.unwrap_or(0..0);
             Err(Box::new(TableFault::new(
-                error.message,
+                with_rule(&error.message, "unreadable"),
                 None,
                 shown,
                 &text,

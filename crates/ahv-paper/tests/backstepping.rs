@@ -2,8 +2,8 @@
 #![forbid(unsafe_code)]
 
 use ahv_analysis::monte_carlo::Control;
-use ahv_analysis::trim::{SteadyFlight, trim};
-use ahv_core::{ColouredNoise, Vector};
+use ahv_analysis::trim::{SteadyState, trim};
+use ahv_core::{ColouredNoise, GeneratedModel, Vector};
 use ahv_models::dcom::{NOMINAL, Parameters};
 use ahv_models::sdcom::{self, Input, State};
 use ahv_paper::backstepping::{Backstepping, DESIGN, Design, Loop};
@@ -13,7 +13,9 @@ use approx::assert_relative_eq;
 /// Where the standard manoeuvre starts.
 fn start() -> (State<f64>, Input<f64>) {
     let flight = Trial::standard(silent(NOMINAL), 1, 0).manoeuvre;
-    let flight = SteadyFlight::new(flight.velocity.from, flight.altitude.from);
+    let flight = SteadyState::new(&sdcom::Model::TRIM)
+        .with("velocity", flight.velocity.from)
+        .with("altitude", flight.altitude.from);
     let at = trim(&sdcom::Model::new(&NOMINAL), &flight).expect("a trim");
     (at.state, at.input)
 }

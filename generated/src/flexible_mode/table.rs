@@ -11,16 +11,14 @@ pub const TABLE: Table = Table {
     models: &["flexible_mode"],
     unit_system: UNIT_SYSTEM,
     entries: &[
-        Entry::new("modes", "omega", "natural frequency"),
-        Entry::new("modes", "zeta", "damping ratio"),
-        Entry::new("noise", "sigma", "intensity of the white noise"),
-        Entry::new(
-            "choices",
+        Entry::parameter("modes", "omega", "natural frequency"),
+        Entry::parameter("modes", "zeta", "damping ratio"),
+        Entry::parameter("noise", "sigma", "intensity of the white noise"),
+        Entry::switch(
             "reduction",
             "share of the reduction that matches decay rate and variance",
         ),
-        Entry::new(
-            "choices",
+        Entry::switch(
             "reduction",
             "share of the reduction that matches variance and gain at zero frequency",
         ),

@@ -3,8 +3,8 @@
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::deviations;
 use ahv_analysis::monte_carlo::Control;
-use ahv_analysis::trim::{SteadyFlight, trim};
-use ahv_core::{Bounds, Vector};
+use ahv_analysis::trim::{SteadyState, trim};
+use ahv_core::{Bounds, GeneratedModel, Vector};
 use ahv_integrate::WienerSource;
 use ahv_models::dcom::{self, NOMINAL, Parameters, STATE_BOUNDS};
 use ahv_models::sdcom;
@@ -174,7 +174,9 @@ fn design(trial: &Trial) -> String {
 /// Rightmost pole of SDCOM at its trim and rightmost zero from φ, δe to V, γ, in 1/s.
 pub(crate) fn unstable(trial: &Trial) -> [f64; 2] {
     let model = sdcom::Model::new(&trial.believed);
-    let level = SteadyFlight::new(trial.manoeuvre.velocity.from, trial.manoeuvre.altitude.from);
+    let level = SteadyState::new(&sdcom::Model::TRIM)
+        .with("velocity", trial.manoeuvre.velocity.from)
+        .with("altitude", trial.manoeuvre.altitude.from);
     let at = trim(&model, &level).expect("a trim");
     let system = linearize(&model, &at.state, &at.input, &["phi", "delta_e"], &[]).expect("finite");
     let outputs = DMatrix::from_fn(2, system.a.nrows(), |row, column| {
@@ -280,8 +282,8 @@ fn errors_at<M: AsRef<[f64]>>(at: &LoopState<M>, trial: &Trial, time: f64) -> [f
 }
 
 fn weights() -> String {
-    let by_state = deviations::<sdcom::State<f64>>();
-    let by_input = deviations::<sdcom::Input<f64>>();
+    let by_state = deviations::<sdcom::State<f64>>(sdcom::Model::DEVIATIONS);
+    let by_input = deviations::<sdcom::Input<f64>>(sdcom::Model::DEVIATIONS);
     let row = |name: &str, value: f64, unit: &str| {
         vec![
             name.to_owned(),

@@ -50,7 +50,8 @@ fn the_modes_of_the_sdcom_rest_where_those_of_the_dcom_do() {
     for part in [
         "sdcom: trim, velocity 7702.0808 ft/s, altitude 85000 ft, gamma 0 deg",
         "set section5.1, canard none, earth flat, noise independent, reduction printed",
-        "quasi-static eta: 0.627555, -0.013698, -0.037191",
+        "  eta_1        0.627555 (ft*slug)^0.5",
+        "  eta_3        -0.037191 (ft*slug)^0.5",
         "inside the validity box",
         "residuals, per s:",
     ] {

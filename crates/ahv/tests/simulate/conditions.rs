@@ -185,7 +185,7 @@ fn the_dcom_flies_with_noise_when_told_to() {
 fn a_choice_that_a_model_lacks_is_refused() {
     let bench = Bench::new();
     let stochastic = "sdcom, sdcom_printed, sdcom_gust and flexible_mode have it";
-    let dcom = "dcom, sdcom, sdcom_printed, sdcom_gust and flexible_mode have it";
+    let dcom = "dcom, sdcom, sdcom_printed and sdcom_gust have it";
     for (model, option, value, having) in [
         ("com", "--canard", "free", dcom),
         ("com_rigid", "--noise", "shared", dcom),

@@ -47,10 +47,10 @@ const IR: &str = r#"{
     {"name": "heavy", "parameters": [{"name": "m", "path": ["sets", "heavy", "vehicle", "m"],
       "source": "book", "status": "unverified", "uncertainty": 0.1}]}],
   "parameters": [
-    {"name": "m", "path": ["vehicle", "m"], "symbol": "m", "unit": "slug", "doc": "mass", "source": "book", "status": "published", "uncertainty": 0.4},
-    {"name": "slaving", "path": ["choices", "canard"], "symbol": "s_c", "unit": "1", "doc": "share", "source": "book", "status": "assumed", "uncertainty": 0.0},
-    {"name": "c_l_angle", "path": ["C_L", "angle"], "symbol": "C_L^{\\alpha}", "unit": "1/rad", "doc": "slope", "source": "book", "status": "published", "uncertainty": 0.4},
-    {"name": "c_l_0", "path": ["C_L", "1"], "symbol": "C_L^{0}", "unit": "1", "doc": "constant", "source": "book", "status": "published", "uncertainty": 0.4}],
+    {"name": "m", "path": ["vehicle", "m"], "symbol": "m", "unit": "slug", "doc": "mass", "kind": "parameter", "models": [], "source": "book", "status": "published", "uncertainty": 0.4},
+    {"name": "slaving", "path": ["choices", "canard"], "symbol": "s_c", "unit": "1", "doc": "share", "kind": "switch", "models": [], "source": "book", "status": "assumed", "uncertainty": 0.0},
+    {"name": "c_l_angle", "path": ["C_L", "angle"], "symbol": "C_L^{\\alpha}", "unit": "1/rad", "doc": "slope", "kind": "coefficient", "models": [], "source": "book", "status": "published", "uncertainty": 0.4},
+    {"name": "c_l_0", "path": ["C_L", "1"], "symbol": "C_L^{0}", "unit": "1", "doc": "constant", "kind": "coefficient", "models": [], "source": "book", "status": "published", "uncertainty": 0.4}],
   "validity": [{"name": "speed", "unit": "ft/s", "doc": "speed"}, {"name": "angle", "unit": "rad", "doc": "angle"}],
   "models": [{
     "name": "small", "title": "a small model", "equations": "(1)-(2)",

@@ -2,7 +2,7 @@
 
 /// A unit: powers of length, mass, time and angle, and its size in metre, kilogram, second and radian.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Unit {
+pub(crate) struct Unit {
     powers: [f64; 4],
     size: f64,
 }
@@ -30,6 +30,29 @@ const POUND: f64 = 0.453_592_37 * 9.806_65;
 
 const SLUG: f64 = POUND / FOOT;
 
+/// Names that the two unit systems have for the same thing.
+const PAIRS: [(&str, &str); 3] = [("ft", "m"), ("slug", "kg"), ("lb", "N")];
+
+/// The names of the units, as a list.
+pub(crate) fn known() -> String {
+    KNOWN.map(|(name, ..)| name).join(", ")
+}
+
+/// The SI unit in the place of one in foot and slug: `kg/m^3` for `slug/ft^3`.
+pub(crate) fn in_si(mut text: &str) -> String {
+    let mut converted = String::new();
+    while let Some(first) = text.chars().next() {
+        let name = taken(&mut text, |c| c.is_ascii_alphabetic());
+        let pair = PAIRS.iter().find(|(foot, _)| *foot == name);
+        converted.push_str(pair.map_or(name, |(_, si)| si));
+        if name.is_empty() {
+            converted.push(first);
+            text = &text[first.len_utf8()..];
+        }
+    }
+    converted
+}
+
 impl Unit {
     const ONE: Self = Self {
         powers: [0.0; 4],
@@ -37,11 +60,11 @@ impl Unit {
     };
 
     /// A degree in radians.
-    pub(super) const DEGREE: f64 = std::f64::consts::PI / 180.0;
+    pub(crate) const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
     /// Reads `slug/ft^3`, `(ft*slug)^0.5/s`, `1/rad`; `None` if it is no unit. The grammar is that of the generator:
     /// brackets hold names alone, so that no text is too deep.
-    pub(super) fn parse(text: &str) -> Option<Self> {
+    pub(crate) fn parse(text: &str) -> Option<Self> {
         if text.matches(['*', '/']).count() >= MOST_FACTORS {
             return None;
         }
@@ -51,7 +74,7 @@ impl Unit {
     }
 
     /// The size of the unit in terms of `other`; `None` if they measure different things.
-    pub(super) fn in_terms_of(&self, other: &Self) -> Option<f64> {
+    pub(crate) fn in_terms_of(&self, other: &Self) -> Option<f64> {
         (self.powers == other.powers).then(|| self.size / other.size)
     }
 
@@ -114,7 +137,7 @@ fn name(rest: &mut &str) -> Option<Unit> {
     Some(Unit { powers, size })
 }
 
-/// One or two digits, and up to three behind a point.
+/// One or two digits, and up to three behind a point; not 0.
 fn exponent(rest: &mut &str) -> Option<f64> {
     let text = taken(rest, |c| c.is_ascii_digit() || c == '.');
     let (whole, fraction) = match text.split_once('.') {
@@ -123,7 +146,7 @@ fn exponent(rest: &mut &str) -> Option<f64> {
     };
     let allowed = (1..=2).contains(&whole.len())
         && fraction.is_none_or(|it| (1..=3).contains(&it.len()) && !it.contains('.'));
-    text.parse().ok().filter(|_| allowed)
+    text.parse().ok().filter(|&it: &f64| allowed && it > 0.0)
 }
 
 /// Takes the longest start of `rest` whose characters all are `wanted`.
@@ -136,7 +159,7 @@ fn taken<'a>(rest: &mut &'a str, wanted: impl Fn(char) -> bool) -> &'a str {
 
 #[cfg(test)]
 mod tests {
-    use super::Unit;
+    use super::{Unit, in_si};
 
     fn ratio(one: &str, other: &str) -> Option<f64> {
         let [one, other] = [one, other].map(|text| Unit::parse(text).expect("a unit"));
@@ -155,10 +178,22 @@ mod tests {
         assert_eq!(ratio("ft", "s"), None);
     }
 
+    #[test]
+    fn each_unit_has_one_in_si() {
+        for (foot, si) in [
+            ("slug/ft^3", "kg/m^3"),
+            ("(ft*slug)^0.5/s", "(m*kg)^0.5/s"),
+            ("lb*ft/rad", "N*m/rad"),
+            ("1", "1"),
+        ] {
+            assert_eq!(in_si(foot), si);
+        }
+    }
+
     /// What the generator's reader takes and refuses, too.
     #[test]
     fn both_readers_have_one_grammar() {
-        let cases = include_str!("../../../../generator/tests/units.txt");
+        let cases = include_str!("../../../generator/tests/units.txt");
         for case in cases.lines().filter(|line| !line.starts_with('#')) {
             let (taken, text) = case.split_at(1);
             let text = text.strip_prefix(' ').unwrap_or(text);

@@ -1,0 +1,116 @@
+//! What is wrong with a table, and where.
+
+use std::fmt::{self, Display, Write as _};
+
+use crate::Part;
+
+/// A fault of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The rule that is broken, by the name that `ahv generate` has for it.
+    pub rule: &'static str,
+    /// Path of the keys to the entry at fault; of what lacks one, if an entry is missing.
+    pub path: Vec<String>,
+    /// Whether its key or its value is at fault.
+    pub part: Part,
+    message: String,
+    /// What would be right; may be empty.
+    help: String,
+}
+
+impl Fault {
+    /// The table is not for this model.
+    #[must_use]
+    pub fn other_model(model: &str) -> Self {
+        let message = format!("the table is not for {model}");
+        let help = "`models` must list it";
+        Self::new(
+            "model-not-listed",
+            &["table", "models"],
+            Part::Value,
+            &message,
+            help,
+        )
+    }
+
+    pub(crate) fn new(
+        rule: &'static str,
+        path: &[&str],
+        part: Part,
+        message: &str,
+        help: &str,
+    ) -> Self {
+        Self {
+            rule,
+            path: path.iter().map(|&key| key.to_owned()).collect(),
+            part,
+            message: message.to_owned(),
+            help: help.to_owned(),
+        }
+    }
+}
+
+impl Display for Fault {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_visibly(formatter, &self.message)?;
+        if !self.help.is_empty() {
+            formatter.write_str("; ")?;
+            write_visibly(formatter, &self.help)?;
+        }
+        write!(formatter, " [{}]", self.rule)
+    }
+}
+
+/// Writes a text; a character that could act on a terminal is written as its code.
+fn write_visibly(formatter: &mut fmt::Formatter<'_>, text: &str) -> fmt::Result {
+    text.chars().try_for_each(|c| match is_printable(c) {
+        true => formatter.write_char(c),
+        false => write!(formatter, "{}", c.escape_unicode()),
+    })
+}
+
+/// Whether a character can be shown: not a control, a mark of direction or the like.
+pub(crate) fn is_printable(c: char) -> bool {
+    // A mark that joins the letter before it can be shown, too.
+    "\"'\\".contains(c) || format!("a{c}").escape_debug().nth(2).is_none()
+}
+
+/// The start of a text of a table.
+pub(crate) fn shortened(text: &str) -> String {
+    const LONGEST: usize = 60;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// The nearest of the known words, or all of them.
+pub(crate) fn suggestion(word: &str, known: &[&str]) -> String {
+    const SIMILAR: f64 = 0.8;
+    let word = word.to_lowercase();
+    let nearest = known
+        .iter()
+        .map(|known| (strsim::jaro_winkler(&word, &known.to_lowercase()), known))
+        .filter(|&(similarity, _)| similarity > SIMILAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    match nearest {
+        Some((_, nearest)) => format!("did you mean `{nearest}`?"),
+        None => format!("known here: `{}`", known.join("`, `")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Fault, is_printable};
+    use crate::Part;
+
+    #[test]
+    fn no_character_acts_on_a_terminal() {
+        let fault = Fault::new("r", &[], Part::Key, "a\u{1b}[\u{202e}é'\"\\\u{301}", "b\n");
+        assert_eq!(
+            fault.to_string(),
+            "a\\u{1b}[\\u{202e}é'\"\\\u{301}; b\\u{a} [r]"
+        );
+        assert!(!is_printable('\u{a0}') && is_printable(' '));
+    }
+}
