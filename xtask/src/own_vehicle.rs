@@ -1,15 +1,17 @@
 //! The proof that the general crates know no model: packages of a stranger's tables, each with an `ahv` of its own, built
 //! outside the workspace and run.
 
+mod commands;
 mod tables;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ahv_codegen::{Core, Options, Table};
 use ahv_generate::{Args, Surroundings};
 use clap::Parser as _;
+use commands::Own;
 
 use crate::{python, shell};
 
@@ -18,6 +20,10 @@ const PLACE: &str = "tests/own-vehicle";
 const CORE: &str = "../../../../crates/ahv-core";
 /// A family in a file of its own.
 const PENDULUM: &str = "generator/tests/pendulum";
+/// The page that tells a stranger what to do, and the commands there.
+const PAGE: &str = "docs/link.md";
+const GENERATE: &str = "ahv generate";
+const RUN: &str = "cargo run --release -- ";
 /// Derives with that family beside the others.
 const DERIVE: &str = "import sys
 from ahv_generator import models
@@ -42,7 +48,43 @@ pub(crate) fn run() -> Result<(), String> {
     }
     generate_pendulum(&place)?;
     build(&place)?;
-    Ok(())
+    for (program, models, questions) in [
+        (
+            "own-vehicle",
+            ["dcom", "sdcom"].as_slice(),
+            commands::TWO_MODES,
+        ),
+        ("dcom-alone", &["dcom"], commands::DCOM_ALONE),
+        ("com-rigid-alone", &["com_rigid"], commands::COM_RIGID_ALONE),
+        ("pendulum", &["pendulum"], commands::PENDULUM),
+    ] {
+        println!("{program}");
+        let own = Own::new(program, &place.join("made"));
+        own.knows(models)?;
+        own.answers(questions)?;
+    }
+    let line = "rare --model pendulum --t-end 1 --passes angle=1deg";
+    let message = "pendulum has no noise, by which copies part";
+    Own::new("pendulum", &place.join("made")).refuses(line, message)?;
+    documented(&place)
+}
+
+/// What the documentation tells a stranger to do is what is done here.
+fn documented(place: &Path) -> Result<(), String> {
+    let page = read(&shell::root().join(PAGE))?;
+    let program = read(&place.join("src/main.rs"))?;
+    let code = program.split_once("\n\n").map_or("", |(_, code)| code);
+    if code.is_empty() || !page.contains(code) {
+        return Err(format!("error: {PAGE} does not have the program\n{code}"));
+    }
+    let told = |command: &str| {
+        let line = page.lines().find_map(|line| line.strip_prefix(command));
+        line.ok_or_else(|| format!("error: {PAGE} has no line `{command}...`"))
+    };
+    let generate = format!("generate{}", told(GENERATE)?);
+    GenerateLine::try_parse_from(generate.split(' '))
+        .map_err(|error| format!("{PAGE}: {error}"))?;
+    Own::new("own-vehicle", &place.join("made")).does(told(RUN)?)
 }
 
 /// The command line of `ahv generate`.
@@ -77,7 +119,8 @@ fn generate_pendulum(place: &Path) -> Result<(), String> {
     derive.args(["derive", "--out"]).arg(&irs);
     shell::output(derive.arg(family.join(file)))?;
 
-    let table = Table::parse(file, &read(&family.join(file))?).map_err(|error| error.to_string())?;
+    let table =
+        Table::parse(file, &read(&family.join(file))?).map_err(|error| error.to_string())?;
     let ir = read(&irs.join("pendulum.json"))?;
     let irs = BTreeMap::from([("pendulum".to_owned(), ir)]);
     let options = Options {
@@ -97,7 +140,9 @@ fn build(place: &Path) -> Result<(), String> {
     let lock = place.join("Cargo.lock");
     fs::copy(shell::root().join("Cargo.lock"), &lock).map_err(problem("write", &lock))?;
     let mut cargo = shell::cargo();
-    cargo.args(["build", "--manifest-path"]).arg(place.join("Cargo.toml"));
+    cargo
+        .args(["build", "--manifest-path"])
+        .arg(place.join("Cargo.toml"));
     shell::run(cargo.arg("--target-dir").arg(shell::target()))
 }
 

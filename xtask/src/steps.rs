@@ -3,7 +3,7 @@
 use std::process::Command;
 use std::time::Instant;
 
-use crate::{book, determinism, firmware, instructions, no_panic, python, shell};
+use crate::{book, determinism, firmware, instructions, no_panic, own_vehicle, python, shell};
 
 const XTASK: [&str; 2] = ["--manifest-path", "xtask/Cargo.toml"];
 /// With what `cargo xtask` itself was built from.
@@ -32,7 +32,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 19] = [
+const STEPS: [Step; 20] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK, &[])
@@ -72,6 +72,9 @@ const STEPS: [Step; 19] = [
     ("consumer", || cargo(&["test"], &CONSUMER, &[])),
     ("consumer, no_std", || {
         bare_metal(|| cargo(&["build", "--lib", "--target", BARE_METAL], &CONSUMER, &[]))
+    }),
+    ("own vehicle", || {
+        own_vehicle::run().map(|()| Outcome::Passed)
     }),
     ("no panic path", || {
         bare_metal(|| no_panic::run(BARE_METAL).map(|()| Outcome::Passed))

@@ -32,8 +32,8 @@ const SAMPLES: u32 = 20;
 /// Propagates the covariance of the states along a flight from the trim, and flies the same many times.
 ///
 /// To first order deviations have the covariance of P' = A P + P A' + G G', here by matrix exponentials; beside it stands the
-/// spread of an ensemble (splitting of Strang, for dcom Heun, Ito) with intervals of 95 %, and the ratio of the two standard
-/// deviations. Inputs are held, or follow a state feedback. In open loop the airframe is unstable, and the spread grows.
+/// spread of an ensemble (splitting of Strang, for a model without coloured noise Heun, Ito) with intervals of 95 %, and the ratio
+/// of the two standard deviations. Inputs are held, or follow a state feedback. Where that loop is unstable the spread grows.
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]

@@ -43,7 +43,7 @@ use ahv_core::{GeneratedModel, ModelList};
 use failure::{Failure, written};
 use vehicle::VehicleArgs;
 
-/// Flight models of an air-breathing hypersonic vehicle.
+/// Trims, linearises and flies models that were generated from tables.
 #[derive(Parser)]
 #[command(name = "ahv", version)]
 struct Cli {

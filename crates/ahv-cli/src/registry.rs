@@ -100,5 +100,9 @@ pub(crate) fn models() -> &'static [Registered] {
 pub(crate) fn without_noise<M: GeneratedModel>() -> String {
     let noisy = models().iter().filter(|model| model.has_noise);
     let noisy: Vec<_> = noisy.map(|model| model.name).collect();
-    format!("{} has no noise; {} have", M::NAME, names::list(&noisy))
+    match noisy.as_slice() {
+        [] => format!("{} has no noise", M::NAME),
+        [one] => format!("{} has no noise; {one} has", M::NAME),
+        _ => format!("{} has no noise; {} have", M::NAME, names::list(&noisy)),
+    }
 }

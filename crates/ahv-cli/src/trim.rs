@@ -16,7 +16,7 @@ use crate::vehicle::{Vehicle, VehicleArgs};
 use map::{Map, Size};
 use report::Report;
 
-/// Finds the state and input of steady flight.
+/// Finds a steady state, such as level flight, and the inputs that hold it.
 ///
 /// A damped Newton method with the model's own Jacobian, from a cold start, the sought inputs inside their validity box.
 /// Where there is no trim, it reports the nearest point and the bounds that block, and ends with code 3.

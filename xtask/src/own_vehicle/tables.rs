@@ -53,7 +53,8 @@ pub(super) fn com_rigid_alone(com: &str) -> Result<String, String> {
 }
 
 fn read(text: &str) -> Result<DocumentMut, String> {
-    text.parse().map_err(|error| format!("error: a table cannot be read: {error}"))
+    text.parse()
+        .map_err(|error| format!("error: a table cannot be read: {error}"))
 }
 
 fn inside<'a>(table: &'a mut DocumentMut, section: &str) -> Result<&'a mut dyn TableLike, String> {

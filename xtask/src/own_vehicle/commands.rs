@@ -1,0 +1,279 @@
+//! What the programs are asked, and what must hold of their answers.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::shell;
+
+/// A command line, and facts of its JSON: `pointer = value`, or `#pointer = length` of a list or an object.
+type Question = (&'static str, &'static [&'static str]);
+
+/// Two flexible modes and a set `heavy`.
+pub(super) const TWO_MODES: &[Question] = &[
+    (
+        "trim --model sdcom --set heavy",
+        &[
+            "/converged = true",
+            "/set = \"heavy\"",
+            "#/eta = 2",
+            "#/state = 7",
+            "/in_validity_box = true",
+        ],
+    ),
+    (
+        "trim --model dcom",
+        &[
+            "/converged = true",
+            "/set = \"own\"",
+            "#/eta = 2",
+            "#/state = 9",
+        ],
+    ),
+    (
+        "trim --model dcom --table tables-of-own-models/own.toml --set heavy",
+        &["/converged = true", "/set = \"heavy\""],
+    ),
+    (
+        "linearize --model dcom --outputs theta",
+        &[
+            "/outputs = [\"theta\"]",
+            "#/A = 9",
+            "/C = [[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]]",
+        ],
+    ),
+    (
+        "poles --model dcom",
+        &["#/poles = 9", "/modes/8/name = \"flexible 2\""],
+    ),
+    (
+        "poles --model sdcom --set heavy",
+        &["#/poles = 7", "/modes/6/name = \"coloured noise 2\""],
+    ),
+    (
+        "lqr --model sdcom --set heavy --out gains.json",
+        &["#/gain = 2", "#/gain/0 = 7"],
+    ),
+    (
+        "montecarlo --model sdcom --set heavy --feedback gains.json --members 16 --t-end 0.5 --dt 0.01 --disperse",
+        &[
+            "/members = 16",
+            "/lost = 0",
+            "/dispersed = true",
+            "/feedback = true",
+            "/scheme = \"splitting\"",
+        ],
+    ),
+    (
+        "montecarlo --model dcom --members 16 --t-end 0.2 --dt 0.01",
+        &[
+            "/members = 16",
+            "/lost = 0",
+            "/scheme = \"heun\"",
+            "#/mean = 9",
+        ],
+    ),
+    (
+        "rare --model sdcom --set heavy --feedback gains.json --t-end 0.3 --dt 0.01 --passes chi_2=0.05 --effort 20 \
+         --repetitions 10",
+        &[
+            "/state = \"chi_2\"",
+            "/repetitions = 10",
+            "/complete = true",
+        ],
+    ),
+    (
+        "covariance --model sdcom --t-end 0.2 --dt 0.01 --members 32",
+        &["/members = 32", "#/times/0/linear_std = 7"],
+    ),
+    (
+        "disperse --model sdcom --members 30",
+        &["/members = 30", "/complete = true"],
+    ),
+    (
+        "simulate --model dcom --set heavy --stochastic --t-end 0.2 --dt 0.01 --out flight.csv",
+        &["/steps = 20", "#/final_state = 9"],
+    ),
+];
+
+/// One model of a family.
+pub(super) const DCOM_ALONE: &[Question] =
+    &[("trim --model dcom", &["/converged = true", "#/eta = 3"])];
+
+/// One model of a family, without flexible modes and without noise.
+pub(super) const COM_RIGID_ALONE: &[Question] = &[
+    (
+        "trim --model com_rigid",
+        &["/converged = true", "#/state = 5"],
+    ),
+    ("poles --model com_rigid", &["#/poles = 5"]),
+];
+
+/// Nothing of it flies, and nothing drives it but its input. At 10 degrees the weight of 2 slug at 3 ft needs 33.52 lb ft.
+pub(super) const PENDULUM: &[Question] = &[
+    (
+        "trim --model pendulum --angle 10",
+        &[
+            "/converged = true",
+            "/input/torque = 33.52179090987366",
+            "#/outputs = 1",
+        ],
+    ),
+    (
+        "linearize --model pendulum --outputs height,angle",
+        &["#/C = 2"],
+    ),
+    (
+        "poles --model pendulum",
+        &["/modes/0/name = \"swing\"", "#/poles = 2", "#/zeros = 0"],
+    ),
+    (
+        "lqr --model pendulum --set light --out pendulum.json",
+        &["#/gain = 1"],
+    ),
+    (
+        "montecarlo --model pendulum --set light --feedback pendulum.json --members 16 --t-end 1 --dt 0.01 --disperse --state-std \
+         angle=1deg",
+        &["/members = 16", "/lost = 0", "/feedback = true"],
+    ),
+    (
+        "covariance --model pendulum --state-std angle=1deg --t-end 1 --dt 0.05 --members 16",
+        &["#/times/0/linear_std = 2"],
+    ),
+    ("disperse --model pendulum --members 30", &["/trimmed = 30"]),
+    (
+        "simulate --model pendulum --initial angle=5deg --t-end 1 --dt 0.01 --out swing.csv",
+        &["/steps = 100"],
+    ),
+];
+
+/// A program over models of its own, in a folder for what it writes.
+pub(super) struct Own {
+    program: PathBuf,
+    folder: PathBuf,
+}
+
+impl Own {
+    pub(super) fn new(name: &str, folder: &Path) -> Self {
+        let file = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+        Self {
+            program: shell::target().join("debug").join(file),
+            folder: folder.to_owned(),
+        }
+    }
+
+    /// Holds its help to exactly these models.
+    pub(super) fn knows(&self, models: &[&str]) -> Result<(), String> {
+        let help = self.ask("--help")?;
+        let named = |command: &&str| help.contains(&format!("\n  {command} "));
+        if let Some(missing) = COMMANDS.iter().find(|command| !named(command)) {
+            return Err(format!("error: --help has no {missing}:\n{help}"));
+        }
+        let help = self.ask("trim --help")?;
+        let found = values(&help, "--model <MODEL>");
+        if found == models {
+            Ok(())
+        } else {
+            Err(format!(
+                "error: --help has the models {found:?}, not {models:?}"
+            ))
+        }
+    }
+
+    /// Asks, and holds the answers to what must be.
+    pub(super) fn answers(&self, questions: &[Question]) -> Result<(), String> {
+        for (line, facts) in questions {
+            println!("  {line}");
+            let answer = self.ask(&format!("{line} --json"))?;
+            let json: Value = serde_json::from_str(&answer)
+                .map_err(|error| format!("error: {line}: {error}\n{answer}"))?;
+            for fact in *facts {
+                holds(&json, fact)
+                    .map_err(|found| format!("error: {line}: not {fact}, but {found}"))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Holds a command to being refused with this message.
+    pub(super) fn refuses(&self, line: &str, message: &str) -> Result<(), String> {
+        match self.ask(line) {
+            Err(said) if said.contains(message) => Ok(()),
+            Err(said) | Ok(said) => Err(format!("error: {line}: not {message:?}, but\n{said}")),
+        }
+    }
+
+    /// Runs a command that must end well.
+    pub(super) fn does(&self, line: &str) -> Result<(), String> {
+        self.ask(line).map(drop)
+    }
+
+    fn ask(&self, line: &str) -> Result<String, String> {
+        let mut command = shell::program(&self.program);
+        command.current_dir(&self.folder);
+        shell::output(command.args(line.split_whitespace()))
+    }
+}
+
+/// The general commands.
+const COMMANDS: [&str; 9] = [
+    "covariance",
+    "disperse",
+    "linearize",
+    "lqr",
+    "montecarlo",
+    "poles",
+    "rare",
+    "simulate",
+    "trim",
+];
+
+/// The values of a flag that a long help lists below it.
+fn values<'a>(help: &'a str, flag: &str) -> Vec<&'a str> {
+    let after = help.lines().skip_while(|line| !line.contains(flag)).skip(1);
+    let of_flag = after.take_while(|line| !line.trim_start().starts_with("--"));
+    let items = of_flag.filter_map(|line| line.trim_start().strip_prefix("- "));
+    items.filter_map(|item| item.split(':').next()).collect()
+}
+
+/// Holds a fact against JSON; what was found instead.
+fn holds(json: &Value, fact: &str) -> Result<(), String> {
+    let (pointer, expected) = fact.split_once(" = ").ok_or("no fact")?;
+    let found = match pointer.strip_prefix('#') {
+        None => json.pointer(pointer).cloned(),
+        Some(pointer) => match json.pointer(pointer) {
+            Some(Value::Array(items)) => Some(items.len().into()),
+            Some(Value::Object(items)) => Some(items.len().into()),
+            _ => None,
+        },
+    };
+    let expected: Value = serde_json::from_str(expected).map_err(|error| error.to_string())?;
+    match found {
+        Some(found) if found == expected => Ok(()),
+        Some(found) => Err(found.to_string()),
+        None => Err("nothing".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{holds, values};
+    use serde_json::json;
+
+    #[test]
+    fn facts_are_held_against_json() {
+        let json = json!({"a": [1, 2], "b": {"c": true}});
+        for fact in ["/a = [1, 2]", "#/a = 2", "#/b = 1", "/b/c = true"] {
+            assert_eq!(holds(&json, fact), Ok(()), "{fact}");
+        }
+        assert_eq!(holds(&json, "#/a = 3"), Err("2".to_owned()));
+        assert_eq!(holds(&json, "/d = 3"), Err("nothing".to_owned()));
+    }
+
+    #[test]
+    fn only_the_values_of_the_flag_are_read() {
+        let help = "  --model <MODEL>\n   Model\n\n   Possible values:\n   - a: one\n   - b: two\n\n  --set <NAME>\n   - c: three\n";
+        assert_eq!(values(help, "--model <MODEL>"), ["a", "b"]);
+        assert!(values(help, "--other").is_empty());
+    }
+}
