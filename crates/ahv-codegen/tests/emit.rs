@@ -336,9 +336,9 @@ fn spans_point_at_keys_and_values() {
 #[test]
 fn text_that_is_not_toml_has_a_place() {
     let error = Table::parse("t.toml", "[C_L]\n\"alpha\" = \n").unwrap_err();
-    assert!(error.span.is_some(), "{error}");
+    assert!(error.span.is_some(), "{error:?}");
     let twice = Table::parse("t.toml", "[C_L]\na = 1\na = 2\n").unwrap_err();
-    assert!(twice.message.contains("duplicate key"), "{twice}");
+    assert!(twice.message.contains("duplicate key"), "{twice:?}");
     assert!(twice.span.is_some());
 }
 
