@@ -14,8 +14,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::failure::{Failure, print};
 use crate::flight_condition::FlightCondition;
+use crate::flights::deviations;
 use crate::flights::feedback::FeedbackArguments;
-use crate::flights::{default_scheme, deviations};
 use crate::number::{Shown, positive};
 use crate::output::{self, Pairs};
 use crate::progress::{Progress, Work};
@@ -96,7 +96,7 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
             without_noise::<M>()
         )));
     }
-    spread::<M>(arguments, default_scheme::<M>())
+    spread::<M>(arguments)
 }
 
 /// What is printed: the spread to first order and of the ensemble, at the same times.
@@ -121,8 +121,9 @@ fn steps(arguments: &Arguments) -> Result<u64, Failure> {
     Ok(allowed(t_end, dt, steps, MOST_STEPS)? / u64::from(SAMPLES))
 }
 
-fn spread<M: GeneratedModel>(arguments: &Arguments, scheme: Scheme) -> Result<(), Failure> {
+fn spread<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
     let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
+    let scheme = Scheme::default_for::<M>(&vehicle.parameters);
     let steady = arguments.condition.flight(&vehicle)?;
     let trim = vehicle.trim(&steady)?;
     let part = arguments.t_end / f64::from(SAMPLES);

@@ -43,7 +43,7 @@ pub(crate) struct Flights {
     #[arg(long, value_name = "S", default_value_t = 0.001, value_parser = positive, allow_negative_numbers = true)]
     dt: f64,
 
-    /// Stepper [default: splitting, which steps coloured noise exactly; for a model that has none heun]
+    /// Stepper [default: splitting, which steps coloured noise exactly; for a model without noise that can be split off heun]
     #[arg(long, value_parser = one_of(Scheme::ALL, Scheme::name))]
     scheme: Option<Scheme>,
 
@@ -85,14 +85,6 @@ fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
         let found = all.into_iter().find(|&it| name(it) == text);
         found.ok_or_else(|| format!("there is no {text}"))
     })
-}
-
-/// The stepper where none is asked for: the splitting steps coloured noise exactly.
-pub(crate) fn default_scheme<M: GeneratedModel>() -> Scheme {
-    match M::coloured_states() {
-        0 => Scheme::Heun,
-        _ => Scheme::Splitting,
-    }
 }
 
 /// Flights that are about to start, with no limits but the validity box.
@@ -147,7 +139,9 @@ impl Flights {
             input: [input, deviations("--input-std", &self.input_std, vehicle)?],
             feedback: self.feedback.read::<M>(vehicle, flight)?,
             watched: vec![vehicle.state_bounds],
-            scheme: self.scheme.unwrap_or_else(default_scheme::<M>),
+            scheme: self
+                .scheme
+                .unwrap_or_else(|| Scheme::default_for::<M>(&vehicle.parameters)),
             mode: self.mode,
             dt: self.dt,
             snapshots: vec![steps],

@@ -95,6 +95,13 @@ fn an_input_without_effect_is_named() {
     assert!(!told("poles --model sdcom --canard free --inputs phi,delta_c").contains("no effect"));
 }
 
+/// Coloured noise that shares its channel with the mode cannot be split off.
+#[test]
+fn a_mode_flies_without_a_scheme_by_name() {
+    told("montecarlo --model flexible_mode --members 9 --t-end 0.1");
+    told("covariance --model flexible_mode --members 30 --t-end 0.1");
+}
+
 /// Damping so large that one decay rate is nothing beside the other: a sum holds both.
 #[test]
 fn a_mode_of_any_damping_is_reduced() {

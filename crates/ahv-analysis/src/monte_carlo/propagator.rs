@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 
 use ahv_core::{Bounds, CountVisitor, GeneratedModel, Outlined, Real, Straight, Vector};
-use ahv_integrate::NoiseError;
+use ahv_integrate::{ItoStrangSplitting, NoiseError};
 
 use super::MonteCarloError;
 use super::arithmetic::{Called, In, Mode};
@@ -85,6 +85,32 @@ where
     S: Steps<F, F::With<Straight<f64>>> + Steps<F, Outlined<F::With<f64>>> + 'static,
 {
     BatchPropagator::<F, S, In<Straight<f64>>, In<f64>>::new(experiment)
+}
+
+impl Scheme {
+    /// The scheme where none is asked for: the splitting, which steps coloured noise exactly, where the model of these
+    /// parameters has coloured noise with channels of its own; else Heun's.
+    pub fn default_for<F: GeneratedModel>(parameters: &F::ParametersOf<f64>) -> Self {
+        match F::coloured(Splits::<F>(parameters)) {
+            Some(true) => Self::Splitting,
+            _ => Self::Heun,
+        }
+    }
+}
+
+/// Whether the model of these parameters can be split.
+struct Splits<'p, F: GeneratedModel>(&'p F::ParametersOf<f64>);
+
+impl<F: GeneratedModel> CountVisitor for Splits<'_, F> {
+    type Output = bool;
+
+    fn visit<const N: usize>(self) -> bool {
+        let (x, u) = generic_point::<F>();
+        let model = F::with_parameters(self.0);
+        let first = |numbers: &Packed| numbers.0[0];
+        let (x, u) = (F::map_state(&x, first), F::map_input(&u, first));
+        ItoStrangSplitting::<f64, N>::new(&model, &x, &u, 1.0).is_ok()
+    }
 }
 
 /// An experiment by the splitting.
