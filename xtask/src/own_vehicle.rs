@@ -119,8 +119,7 @@ fn generate_pendulum(place: &Path) -> Result<(), String> {
     derive.args(["derive", "--out"]).arg(&irs);
     shell::output(derive.arg(family.join(file)))?;
 
-    let table =
-        Table::parse(file, &read(&family.join(file))?).map_err(|error| error.to_string())?;
+    let table = Table::parse(file, &read(&family.join(file))?).map_err(|error| error.message)?;
     let ir = read(&irs.join("pendulum.json"))?;
     let irs = BTreeMap::from([("pendulum".to_owned(), ir)]);
     let options = Options {
