@@ -139,10 +139,14 @@ fn build(place: &Path) -> Result<(), String> {
     let lock = place.join("Cargo.lock");
     fs::copy(shell::root().join("Cargo.lock"), &lock).map_err(problem("write", &lock))?;
     let mut cargo = shell::cargo();
-    cargo
-        .args(["build", "--manifest-path"])
-        .arg(place.join("Cargo.toml"));
-    shell::run(cargo.arg("--target-dir").arg(shell::target()))
+    cargo.args(["build", "--quiet", "--target-dir"]);
+    cargo.arg(shell::target()).current_dir(place);
+    println!("building {PLACE}");
+    let said = shell::messages(&mut cargo)?;
+    if said.contains("warning:") {
+        return Err(format!("error: {PLACE} compiles with warnings\n{said}"));
+    }
+    Ok(())
 }
 
 fn read(path: &Path) -> Result<String, String> {

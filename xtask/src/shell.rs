@@ -2,7 +2,7 @@
 
 use std::env;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// The folder of the repository.
 pub(crate) fn root() -> &'static Path {
@@ -38,10 +38,17 @@ pub(crate) fn run(command: &mut Command) -> Result<(), String> {
 
 /// Runs a program and gives its standard output.
 pub(crate) fn output(command: &mut Command) -> Result<String, String> {
+    finished(command).map(|output| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// Runs a program and gives what it says beside its output.
+pub(crate) fn messages(command: &mut Command) -> Result<String, String> {
+    finished(command).map(|output| String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+fn finished(command: &mut Command) -> Result<Output, String> {
     match command.output() {
-        Ok(output) if output.status.success() => {
-            Ok(String::from_utf8_lossy(&output.stdout).into_owned())
-        }
+        Ok(output) if output.status.success() => Ok(output),
         Ok(output) => Err(format!(
             "error: {} failed ({})\n{}",
             shown(command),

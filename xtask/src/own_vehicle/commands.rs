@@ -115,7 +115,7 @@ pub(super) const PENDULUM: &[Question] = &[
         "trim --model pendulum --angle 10",
         &[
             "/converged = true",
-            "/input/torque = 33.52179090987366",
+            "/input/torque = 33.521790903988204",
             "#/outputs = 1",
         ],
     ),
@@ -137,7 +137,7 @@ pub(super) const PENDULUM: &[Question] = &[
         &["/members = 16", "/lost = 0", "/feedback = true"],
     ),
     (
-        "covariance --model pendulum --state-std angle=1deg --t-end 1 --dt 0.05 --members 16",
+        "covariance --model pendulum --state-std angle=1deg --t-end 1 --dt 0.05 --members 30",
         &["#/times/0/linear_std = 2"],
     ),
     ("disperse --model pendulum --members 30", &["/trimmed = 30"]),
@@ -230,7 +230,7 @@ const COMMANDS: [&str; 9] = [
 
 /// The values of a flag that a long help lists below it.
 fn values<'a>(help: &'a str, flag: &str) -> Vec<&'a str> {
-    let after = help.lines().skip_while(|line| !line.contains(flag)).skip(1);
+    let after = help.lines().skip_while(|line| line.trim() != flag).skip(1);
     let of_flag = after.take_while(|line| !line.trim_start().starts_with("--"));
     let items = of_flag.filter_map(|line| line.trim_start().strip_prefix("- "));
     items.filter_map(|item| item.split(':').next()).collect()
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn only_the_values_of_the_flag_are_read() {
-        let help = "  --model <MODEL>\n   Model\n\n   Possible values:\n   - a: one\n   - b: two\n\n  --set <NAME>\n   - c: three\n";
+        let help = "Usage: ahv --model <MODEL>\n  --model <MODEL>\n   Model\n\n   Possible values:\n   - a: one\n   - b: two\n\n  --set <NAME>\n   - c: three\n";
         assert_eq!(values(help, "--model <MODEL>"), ["a", "b"]);
         assert!(values(help, "--other").is_empty());
     }
