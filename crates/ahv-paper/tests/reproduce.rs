@@ -255,7 +255,7 @@ fn the_printed_roots_lie_where_the_text_says() {
             let pairs: Vec<_> = place.iter().filter(flexible).collect();
             assert_eq!(pairs.len(), if older { 2 } else { 3 }, "{}", roots.model);
             let light = |root: &&printed::Root| (-0.04 * root[1]..0.0).contains(&root[0]);
-            assert!(pairs.iter().all(|root| light(root)), "{pairs:?}");
+            assert!(pairs.iter().all(light), "{pairs:?}");
         }
         let zeros = real(roots.zeros);
         assert_eq!(zeros, [-zeros[2], 0.0, zeros[2]], "{}", roots.model);
