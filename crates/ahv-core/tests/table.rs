@@ -1,7 +1,7 @@
 //! Rules of a table, with violations of each kind.
 #![forbid(unsafe_code)]
 
-use ahv_core::{Rule, Sign, Term, Vector};
+use ahv_core::{Rule, Sign, Term};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pair<T> {
@@ -25,7 +25,8 @@ fn a_rule_holds_for_its_sign_alone() {
         (Sign::NotNegative, false, true),
         (Sign::NotZero, true, false),
     ] {
-        let rule = Rule::new("rule", "a reason", must, &[Term::new(1.0, &["mass"])]);
+        const TERMS: &[Term] = &[Term::new(1.0, &["mass"])];
+        let rule = Rule::new("rule", "a reason", must, TERMS);
         for (mass, holds) in [
             (1e-300, true),
             (f64::INFINITY, true),
@@ -62,7 +63,8 @@ fn terms_add_up_and_a_power_repeats_its_parameter() {
 #[test]
 fn an_unknown_parameter_obeys_nothing() {
     for must in [Sign::Positive, Sign::NotNegative, Sign::NotZero] {
-        let rule = Rule::new("rule", "a reason", must, &[Term::new(1.0, &["length"])]);
+        const TERMS: &[Term] = &[Term::new(1.0, &["length"])];
+        let rule = Rule::new("rule", "a reason", must, TERMS);
         assert!(!rule.holds(&of(1.0, 1.0)), "{must:?}");
     }
 }
