@@ -12,6 +12,7 @@ from decimal import Decimal, localcontext
 from typing import cast
 
 import pint
+from pint.util import UnitsContainer
 
 from .diagnostics import shortened
 
@@ -36,6 +37,7 @@ _DEFINITIONS = (
 
 _SHORT = {
     "foot": "ft",
+    "slug": "slug",
     "second": "s",
     "radian": "rad",
     "degree": "deg",
@@ -45,17 +47,22 @@ _SHORT = {
     "kilogram": "kg",
 }
 
+_LONG = {short: name for name, short in _SHORT.items()}
+
 # Brackets hold names alone. The reader of `ahv ... --table` has the same grammar; `tests/units.txt` holds for both.
 _NAME = "(?:ft|slug|lb|m|kg|N|s|rad|deg)"
-_POSITIVE = r"(?!0+(?:\.0+)?(?:[*/]|$))"  # An exponent of 0 is an exception of pint.
-_ATOM = rf"(?:1|{_NAME}|\({_NAME}(?:[*/]{_NAME})*\))(?:\^{_POSITIVE}[0-9]{{1,2}}(?:\.[0-9]{{1,3}})?)?"
+_BASE = rf"1|{_NAME}|\({_NAME}(?:[*/]{_NAME})*\)"
+_EXPONENT = r"(?!0+(?:\.0+)?(?:[*/]|$))[0-9]{1,2}(?:\.[0-9]{1,3})?"  # positive
+_ATOM = rf"(?:{_BASE})(?:\^{_EXPONENT})?"
 _GRAMMAR = re.compile(rf"{_ATOM}(?:[*/]{_ATOM})*")
+_ATOMS = re.compile(rf"(^|[*/])({_BASE})(?:\^({_EXPONENT}))?")
+_NAMES = re.compile(r"(^|[*/])([A-Za-z]+)")
 
 _PAIRS = {"ft": "m", "slug": "kg", "lb": "N"}
 _WORDS = {IMPERIAL: {si: ft for ft, si in _PAIRS.items()}, SI: _PAIRS}
 _SIZES = {"ft": _FOOT, "lb": _POUND_FORCE, "slug": _POUND_FORCE / _FOOT}
 
-# Of a unit; no equation has so many. pint adds up what it reads one call inside the other.
+# Of a unit; no equation has so many.
 _MOST_FACTORS = 32
 
 _KNOWN = "ft, slug, lb, m, kg, N, s, rad, deg"
@@ -81,14 +88,20 @@ class UnitError(Exception):
 def _parse(text: str) -> pint.Unit:
     if not text.strip():
         raise UnitError("the unit is empty; a pure number has the unit `1`")
-    # pint evaluates what it reads: only what a unit can look like is let through.
     if not _GRAMMAR.fullmatch(text):
         example = "written like `slug/ft^3` or `(ft*slug)^0.5/s`"
         raise UnitError(f"`{shortened(text)}` is not a unit; known are {_KNOWN}, {example}")
     factors = 1 + len(re.findall("[*/]", text))
     if factors > _MOST_FACTORS:
         raise UnitError(f"`{shortened(text)}` has too many factors, {factors}; there may be {_MOST_FACTORS}")
-    return _REGISTRY.parse_units(text)
+    # Not by pint's own parser, which evaluates what it reads and stumbles over exponents like `01`.
+    powers: dict[str, float] = {}
+    for sign, base, exponent in _ATOMS.findall(text):
+        for inner, name in _NAMES.findall(base.strip("()")):
+            power = float(exponent or 1) * (1 if (sign == "/") == (inner == "/") else -1)
+            powers[_LONG[name]] = powers.get(_LONG[name], 0.0) + power
+    whole = {name: int(power) if power.is_integer() else power for name, power in powers.items() if power != 0}
+    return _REGISTRY.Unit(UnitsContainer(whole))
 
 
 def factor(text: str, expected: str) -> float:

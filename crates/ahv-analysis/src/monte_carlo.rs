@@ -44,6 +44,14 @@ pub enum MonteCarloError {
         /// What its stepper says.
         reason: NoiseError,
     },
+    /// The splitting of a model that has no coloured noise.
+    #[error(
+        "the scheme splitting needs coloured noise, and {model} has none; heun and the others do not"
+    )]
+    NoColouredNoise {
+        /// The model.
+        model: &'static str,
+    },
     /// A scheme that takes more normal numbers a step than there is room for.
     #[error("a step would take {normals} normal numbers; {MOST_NORMALS} can be drawn")]
     Normals {

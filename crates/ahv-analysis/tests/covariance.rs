@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::marker::PhantomData;
+
 use ahv_analysis::covariance::{
     CovarianceError, Flight, Regulation, Spreading, lyapunov, noise_intensity,
 };
@@ -312,6 +314,132 @@ fn an_initial_covariance_moves_with_the_flight() {
     let (e, r) = ((-a * t).exp(), -f64::exp_m1(-a * t) * c / a);
     let expected = 0.04 * e * e + 0.02 * e * r + 0.09 * r * r;
     assert_relative_eq!(spread[0].covariance[(0, 0)], expected, max_relative = 1e-12);
+}
+
+/// What is known for sure, what is known to 1e-9 and what is known to 1e6 stand beside each other in an initial covariance.
+/// Correlations are what they are, however small the variances.
+#[test]
+fn units_of_an_initial_covariance_do_not_matter() {
+    let model = Pair {
+        a: 0.0,
+        c: 0.0,
+        g: 0.0,
+    };
+    let of = |initial| Flight {
+        initial,
+        ..Flight::new(REST, IDLE, 0.1)
+    };
+    let (small, large, share) = (1e-9, 1e6, 0.9);
+    let both = share * small * large;
+    let at_once = of(matrix(&[
+        &[small * small, both, 0.0],
+        &[both, large * large, 0.0],
+        &[0.0, 0.0, 0.0],
+    ]));
+    let spread = at_once.covariance(&model, &[0.0]).expect("a flight");
+    let found = &spread[0].covariance;
+    assert_relative_eq!(found[(0, 0)], small * small, max_relative = 1e-12);
+    assert_relative_eq!(found[(0, 1)], both, max_relative = 1e-12);
+    assert_relative_eq!(found[(1, 1)], large * large, max_relative = 1e-12);
+    for size in [small, 1.0, large] {
+        let beyond = of(matrix(&[
+            &[size * size, 1.5 * size * size, 0.0],
+            &[1.5 * size * size, size * size, 0.0],
+            &[0.0, 0.0, 0.0],
+        ]));
+        let failure = beyond.covariance(&model, &[0.0]);
+        assert!(
+            matches!(failure, Err(CovarianceError::Indefinite { least }) if (least + 0.5).abs() < 1e-12),
+            "{size}: {failure:?}"
+        );
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Fifteen<T> {
+    a: T,
+    b: T,
+    c: T,
+    d: T,
+    e: T,
+    f: T,
+    g: T,
+    h: T,
+    i: T,
+    j: T,
+    k: T,
+    l: T,
+    m: T,
+    n: T,
+    o: T,
+}
+
+ahv_core::impl_vector! { Fifteen {
+    a: ["1", "1", 1.0], b: ["1", "1", 1.0], c: ["1", "1", 1.0], d: ["1", "1", 1.0], e: ["1", "1", 1.0],
+    f: ["1", "1", 1.0], g: ["1", "1", 1.0], h: ["1", "1", 1.0], i: ["1", "1", 1.0], j: ["1", "1", 1.0],
+    k: ["1", "1", 1.0], l: ["1", "1", 1.0], m: ["1", "1", 1.0], n: ["1", "1", 1.0], o: ["1", "1", 1.0],
+} }
+
+/// dxᵢ = uⱼ dt, where every state has the first of the inputs.
+struct Driven<U>(PhantomData<U>);
+
+impl<U: Vector<f64>> Model for Driven<U> {
+    type Scalar = f64;
+    type State = Fifteen<f64>;
+    type Input = U;
+
+    fn drift(&self, _: &Fifteen<f64>, u: &U) -> Fifteen<f64> {
+        Fifteen::splat(u.get(0).unwrap_or_default())
+    }
+}
+
+impl<U: Vector<f64>> DifferentiableModel for Driven<U> {
+    type StateJacobian = Fifteen<Fifteen<f64>>;
+    type InputJacobian = Fifteen<U>;
+    const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new([15, 15], &[]);
+
+    fn jacobians(&self, _: &Fifteen<f64>, _: &U) -> (Fifteen<Fifteen<f64>>, Fifteen<U>) {
+        let row = U::from_fn(|index| f64::from(u8::from(index == 0)));
+        (Fifteen::splat(Fifteen::splat(0.0)), Fifteen::splat(row))
+    }
+
+    fn drift_and_jacobians(
+        &self,
+        x: &Fifteen<f64>,
+        u: &U,
+    ) -> (Fifteen<f64>, Fifteen<Fifteen<f64>>, Fifteen<U>) {
+        let (by_state, by_input) = self.jacobians(x, u);
+        (self.drift(x, u), by_state, by_input)
+    }
+}
+
+impl<U: Vector<f64>> StochasticModel for Driven<U> {
+    type Noise = One<f64>;
+
+    fn noise_increment(&self, _: &Fifteen<f64>, _: &U, _: &One<f64>) -> Fifteen<f64> {
+        Fifteen::splat(0.0)
+    }
+}
+
+/// An input known to σ moves each state by σ t: sixteen states and inputs have it, and seventeen are refused.
+#[test]
+fn as_many_states_and_inputs_as_transitions_are_made_for() {
+    let still = Fifteen::splat(0.0);
+    let mut flight = Flight::new(still, IDLE, 0.1);
+    flight.initial[(15, 15)] = 0.04;
+    let spread = flight.covariance(&Driven(PhantomData), &[3.0]);
+    for std in spread.expect("a flight")[0].std() {
+        assert_relative_eq!(std, 0.6, max_relative = 1e-12);
+    }
+    let one_more = Flight::new(still, REST, 0.1);
+    let expected = CovarianceError::TooLarge {
+        found: 17,
+        most: 16,
+    };
+    assert_eq!(
+        one_more.covariance(&Driven(PhantomData), &[3.0]),
+        Err(expected)
+    );
 }
 
 /// u̇ = b (−k₁ x − k₂ y − u): the loop comes to rest, and what rests is what a long flight comes to.

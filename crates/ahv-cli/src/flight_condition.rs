@@ -198,7 +198,7 @@ impl FlightCondition {
         vehicle: &Vehicle<M>,
     ) -> Result<Assignments, Failure> {
         let inputs = Assignments::parse::<M::Input>("--input", &self.input, vehicle.units)?;
-        vehicle.check_effect(&inputs)?;
+        vehicle.check_effect("--input", &inputs)?;
         Ok(inputs)
     }
 }
@@ -287,13 +287,13 @@ impl<M: GeneratedModel> Vehicle<M> {
 
     /// Refuses an input other than 0 that changes nothing at any point of the validity box: it is a misunderstanding. None at
     /// all may be said, as reports do.
-    pub(crate) fn check_effect(&self, inputs: &Assignments) -> Result<(), Failure> {
+    pub(crate) fn check_effect(&self, option: &str, inputs: &Assignments) -> Result<(), Failure> {
         for name in M::Input::NAMES {
             let moved = inputs.get::<M::Input>(name);
             if moved.is_some_and(|value| value != 0.0)
                 && let Some(why) = self.idle(name)
             {
-                return Err(Failure::Request(format!("--input: {why}")));
+                return Err(Failure::Request(format!("{option}: {why}")));
             }
         }
         Ok(())

@@ -229,7 +229,11 @@ pub(crate) fn deviations<M: GeneratedModel, V: Vector<f64>>(
     vehicle: &Vehicle<M>,
 ) -> Result<V, Failure> {
     let mut deviations = V::splat(0.0);
-    Assignments::parse::<V>(option, texts, vehicle.units)?.apply(&mut deviations, &[]);
+    let given = Assignments::parse::<V>(option, texts, vehicle.units)?;
+    given.apply(&mut deviations, &[]);
+    if V::NAMES == M::Input::NAMES {
+        vehicle.check_effect(option, &given)?;
+    }
     match deviations.find(|deviation| deviation < 0.0) {
         Some((name, value)) => Err(Failure::Request(format!(
             "{option}: {name} is {}; a standard deviation is 0 or more",
@@ -254,9 +258,9 @@ pub(crate) fn watched<T>(
     drop(progress);
     outcome.map_err(|error| match error {
         MonteCarloError::Stopped => Failure::Interrupted(format!("interrupted: {error}")),
-        MonteCarloError::Scheme { .. } | MonteCarloError::Normals { .. } => {
-            Failure::Request(format!("--scheme: {error}"))
-        }
+        MonteCarloError::Scheme { .. }
+        | MonteCarloError::NoColouredNoise { .. }
+        | MonteCarloError::Normals { .. } => Failure::Request(format!("--scheme: {error}")),
         other => Failure::Request(other.to_string()),
     })
 }

@@ -6,19 +6,19 @@ use std::path::{Path, PathBuf};
 
 use ahv_analysis::linearize::{LinearSystem, LinearizeError, with_outputs};
 use ahv_analysis::trim::SteadyState;
-use ahv_core::{GeneratedModel, Model, Vector};
+use ahv_core::{GeneratedModel, Model, Vector, first_outside};
 use clap::Args;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
 use crate::assignment::Assignments;
 use crate::csv_file::CsvFile;
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, complain, print};
 use crate::flight_condition::FlightCondition;
 use crate::named::Named;
 use crate::names;
 use crate::number::{Shown, cell};
-use crate::output::{self, Pairs, describe};
+use crate::output::{self, Pairs, describe, describe_outside};
 use crate::vehicle::{Heading, Vehicle, VehicleArgs};
 
 /// Linearises a model about its trim, or a given state: dx/dt = A x + B u, y = C x + D u.
@@ -77,6 +77,9 @@ fn about_point<M: GeneratedModel>(
         texts => given(arguments, vehicle, texts)?,
     };
     let system = vehicle.linear((&point.0, &point.1), &arguments.inputs, &arguments.outputs)?;
+    for why in system.inputs.iter().filter_map(|input| vehicle.idle(input)) {
+        complain(&format!("note: {why}"));
+    }
     let json = json(vehicle, &flight, &point, &system);
     if let Some(path) = &arguments.out {
         write(path, vehicle, &system, &json)?;
@@ -101,6 +104,12 @@ fn given<M: GeneratedModel>(
 ) -> Result<At<M>, Failure> {
     let (mut flight, inputs) = arguments.condition.flight_and_inputs(vehicle)?;
     let states = Assignments::parse::<M::State>("--state", texts, vehicle.units)?;
+    let mut flags = arguments.condition.names();
+    if let Some(name) = flags.find(|name| states.get::<M::State>(name).is_some()) {
+        return Err(Failure::Request(format!(
+            "--state: {name} is given twice; leave --{name} out"
+        )));
+    }
     let (mut state, mut input) = (M::State::splat(0.0), M::Input::splat(0.0));
     for (name, value) in flight.given().collect::<Vec<_>>() {
         let value = states.get::<M::State>(name).unwrap_or(value);
@@ -114,6 +123,16 @@ fn given<M: GeneratedModel>(
     vehicle
         .moves(&state)
         .map_err(|why| Failure::Request(format!("--state: {why}")))?;
+    for (outside, unit) in [
+        first_outside(&state, &vehicle.state_bounds).map(|it| (it, vehicle.unit(it.name))),
+        first_outside(&input, &vehicle.input_bounds).map(|it| (it, vehicle.unit(it.name))),
+    ]
+    .into_iter()
+    .flatten()
+    {
+        let outside = describe_outside(&outside, unit);
+        complain(&format!("warning: {}: {outside}", M::NAME));
+    }
     Ok((flight, (state, input)))
 }
 

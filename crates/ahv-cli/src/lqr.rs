@@ -72,7 +72,7 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
     if arguments.json {
         output::print_json(&file)
     } else {
-        let place = vehicle.at(&flight);
+        let place = format!("{}\n{}", vehicle.at(&flight), vehicle.described());
         let trim = format!(
             "{}\n{}",
             describe(&trim.state, vehicle.units),
@@ -89,6 +89,9 @@ fn costs<M: GeneratedModel, V: Vector<f64>>(
     vehicle: &Vehicle<M>,
 ) -> Result<V, Failure> {
     let given = Assignments::parse::<V>(option, texts, vehicle.units)?;
+    if V::NAMES == M::Input::NAMES {
+        vehicle.check_effect(option, &given)?;
+    }
     let mut costs: V = vehicle.units.convert(deviations(M::DEVIATIONS));
     given.apply(&mut costs, &[]);
     match costs.find(|deviation| deviation <= 0.0) {
@@ -169,7 +172,7 @@ fn gains<M: GeneratedModel>(
 /// The gains for a person.
 fn text(gains: &Gains, place: &str, trim: &str) -> String {
     let mut text = format!(
-        "{}: regulator at {place}\n{trim}\ngain, in the units of the model, angles in rad:",
+        "{}: regulator, {place}\n{trim}\ngain, in the units of the model, angles in rad:",
         gains.model
     );
     // Writing into a String cannot fail.

@@ -113,6 +113,28 @@ pub trait GeneratedModel:
         Self::coloured(Count).unwrap_or(0)
     }
 
+    /// The first rule of the table that these parameters break. A rule on a parameter that the model has no use for is none of
+    /// its own.
+    fn broken_rule(parameters: &Self::ParametersOf<f64>) -> Option<&'static crate::Rule> {
+        Self::TABLE.rules.iter().find(|rule| {
+            let terms = || rule.terms.iter().flat_map(|term| term.parameters);
+            !rule.holds(parameters) && terms().all(|name| Self::uses(name))
+        })
+    }
+
+    /// Whether the model depends on the parameter of this name.
+    fn uses(parameter: &str) -> bool {
+        let Some(ParameterSet { parameters, .. }) = Self::SETS.first() else {
+            return false;
+        };
+        let mut other = *parameters;
+        let changed = Self::ParametersOf::<f64>::index_of(parameter).and_then(|index| {
+            let value = other.get(index)?;
+            other.set(index, value + 1.0)
+        });
+        changed.is_some() && Self::with_parameters(&other) != Self::with_parameters(parameters)
+    }
+
     /// ∂f/∂p at (x, u): a vector over the rows of f, each a vector over the parameters. The unit of an entry is that of its
     /// row per second, over that of its column.
     fn parameter_jacobian(

@@ -20,13 +20,13 @@ fn of(mass: f64, coupling: f64) -> Pair<f64> {
 
 #[test]
 fn a_rule_holds_for_its_sign_alone() {
-    const MASS: &[Term] = &[Term::new(1.0, &["mass"])];
     for (must, negative, zero) in [
         (Sign::Positive, false, false),
         (Sign::NotNegative, false, true),
         (Sign::NotZero, true, false),
     ] {
-        let rule = Rule::new("rule", "a reason", must, MASS);
+        const TERMS: &[Term] = &[Term::new(1.0, &["mass"])];
+        let rule = Rule::new("rule", "a reason", must, TERMS);
         for (mass, holds) in [
             (1e-300, true),
             (f64::INFINITY, true),
@@ -62,9 +62,9 @@ fn terms_add_up_and_a_power_repeats_its_parameter() {
 /// No parameters obey a rule about one that they do not have.
 #[test]
 fn an_unknown_parameter_obeys_nothing() {
-    const LENGTH: &[Term] = &[Term::new(1.0, &["length"])];
     for must in [Sign::Positive, Sign::NotNegative, Sign::NotZero] {
-        let rule = Rule::new("rule", "a reason", must, LENGTH);
+        const TERMS: &[Term] = &[Term::new(1.0, &["length"])];
+        let rule = Rule::new("rule", "a reason", must, TERMS);
         assert!(!rule.holds(&of(1.0, 1.0)), "{must:?}");
     }
 }

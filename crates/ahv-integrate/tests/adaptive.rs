@@ -287,6 +287,43 @@ fn an_event_takes_few_evaluations() {
     }
 }
 
+/// A height of ½ t² passes 3.2 at √6.4 s after the start, wherever on the clock that is.
+#[test]
+fn an_event_is_located_before_time_0_and_at_it() {
+    let after = 6.4_f64.sqrt();
+    for start in [-3.0, -after, -1.0, 5.0] {
+        let above = When::new("height", Crossing::Rising, |_, x: &Rigid<f64>| {
+            x.height - 3.2
+        });
+        let events: [&dyn Event<Thrown>; 1] = [&above];
+        let input = Constant(Rigid {
+            height: 0.0,
+            speed: 1.0,
+        });
+        let problem = Problem::new(&Thrown, &input).events(&events);
+        let mut progress = Progress::new(
+            start,
+            Rigid {
+                height: 0.0,
+                speed: 0.0,
+            },
+        );
+        progress.step = Some(4.0);
+        let ending = Adaptive::new(
+            DormandPrince54,
+            1e-9,
+            Rigid {
+                height: 1e-9,
+                speed: 1e-9,
+            },
+        )
+        .run(&problem, &mut progress, start + 4.0, &mut ())
+        .expect("a parabola");
+        assert!(matches!(ending, Ending::Event(_)), "{start}: {ending:?}");
+        assert_relative_eq!(progress.time, start + after, epsilon = 1e-14);
+    }
+}
+
 /// A dive with the limits that a flight has.
 #[test]
 fn a_flight_ends_at_its_first_limit() {

@@ -121,6 +121,35 @@ fn each_method_keeps_what_it_promises() {
     assert_relative_eq!(peak.value, limit, max_relative = 1e-9);
 }
 
+/// By looking at many times: how far the deviations are apart until η catches up, and afterwards.
+#[test]
+fn the_greatest_distance_is_of_the_rise_where_none_after_it_is_as_far() {
+    let mut found = Vec::new();
+    for zeta in [0.02, 0.3, 0.7, 1.0, 2.0] {
+        let mode = Mode {
+            omega: 20.0,
+            zeta,
+            sigma: 10.0,
+        };
+        for method in Reduction::ALL {
+            let reduced = reduced(mode, method);
+            let errors = (1..400_000_u32).map(|it| reduced.std_error_at(f64::from(it) * 1e-4));
+            let (mut rise, mut after, mut rises) = (0.0_f64, 0.0_f64, true);
+            for error in errors {
+                rises &= error < 0.0;
+                let greatest = if rises { &mut rise } else { &mut after };
+                *greatest = greatest.max(error.abs());
+            }
+            // Where they are all but equally far, times in between may decide.
+            assert!((rise / after - 1.0).abs() > 1e-3, "{zeta} {method:?}");
+            let errors = reduced.largest_std_errors();
+            assert_eq!(errors.greatest_in_rise(), rise > after, "{zeta} {method:?}");
+            found.push(rise > after);
+        }
+    }
+    assert!(found.contains(&true) && found.contains(&false), "{found:?}");
+}
+
 /// σ² ∫ h² from its power series, Σ (A· + ·Aᵀ)ⁿ Q tⁿ⁺¹/(n + 1)!: without cancellation for ωt below 1.
 fn eta_variance_early(Mode { omega, zeta, sigma }: Mode, time: f64) -> f64 {
     // Of the covariance over σ² as [ηη, ηη̇/ω… ] with time in 1/ω: d/dτ of (p, q, r) = (2q, r − p − 2ζq, −2q − 4ζr).

@@ -236,3 +236,43 @@ fn the_printed_roots_are_as_many_as_the_text_says() {
         );
     }
 }
+
+/// What section 5.3 says of the places in Table 3: the flexible pairs decay, both poles and zeros; a pair of real zeros lies on
+/// either side of the imaginary axis, and one at the origin; all models are unstable, by a pole of about the size of a stable one.
+/// Besides, the slow poles decay in the two older models and grow in the two newer ones.
+#[test]
+fn the_printed_roots_lie_where_the_text_says() {
+    for roots in &printed::TABLE_3 {
+        let older = matches!(roots.model, "fpm" | "com");
+        let flexible = |&&[re, im]: &&printed::Root| f64::hypot(re, im) > 0.1 && im != 0.0;
+        let real = |roots: &[printed::Root]| -> Vec<f64> {
+            let real = roots.iter().filter(|[_, im]| *im == 0.0);
+            let mut real: Vec<f64> = real.map(|[re, _]| *re).collect();
+            real.sort_by(f64::total_cmp);
+            real
+        };
+        for place in [roots.poles, roots.zeros] {
+            let pairs: Vec<_> = place.iter().filter(flexible).collect();
+            assert_eq!(pairs.len(), if older { 2 } else { 3 }, "{}", roots.model);
+            let light = |root: &&printed::Root| (-0.04 * root[1]..0.0).contains(&root[0]);
+            assert!(pairs.iter().all(light), "{pairs:?}");
+        }
+        let zeros = real(roots.zeros);
+        assert_eq!(zeros, [-zeros[2], 0.0, zeros[2]], "{}", roots.model);
+        assert!(zeros[2] > 1.0);
+        let poles = real(roots.poles);
+        let [stable, slow, unstable] = poles[..] else {
+            panic!("{poles:?}");
+        };
+        let ratio = -stable / unstable;
+        assert!(unstable > 1.0 && (1.0..1.05).contains(&ratio), "{poles:?}");
+        let phugoid = roots
+            .poles
+            .iter()
+            .find(|&root| root[1] != 0.0 && !flexible(&root));
+        let phugoid = phugoid.expect("a slow pair")[0];
+        for slow in [slow, phugoid] {
+            assert!(slow != 0.0 && (slow < 0.0) == older, "{slow}");
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! TOML text, and where its entries stand.
 
+use std::error::Error;
+use std::fmt::{self, Display};
 use std::ops::Range;
 
 use toml_edit::{Document, InlineTable, Item, Key, TableLike, Value};
@@ -97,6 +99,14 @@ impl Text {
         self.span(&fault.path, fault.part).map_or(0, |it| it.start)
     }
 }
+
+impl Display for Unreadable {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.message)
+    }
+}
+
+impl Error for Unreadable {}
 
 impl Unreadable {
     /// The fault in one line, as [`Text::line`] shows others.

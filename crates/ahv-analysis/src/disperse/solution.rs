@@ -79,7 +79,7 @@ pub fn solve<M: GeneratedModel>(
     parameters: &M::ParametersOf<f64>,
     flight: &SteadyState<M::Input>,
 ) -> Result<Solution<M::State, M::Input>, SolutionError> {
-    if let Some(rule) = M::TABLE.rules.iter().find(|rule| !rule.holds(parameters)) {
+    if let Some(rule) = M::broken_rule(parameters) {
         return Err(SolutionError::Rule(rule.reason));
     }
     let model = M::with_parameters(parameters);

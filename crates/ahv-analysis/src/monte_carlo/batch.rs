@@ -20,8 +20,10 @@ pub(super) const NEVER: u64 = u64::MAX;
 pub struct Loss {
     /// Number of the step that failed.
     pub step: u64,
-    /// State that became infinite or NaN.
+    /// State that became infinite or NaN; empty where it is for a rule.
     pub state: &'static str,
+    /// The rule that the drawn parameters break: such a member does not fly.
+    pub rule: Option<&'static str>,
 }
 
 /// The normal numbers of a batch, in the order in which a step takes them.
@@ -382,6 +384,18 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
         }
     }
 
+    /// Leaves a member on the ground, whose parameters break a rule.
+    pub(super) fn ground(&mut self, lane: usize, rule: &'static str) {
+        if let Some(lost) = self.lost.get_mut(lane) {
+            *lost = Some(Loss {
+                step: 0,
+                state: "",
+                rule: Some(rule),
+            });
+            self.watches.iter_mut().for_each(|watch| watch.close(lane));
+        }
+    }
+
     fn lose<R: Real>(&mut self, lane: usize, x: &F::StateOf<Packed>, error: StepError<R>) {
         let Some(lost @ None) = self.lost.get_mut(lane) else {
             return;
@@ -393,6 +407,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
         *lost = Some(Loss {
             step: self.step,
             state,
+            rule: None,
         });
         self.watches.iter_mut().for_each(|watch| watch.close(lane));
         if let Some(passage) = &mut self.passage {

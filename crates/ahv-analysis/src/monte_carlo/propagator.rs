@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 
 use ahv_core::{Bounds, CountVisitor, GeneratedModel, Outlined, Real, Straight, Vector};
-use ahv_integrate::{ItoStrangSplitting, NoiseError};
+use ahv_integrate::ItoStrangSplitting;
 
 use super::MonteCarloError;
 use super::arithmetic::{Called, In, Mode};
@@ -58,15 +58,8 @@ impl<F: GeneratedModel> Experiment<F> {
     /// [`MonteCarloError::Normals`].
     pub fn propagator(&self) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError> {
         match self.scheme {
-            Scheme::Splitting => {
-                F::coloured(BySplitting(self)).unwrap_or(Err(MonteCarloError::Scheme {
-                    scheme: Scheme::Splitting.name(),
-                    reason: NoiseError::ColouredStates {
-                        expected: 1,
-                        found: 0,
-                    },
-                }))
-            }
+            Scheme::Splitting => F::coloured(BySplitting(self))
+                .unwrap_or(Err(MonteCarloError::NoColouredNoise { model: F::NAME })),
             Scheme::Heun => side_by_side::<F, Heun>(self),
             Scheme::EulerMaruyama => side_by_side::<F, EulerMaruyama>(self),
             Scheme::StratonovichHeun | Scheme::Milstein | Scheme::Sra1 | Scheme::Dri1 => {
@@ -210,10 +203,18 @@ where
             .unwrap_or_else(|| experiment.particle(0));
         let flying: [Particle<F>; LANES] =
             std::array::from_fn(|lane| flying.get(lane).copied().unwrap_or(last));
+        let mut broken = [None; LANES];
         let dynamics = match &experiment.dispersion {
             None => Cow::Borrowed(&self.shared),
             Some(draws) => {
-                let parameters = flying.map(|particle| draws.member(particle.origin));
+                let mut parameters = flying.map(|particle| draws.member(particle.origin));
+                for (parameters, broken) in parameters.iter_mut().zip(&mut broken) {
+                    *broken = F::broken_rule(parameters);
+                    // The lane flies all the same, unseen.
+                    if broken.is_some() {
+                        *parameters = experiment.parameters;
+                    }
+                }
                 Cow::Owned(dynamics(experiment, &parameters)?)
             }
         };
@@ -232,14 +233,13 @@ where
             .map(|feedback| feedback.over(experiment.dt, flying.map(|particle| particle.step)));
         let watches = experiment.watched.iter();
         let watches = watches.map(|&bounds| Watch::new(bounds)).collect();
-        Ok(Batch::new(
-            dynamics,
-            (x, u),
-            experiment.dt,
-            noise,
-            law,
-            watches,
-        ))
+        let mut batch = Batch::new(dynamics, (x, u), experiment.dt, noise, law, watches);
+        for (lane, rule) in broken.into_iter().enumerate() {
+            if let Some(rule) = rule {
+                batch.ground(lane, rule.reason);
+            }
+        }
+        Ok(batch)
     }
 }
 

@@ -503,3 +503,19 @@ fn mean_and_half(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     (mean, student_95(count - 1.0) * std / count.sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::mean_and_half;
+
+    /// Student's table: two numbers have one degree of freedom, and four have three.
+    #[test]
+    fn the_interval_of_a_few_repetitions_is_students() {
+        let (mean, half) = mean_and_half(&[1.0, 4.0]);
+        assert!((mean - 2.5).abs() < 1e-15 && (half - 12.706_205 * 1.5).abs() < 1e-5);
+        // Their squares about the mean are 4, 1, 0 and 9.
+        let (mean, half) = mean_and_half(&[1.0, 2.0, 3.0, 6.0]);
+        let error = (14.0_f64 / 3.0).sqrt() / 2.0;
+        assert!((mean - 3.0).abs() < 1e-15 && (half - 3.182_446 * error).abs() < 1e-5);
+    }
+}

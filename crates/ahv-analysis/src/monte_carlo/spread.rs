@@ -172,3 +172,52 @@ impl Spread {
         histogram
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counts(histogram: &[Bin]) -> Vec<u64> {
+        histogram.iter().map(|bin| bin.count).collect()
+    }
+
+    /// Of numbers that are there as they are: each bin holds those between its edges, and the last one the greatest too.
+    #[test]
+    fn a_histogram_counts_what_lies_between_its_edges() {
+        let numbers: Vec<f64> = (0..60).map(|it| f64::from(it * it)).collect();
+        let histogram = Spread::new(numbers.clone()).histogram(7);
+        assert_eq!(histogram.len(), 7);
+        assert_eq!((histogram[0].low, histogram[6].high), (0.0, 3481.0));
+        for (index, bin) in histogram.iter().enumerate() {
+            assert!((bin.high - bin.low - 3481.0 / 7.0).abs() < 1e-9);
+            let inside = |it: &&f64| bin.low <= **it && (**it < bin.high || index == 6);
+            assert_eq!(bin.count, numbers.iter().filter(inside).count() as u64);
+        }
+        assert_eq!(Spread::new(Vec::new()).histogram(7), []);
+        assert_eq!(counts(&Spread::new(vec![4.0; 5]).histogram(3)), [5, 0, 0]);
+    }
+
+    /// Evenly spread numbers, of which the first hundred choose the bins; then two that lie far beyond.
+    #[test]
+    fn a_histogram_of_many_numbers_counts_them_all() {
+        let place = |it: u32| (f64::from(it) * 0.618_033_988_749_895).fract();
+        let mut spread = Spread::new((0..100).map(place).collect());
+        (100..10_000).for_each(|it| spread.add(place(it)));
+        let even = counts(&spread.histogram(8));
+        assert_eq!(even.iter().sum::<u64>(), 10_000);
+        assert!(
+            even.iter().all(|count| count.abs_diff(1250) <= 10),
+            "{even:?}"
+        );
+        spread.add(-9.5);
+        spread.add(10.5);
+        let wide = spread.histogram(20);
+        assert_eq!((wide[0].low, wide[19].high), (-9.5, 10.5));
+        let wide = counts(&wide);
+        assert_eq!(wide.iter().sum::<u64>(), 10_002);
+        assert!(
+            wide[9..11].iter().all(|count| count.abs_diff(5000) <= 10),
+            "{wide:?}"
+        );
+    }
+}

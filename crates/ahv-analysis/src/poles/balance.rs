@@ -46,3 +46,33 @@ pub(super) fn similar(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f6
         matrix[(row, column)] * scale[column] / scale[row]
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A matrix whose rows and columns are equally long, in other units, comes back, but for a unit common to all.
+    #[test]
+    fn units_are_taken_out() {
+        let n = 6;
+        let plain = DMatrix::from_fn(n, n, |row, column| if row == column { 50.0 } else { 3.0 });
+        let units = DVector::from_fn(n, |index, _| {
+            f64::exp2([-20, 3, 11, 0, 35, -7][index].into())
+        });
+        let found = balance(&similar(&plain, &units));
+        let common = found[0] * units[0];
+        assert_eq!(
+            found.component_mul(&units),
+            DVector::from_element(n, common)
+        );
+    }
+
+    /// At a ratio of 2.1 a factor of 2 lessens the norms by 2 %, at 2.9 by 11 %; one way and the other.
+    #[test]
+    fn a_scaling_must_gain_a_twentieth() {
+        for (ratio, factor) in [(2.1, 1.0), (2.9, 2.0), (1.0 / 2.1, 1.0), (1.0 / 2.9, 0.5)] {
+            let matrix = DMatrix::from_row_slice(2, 2, &[0.0, ratio, 1.0, 0.0]);
+            assert_eq!(balance(&matrix).as_slice(), [factor, 1.0], "{ratio}");
+        }
+    }
+}

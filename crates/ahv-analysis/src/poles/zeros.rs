@@ -159,10 +159,8 @@ fn finite(system: &Quadruple) -> Result<Vec<Complex<f64>>, PolesError> {
     }
     let pencil = system.pencil();
     let mut kernel = DMatrix::identity(n + rank, n + rank);
-    if rank > 0 {
-        let outputs = pencil.rows_range(n..).transpose();
-        outputs.qr().q_tr_mul(&mut kernel);
-    }
+    let outputs = pencil.rows_range(n..).transpose();
+    outputs.qr().q_tr_mul(&mut kernel);
     let kernel = kernel.rows_range(rank..).transpose();
     let carried = pencil.rows_range(..n) * &kernel;
     if n < FEWEST_ROWS {

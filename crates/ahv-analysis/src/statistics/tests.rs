@@ -1,4 +1,4 @@
-use super::{Estimate, OpenEstimate, kurtosis, mean_and_std, ranks, student_95};
+use super::{Estimate, OpenEstimate, kurtosis, mean_and_std, normal_density, ranks, student_95};
 
 /// Against the sum of the binomial distribution, term by term.
 #[test]
@@ -118,5 +118,24 @@ fn two_or_three_numbers_say_nothing_of_a_deviation() {
             it.low <= it.value && it.value <= it.high && it.high <= 1e4 * it.value,
             "{it:?}"
         );
+    }
+}
+
+/// Its integrals against 1 and x², and how far it falls within one deviation.
+#[test]
+fn a_normal_density_has_one_whole_and_its_deviation() {
+    for std in [0.03, 1.0, 7.0] {
+        let h = 0.05 * std;
+        let places = (-240..=240).map(|index| f64::from(index) * h);
+        let moment = |power| -> f64 {
+            let terms = places.clone();
+            terms
+                .map(|x| x.powi(power) * normal_density(x, std) * h)
+                .sum()
+        };
+        assert!((moment(0) - 1.0).abs() < 1e-12, "{std}");
+        assert!((moment(2) / (std * std) - 1.0).abs() < 1e-12, "{std}");
+        let fall = normal_density(-std, std) / normal_density(0.0, std);
+        assert!((fall - (-0.5_f64).exp()).abs() < 1e-15, "{std}");
     }
 }

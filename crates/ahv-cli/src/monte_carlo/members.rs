@@ -90,7 +90,7 @@ impl<'r, M: GeneratedModel> MemberList<'r, M> {
     fn member(&self, member: u64, seen: &Seen<M>) -> Vec<String> {
         let time = |steps: u64| cell(self.ready.time(steps));
         let (outcome, lost, lost_state) = match &seen.lost {
-            Some(loss) => ("lost", time(loss.step), loss.state),
+            Some(loss) => ("lost", time(loss.step), loss.rule.unwrap_or(loss.state)),
             None => ("flown", String::new(), ""),
         };
         let mut row = vec![

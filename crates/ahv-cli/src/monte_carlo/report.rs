@@ -48,6 +48,7 @@ struct JsonLoss {
     member: u64,
     time: f64,
     state: &'static str,
+    rule: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -102,6 +103,7 @@ impl<M: GeneratedModel> Told<'_, M> {
                     member: *member,
                     time: self.ready.time(loss.step),
                     state: loss.state,
+                    rule: loss.rule,
                 })
                 .collect(),
             member_steps: outcome.member_steps,
@@ -279,7 +281,7 @@ impl<M: GeneratedModel> Told<'_, M> {
         }
         let _ = write!(
             text,
-            "\nlost, with a state that was no longer finite: {} of {}\ndigest of the last states: {}",
+            "\nlost, with a state that was no longer finite, or parameters that break a rule: {} of {}\ndigest of the last states: {}",
             outcome.lost, outcome.members, outcome.digest
         );
         text

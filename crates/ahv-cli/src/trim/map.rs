@@ -11,8 +11,8 @@ use serde::Serialize;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::number;
-use crate::output::{self, readable};
-use crate::vehicle::Vehicle;
+use crate::output::{self, Pairs, readable};
+use crate::vehicle::{Heading, Vehicle};
 
 /// Points along the two given states.
 #[derive(Clone, Copy)]
@@ -55,8 +55,9 @@ pub(super) struct Map<'a, M: GeneratedModel> {
 /// How many points trim, and what blocks the others.
 #[derive(Serialize)]
 pub(super) struct Json<'a> {
-    model: &'static str,
-    set: &'a str,
+    #[serde(flatten)]
+    heading: Heading<'a>,
+    units: Pairs<&'static str>,
     points: usize,
     converged: usize,
     blocked: Vec<(String, usize)>,
@@ -147,8 +148,8 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
         let blocked = self.blocked();
         let failed: usize = blocked.iter().map(|it| it.1).sum();
         Json {
-            model: M::NAME,
-            set: &self.vehicle.set,
+            heading: self.vehicle.heading(),
+            units: Pairs::units_of_both::<M::State, M::Input>(self.vehicle.units),
             points: self.cells.len(),
             converged: self.cells.len() - failed,
             blocked,

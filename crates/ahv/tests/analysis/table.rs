@@ -340,7 +340,7 @@ fn faults_are_reported_with_place_and_rule() {
             "unit = \"slug/ft\" }",
             "unit = \"slug/ft\", }",
             &[
-                ":39: a comma at the end of an inline table: this is TOML 1.1",
+                ":38: a comma at the end of an inline table: this is TOML 1.1",
                 "[unreadable]",
             ],
         ),

@@ -109,6 +109,11 @@ fn symbols_are_told_apart() {
         (r"\bar q S", Shape::Product),
         (r"T\cos\alpha-D", Shape::Sum),
         ("1/(mV)", Shape::Quotient("1".into(), "mV".into())),
+        (
+            r"(\bar q S)/(mV)",
+            Shape::Quotient(r"\bar q S".into(), "mV".into()),
+        ),
+        ("C_{a/b}/m", Shape::Quotient("C_{a/b}".into(), "m".into())),
     ] {
         assert_eq!(shape(latex), expected, "{latex}");
     }
