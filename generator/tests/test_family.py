@@ -56,6 +56,7 @@ def test_a_family_is_one_module_and_one_table(pendulum: Path, tmp_path: Path, mo
         "sought": [{"name": "torque", "start": 0, "scale": 1}],
         "equations": [{"name": "rate", "weight": 1, "like": None}],
         "moving": [],
+        "shown": [],
     }
     assert model["modes"] == [{"name": "swing", "states": ["angle", "rate"], "slowest": None}]
     assert model["defaults"] == {"inputs": ["torque"], "outputs": ["angle"]}
