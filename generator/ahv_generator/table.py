@@ -215,7 +215,7 @@ class _Reader:
                     self.faults.key("missing", (CHOICES,), message, f"choose one of {known}")
             elif chosen not in options:
                 help_line = suggestion(str(chosen), options)
-                self.faults.value("unknown-option", path, f"`{chosen}` is no {choice.doc}", help_line)
+                self.faults.value("unknown-option", path, f"`{chosen}` is not an option of `{name}`", help_line)
             for spec in choice.switches:
                 self.add(self.parameter(path, spec.name, spec, Provenance(CHOICES, "assumed", 0.0), "switch"))
 

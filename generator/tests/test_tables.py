@@ -95,11 +95,11 @@ CASES = [
     # choices
     ('canard = "none"', 'canrad = "none"', "unknown-choice", ("choices", "canrad"), "unknown choice", "`canard`"),
     ('canard = "none"', "", "missing", ("choices",), "`canard` is missing", "`free`, `slaved`, `none`"),
-    ('canard = "none"', 'canard = "slave"', "unknown-option", ("choices", "canard"), "`slave` is no canard",
+    ('canard = "none"', 'canard = "slave"', "unknown-option", ("choices", "canard"), "`slave` is not an option of `canard`",
      "`slaved`"),
     ('reduction = "printed"', 'reduction = "exact"', "unknown-option", ("choices", "reduction"),
-     "`exact` is no reduction", "`moment`"),
-    ('earth = "flat"', "earth = 1", "unknown-option", ("choices", "earth"), "`1` is no Earth", "`spherical`"),
+     "`exact` is not an option of `reduction`", "`moment`"),
+    ('earth = "flat"', "earth = 1", "unknown-option", ("choices", "earth"), "`1` is not an option of `earth`", "`spherical`"),
     ("[choices]", "[choises]", "missing", (), "`[choices]` is missing", None),
     ("[choices]", "[choises]", "unknown-section", ("choises",), "unknown section", "`choices`"),
     # sets

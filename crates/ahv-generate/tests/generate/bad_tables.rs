@@ -183,9 +183,9 @@ fn what_the_derivation_finds_is_shown_in_the_table() {
     let mut scratch = Scratch::new();
     scratch.edit(COM, "[C_L]\n\"alpha\"", "[C_L]\n\"alpah\"");
     let found = r#"{"diagnostics":[
-        {"file":"com.toml","path":["C_L","alpah"],"part":"key","message":"no such variable","help":"did you mean `alpha`?"},
-        {"file":"com.toml","path":["C_L","1","value"],"part":"value","message":"too large","help":null},
-        {"file":"com.toml","path":["vehicle","mass"],"part":"key","message":"`mass` is missing","help":null}]}"#;
+        {"rule":"monomial","file":"com.toml","path":["C_L","alpah"],"part":"key","message":"no such variable","help":"did you mean `alpha`?"},
+        {"rule":"range","file":"com.toml","path":["C_L","1","value"],"part":"value","message":"too large","help":null},
+        {"rule":"missing","file":"com.toml","path":["vehicle","mass"],"part":"key","message":"`mass` is missing","help":null}]}"#;
     scratch.use_python(scratch.interpreter("3 11", "", &format!("echo '{found}'; exit 2")));
     let message = scratch.refusal();
 
@@ -198,10 +198,10 @@ fn what_the_derivation_finds_is_shown_in_the_table() {
     };
     let coefficients = at("[C_L]");
     for expected in [
-        "error: no such variable".to_owned(),
+        "error: no such variable [monomial]\n".to_owned(),
         format!("com.toml:{}:1]", coefficients + 1),
         "did you mean `alpha`?".to_owned(),
-        "error: too large".to_owned(),
+        "error: too large [range]\n".to_owned(),
         // What is missing is shown where it ought to stand.
         format!("com.toml:{}:", at("[vehicle]")),
     ] {
