@@ -95,11 +95,11 @@ CASES = [
     # choices
     ('canard = "none"', 'canrad = "none"', "unknown-choice", ("choices", "canrad"), "unknown choice", "`canard`"),
     ('canard = "none"', "", "missing", ("choices",), "`canard` is missing", "`free`, `slaved`, `none`"),
-    ('canard = "none"', 'canard = "slave"', "unknown-option", ("choices", "canard"), "`slave` is not an option of `canard`",
+    ('canard = "none"', 'canard = "slave"', "unknown-option", ("choices", "canard"), "`slave` is not an option",
      "`slaved`"),
     ('reduction = "printed"', 'reduction = "exact"', "unknown-option", ("choices", "reduction"),
      "`exact` is not an option of `reduction`", "`moment`"),
-    ('earth = "flat"', "earth = 1", "unknown-option", ("choices", "earth"), "`1` is not an option of `earth`", "`spherical`"),
+    ('earth = "flat"', "earth = 1", "unknown-option", ("choices", "earth"), "`1` is not an option", "`spherical`"),
     ("[choices]", "[choises]", "missing", (), "`[choices]` is missing", None),
     ("[choices]", "[choises]", "unknown-section", ("choises",), "unknown section", "`choices`"),
     # sets

@@ -12,7 +12,7 @@ impl GeneratedModel for Model<f64> {
     const NAME: &'static str = "sdcom_printed";
     const TITLE: &'static str = "stochastic decoupled control-oriented model as printed, without its misprints";
     const NOTE: Option<&'static str> = Some(
-        "sdcom_printed is the paper's truncated form; what it leaves out (Delta f) can exceed the exact rate itself, see generated/docs/sdcom_printed.md. The exact form is --model sdcom",
+        "sdcom_printed leaves out Delta f, which can exceed the exact rate itself; exact is --model sdcom",
     );
     const TABLE: &'static Table = &TABLE;
     const SETS: &'static [ParameterSetOf<Self>] = &SETS;

@@ -18,10 +18,7 @@ from .sdcom import EQUATION, FLEXIBLE_OUTLOOKS, coloured_gains, coloured_modes, 
 from .strict_feedback import ROWS, Parts, Row, add_row, define_part
 from .vehicle import add_outlooks
 
-NOTE = (
-    "sdcom_printed is the paper's truncated form; what it leaves out (Delta f) can exceed the exact rate itself, see "
-    "generated/docs/sdcom_printed.md. The exact form is --model sdcom"
-)
+NOTE = "sdcom_printed leaves out Delta f, which can exceed the exact rate itself; exact is --model sdcom"
 
 
 def build_sdcom_printed(table: Table) -> Model:
