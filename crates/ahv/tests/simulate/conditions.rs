@@ -42,7 +42,7 @@ fn who_picks_the_printed_form_is_told() {
     let bench = Bench::new();
     let told = |model| {
         let output = bench.succeed(&flight(model, &[]));
-        String::from_utf8_lossy(&output.stderr).contains("the paper's truncated form")
+        String::from_utf8_lossy(&output.stderr).contains("leaves out Delta f")
     };
     assert!(told("sdcom_printed") && !told("sdcom"));
 }
