@@ -5,7 +5,7 @@
 //! arithmetic: outside a model's domain a result may be infinite or NaN.
 #![no_std]
 #![forbid(unsafe_code)]
-#![allow(clippy::approx_constant, reason = "a number of a table may be near a constant")]
+#![allow(clippy::approx_constant, reason = "numbers of tables")]
 
 {%- for module in modules %}
 /// {{ module.doc }}

@@ -7,7 +7,7 @@
 //! arithmetic: outside a model's domain a result may be infinite or NaN.
 #![no_std]
 #![forbid(unsafe_code)]
-#![allow(clippy::approx_constant, reason = "a number of a table may be near a constant")]
+#![allow(clippy::approx_constant, reason = "numbers of tables")]
 
 /// COM: control-oriented model, forebody and aftbody flexible, eq. (1)-(3).
 #[rustfmt::skip]

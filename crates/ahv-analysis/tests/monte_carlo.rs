@@ -392,13 +392,7 @@ fn a_scheme_that_does_not_go_says_why() {
     let deterministic = held::<dcom::Model<f64>>(&dcom::NOMINAL, Scheme::Splitting, 1e-3, vec![1]);
     assert_eq!(
         fly(&deterministic, &[0]).err(),
-        Some(MonteCarloError::Scheme {
-            scheme: "splitting",
-            reason: NoiseError::ColouredStates {
-                expected: 1,
-                found: 0
-            },
-        })
+        Some(MonteCarloError::NoColouredNoise { model: "dcom" })
     );
     // Every model goes by every scheme that is for its noise.
     let gust = held::<sdcom_gust::Model<f64>>(&sdcom::NOMINAL, Scheme::Heun, 1e-3, vec![1]);
