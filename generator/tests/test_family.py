@@ -259,7 +259,7 @@ def test_the_pitch_angle_is_flight_path_and_incidence() -> None:
 def test_only_the_truncated_form_warns_of_itself() -> None:
     notes = {m.name: m.traits.note for m in load(TABLES / "dcom.toml").build()}
     assert [name for name, note in notes.items() if note] == ["sdcom_printed"]
-    assert "The exact form is --model sdcom" in str(notes["sdcom_printed"])
+    assert "exact is --model sdcom" in str(notes["sdcom_printed"])
 
 
 BROKEN = [
