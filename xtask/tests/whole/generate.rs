@@ -213,7 +213,7 @@ fn an_inertia_that_the_modes_use_up_has_a_place() {
             "I_yy = { value = 2.4e5",
             "I_yy = { value = 2.4e5",
         ),
-        (set, light.as_str(), set),
+        (set, light.as_str(), "I_yy = { value = 86723.0"),
     ] {
         let scratch = Scratch::new();
         scratch.edit(COM, from, to);
