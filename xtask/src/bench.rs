@@ -8,26 +8,26 @@ use ahv_generate::Surroundings;
 use crate::{python, shell};
 
 /// What the peers need, apart from the project's own environments: other tools in their latest versions.
-const REQUIREMENTS: &str = "crates/ahv-bench/peers/requirements.txt";
+const REQUIREMENTS: &str = "bench/peers/requirements.txt";
 
 /// Builds the product and CasADi's C, or with `peers` all peers, and measures them beside each other.
 pub(crate) fn run(peers: bool) -> Result<(), String> {
     let mut bench = shell::cargo();
     bench.args([
         "run",
-        "--quiet",
+        "--locked",
         "--release",
-        "--package",
-        "ahv-bench",
-        "--",
+        "--manifest-path",
+        shell::BENCH,
     ]);
+    bench.arg("--target-dir").arg(shell::target()).arg("--");
     // The baseline target, whatever flags the user has.
     bench
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env("RUSTFLAGS", "");
     bench.arg("--out").arg(shell::target().join("bench"));
     if peers {
-        let build = ["build", "--quiet", "--release", "--package", "ahv"];
+        let build = ["build", "--release", "--package", "ahv"];
         shell::run(shell::cargo().args(build))?;
         bench
             .arg("--peers")

@@ -11,7 +11,7 @@ use crate::shell;
 const PACKAGE: &str = "ahv-bench-kernels";
 const PROGRAM: &str = "instructions";
 /// The figures, by name.
-const FIGURES: &str = "crates/ahv-bench-kernels/instructions.json";
+const FIGURES: &str = "bench/kernels/instructions.json";
 const VALGRIND: &str = "valgrind";
 /// Counts instructions and nothing else.
 const OPTIONS: [&str; 3] = [
@@ -79,8 +79,10 @@ pub(crate) fn run(write: bool) -> Result<(), String> {
 fn build() -> Command {
     let mut cargo = shell::cargo();
     cargo
-        .args(["build", "--quiet", "--release", "--package", PACKAGE])
-        .args(["--example", PROGRAM])
+        .args(["build", "--locked", "--release", "--package", PACKAGE])
+        .args(["--example", PROGRAM, "--manifest-path", shell::BENCH])
+        .arg("--target-dir")
+        .arg(shell::target())
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env("RUSTFLAGS", "");
     cargo

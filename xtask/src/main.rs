@@ -51,7 +51,7 @@ enum Task {
         #[arg(long)]
         peers: bool,
     },
-    /// Count the instructions of a call under valgrind, and hold them to crates/ahv-bench-kernels/instructions.json
+    /// Count the instructions of a call under valgrind, and hold them to bench/kernels/instructions.json
     Instructions {
         /// Write the counts there
         #[arg(long)]

@@ -15,6 +15,9 @@ pub(crate) fn target() -> PathBuf {
     root().join(env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()))
 }
 
+/// The workspace of the benchmark.
+pub(crate) const BENCH: &str = "bench/Cargo.toml";
+
 /// The cargo that runs this program, at the repository's root.
 pub(crate) fn cargo() -> Command {
     program(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))

@@ -13,6 +13,7 @@ const XTASK_BUILT: [&str; 4] = [
     "--target-dir",
     "target/xtask",
 ];
+const BENCH: [&str; 4] = ["--manifest-path", shell::BENCH, "--target-dir", "target"];
 const CONSUMER: [&str; 4] = [
     "--manifest-path",
     "tests/consumer/Cargo.toml",
@@ -20,7 +21,7 @@ const CONSUMER: [&str; 4] = [
     "target/consumer",
 ];
 /// Python of the benchmark, from the generator's folder.
-const PEERS: &str = "../crates/ahv-bench/peers";
+const PEERS: &str = "../bench/peers";
 /// A microcontroller: no standard library, no heap.
 pub(crate) const BARE_METAL: &str = "thumbv7em-none-eabihf";
 
@@ -32,7 +33,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 20] = [
+const STEPS: [Step; 22] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK, &[])
@@ -46,6 +47,16 @@ const STEPS: [Step; 20] = [
     }),
     ("clippy of xtask", || {
         cargo(&["clippy", "--all-targets"], &XTASK_BUILT, &DENY)
+    }),
+    ("format of bench", || {
+        cargo(&["fmt", "--all", "--check"], &BENCH[..2], &[])
+    }),
+    ("clippy of bench", || {
+        cargo(
+            &["clippy", "--workspace", "--all-targets", "--locked"],
+            &BENCH,
+            &DENY,
+        )
     }),
     ("ruff", || module(&["ruff", "check", ".", PEERS])),
     ("ruff format", || {

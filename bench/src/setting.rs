@@ -46,7 +46,7 @@ impl Setting {
 
     /// A file of the peers.
     pub(crate) fn peer_file(&self, name: &str) -> PathBuf {
-        self.root.join("crates/ahv-bench/peers").join(name)
+        self.root.join("bench/peers").join(name)
     }
 
     /// The tables of the project.

@@ -170,7 +170,7 @@ pub(crate) fn work(said: &Value) -> Result<Work, String> {
 
 fn own(name: &'static str, flags: &str, setting: &Setting) -> Result<Candidate, String> {
     let packages = ["ahv-bench-kernels", "ahv-models"];
-    let built = setting.rust(&setting.root, flags, &setting.out, &packages)?;
+    let built = setting.rust(&setting.root.join("bench"), flags, &setting.out, &packages)?;
     let own = |subject: &Subject| Ok((own_layout(subject), Work::default()));
     loaded(name, rustc(flags), &built, Some("prepare"), own)
 }

@@ -190,5 +190,5 @@ fn problem() -> serde_json::Value {
 /// The folder of the repository.
 fn root() -> &'static Path {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.ancestors().nth(2).unwrap_or(here)
+    here.parent().unwrap_or(here)
 }
