@@ -140,8 +140,11 @@ pub(crate) fn show(value: f64, unit: &str) -> String {
 pub(crate) fn show_beside(value: f64, other: f64, unit: &str) -> String {
     let look =
         |decimals: &usize| show_with(value, unit, *decimals) != show_with(other, unit, *decimals);
-    let decimals = (DECIMALS..MOST_DECIMALS).find(look);
-    show_with(value, unit, decimals.unwrap_or(DECIMALS))
+    match (DECIMALS..MOST_DECIMALS).find(look) {
+        Some(decimals) => show_with(value, unit, decimals),
+        None if value == other => show(value, unit),
+        None => format!("{value:e} {unit}"),
+    }
 }
 
 /// A value with its interval, each end as `shown` has it; "-" for a value that is not known, "open" for an end that is not.
@@ -184,6 +187,7 @@ mod tests {
         assert_eq!(show_beside(1.5, 1.0, "1"), "1.5");
         assert_eq!(show_beside(1.000_000_03, 1.0, "1"), "1.00000003");
         assert_eq!(show_beside(1.0, 1.0, "1"), "1");
+        assert_eq!(show_beside(1e-308, 0.0, "ft/s"), "1e-308 ft/s");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use ahv_analysis::trim::{SteadyState, Trim, TrimError, trim};
-use ahv_core::{Bounds, GeneratedModel, Given, Vector, first_outside};
+use ahv_core::{Bounds, GeneratedModel, Given, Vector, all_outside};
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
 use crate::assignment::{Assignments, show, show_beside};
@@ -37,9 +37,19 @@ fn all_given() -> Vec<(Given, [&'static str; 2])> {
     all
 }
 
-fn finite(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| "not a finite number".to_owned())
+/// Reads what is given of a state, whose unit is not written.
+fn finite(text: &str, [unit, si]: [&str; 2]) -> Result<f64, String> {
+    let unit = if is_angle(unit) { "deg" } else { unit };
+    let written = [unit, si]
+        .into_iter()
+        .find_map(|unit| text.strip_suffix(unit));
+    match (text.parse::<f64>(), written.map(str::trim)) {
+        (Ok(number), _) if number.is_finite() => Ok(number),
+        (Err(_), Some(number)) if number.parse::<f64>().is_ok() => {
+            Err(format!("write it without its unit: {number}"))
+        }
+        _ => Err("not a finite number".to_owned()),
+    }
 }
 
 /// An angle is given in deg, whatever the units.
@@ -105,7 +115,7 @@ impl clap::Args for FlightCondition {
             Arg::new(given.name)
                 .long(hyphenated(given.name))
                 .value_name(name)
-                .value_parser(finite)
+                .value_parser(move |text: &str| finite(text, units))
                 .allow_negative_numbers(true)
                 .help(help)
         });
@@ -240,12 +250,17 @@ impl<M: GeneratedModel> Vehicle<M> {
             let why = self.no_trim(&error);
             Failure::Numeric(format!("{}: {why} ({})", M::NAME, self.at(flight)))
         })?;
-        if let Some(outside) = first_outside(&trim.state, &self.state_bounds) {
-            let unit = self.units.label::<M::State>(outside.name);
-            let outside = describe_outside(&outside, unit);
+        self.warn_outside(&trim.state, &trim.input);
+        Ok(trim)
+    }
+
+    /// Warns of every component of a point that is outside the validity box.
+    pub(crate) fn warn_outside(&self, state: &M::State, input: &M::Input) {
+        let states = all_outside(state, &self.state_bounds);
+        for outside in states.chain(all_outside(input, &self.input_bounds)) {
+            let outside = describe_outside(&outside, self.unit(outside.name));
             complain(&format!("warning: {}: {outside}", M::NAME));
         }
-        Ok(trim)
     }
 
     /// What is given where nothing is asked for, in the units of the vehicle.
@@ -336,7 +351,7 @@ impl<M: GeneratedModel> Vehicle<M> {
     pub(crate) fn at(&self, flight: &SteadyState<M::Input>) -> String {
         let given = flight.given().map(|(name, value)| {
             let unit = self.units.label::<M::State>(name);
-            format!("{name} {}", show(value, unit))
+            format!("{name} {}", show_beside(value, 0.0, unit))
         });
         let given: Vec<String> = given.collect();
         match given.as_slice() {

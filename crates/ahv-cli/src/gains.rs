@@ -85,9 +85,9 @@ impl<M: GeneratedModel> Vehicle<M> {
     fn design(&self, flight: &SteadyState<M::Input>) -> String {
         let mut command = format!("ahv lqr --model {}", M::NAME);
         if let Some(table) = &self.table {
-            command += &format!(" --table {}", table.display());
+            command += &format!(" --table {}", quoted(&table.display().to_string()));
         }
-        command += &format!(" --set {} --units {}", self.set, self.units.name());
+        command += &format!(" --set {} --units {}", quoted(&self.set), self.units.name());
         for (name, option) in &self.choices {
             if let Some(option) = option {
                 command += &format!(" --{name} {option}");
@@ -151,6 +151,22 @@ fn split(text: &str, given: &[String]) -> Result<(String, Named<f64>), String> {
     Ok((format!("{{{}}}", rest.join(", ")), Named::new(condition)))
 }
 
+/// The model of a file of gains, whatever else is wrong with it.
+fn model_of(text: &str) -> Option<String> {
+    let keys: serde_json::Value = serde_json::from_str(text).ok()?;
+    Some(keys.get("model")?.as_str()?.to_owned())
+}
+
+/// An argument as a shell takes it for one word.
+fn quoted(argument: &str) -> String {
+    let plain = |it: char| it.is_alphanumeric() || "._-/+=:,@%".contains(it);
+    if !argument.is_empty() && argument.chars().all(plain) {
+        argument.to_owned()
+    } else {
+        format!("'{}'", argument.replace('\'', r"'\''"))
+    }
+}
+
 impl Gains {
     /// Reads the gains at `path` for a vehicle: their differences from what it flies are in [`Self::differences`].
     ///
@@ -174,6 +190,13 @@ impl Gains {
         });
         let checked = gains.and_then(|gains: Self| gains.check(vehicle, flight).map(|()| gains));
         checked.map_err(|what| {
+            let what = match model_of(&text).filter(|model| model != M::NAME) {
+                Some(model) => format!(
+                    "its gains are of the model {model}, the flights of {}: {what}",
+                    M::NAME
+                ),
+                None => what,
+            };
             let command = vehicle.design(flight);
             format!("{what}; this command writes gains for these flights: {command}")
         })

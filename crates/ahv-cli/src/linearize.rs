@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use ahv_analysis::linearize::{LinearSystem, LinearizeError, with_outputs};
 use ahv_analysis::trim::SteadyState;
-use ahv_core::{GeneratedModel, Model, Vector, first_outside};
+use ahv_core::{GeneratedModel, Model, Vector};
 use clap::Args;
 use nalgebra::DMatrix;
 use serde::Serialize;
@@ -18,7 +18,7 @@ use crate::flight_condition::FlightCondition;
 use crate::named::Named;
 use crate::names;
 use crate::number::{Shown, cell};
-use crate::output::{self, Pairs, describe, describe_outside};
+use crate::output::{self, Pairs, describe};
 use crate::vehicle::{Heading, Vehicle, VehicleArgs};
 
 /// Linearises a model about its trim, or a given state: dx/dt = A x + B u, y = C x + D u.
@@ -123,16 +123,7 @@ fn given<M: GeneratedModel>(
     vehicle
         .moves(&state)
         .map_err(|why| Failure::Request(format!("--state: {why}")))?;
-    for (outside, unit) in [
-        first_outside(&state, &vehicle.state_bounds).map(|it| (it, vehicle.unit(it.name))),
-        first_outside(&input, &vehicle.input_bounds).map(|it| (it, vehicle.unit(it.name))),
-    ]
-    .into_iter()
-    .flatten()
-    {
-        let outside = describe_outside(&outside, unit);
-        complain(&format!("warning: {}: {outside}", M::NAME));
-    }
+    vehicle.warn_outside(&state, &input);
     Ok((flight, (state, input)))
 }
 
@@ -158,6 +149,11 @@ impl<M: GeneratedModel> Vehicle<M> {
             let problem = names::unknown(kind, name, known);
             Failure::Request(format!("{option}: {problem}"))
         };
+        for (option, names) in [("--inputs", &inputs), ("--outputs", &outputs)] {
+            if let Some(name) = names::twice(names) {
+                return Err(Failure::Request(format!("{option}: {name} is given twice")));
+            }
+        }
         let system = with_outputs::<M>(&self.parameters, state, input, &inputs, &outputs);
         system.map_err(|error| match &error {
             LinearizeError::UnknownInput(name) => {

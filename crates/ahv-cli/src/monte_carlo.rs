@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     trajectories: Vec<u64>,
 
     /// File format of the trajectories
-    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    #[arg(long, value_enum, default_value_t = Format::Csv, requires = "trajectories")]
     trajectory_format: Format,
 
     /// Folder for montecarlo.svg, summary.json, snapshots.csv, histograms.csv, limits.csv, members.csv and trajectories

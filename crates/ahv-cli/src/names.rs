@@ -6,6 +6,7 @@ const SIMILAR: f64 = 0.7;
 /// What to say of an unknown `name` of a `kind` of thing: the known ones, and the one that was perhaps meant.
 pub(crate) fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
     let all = known.join(", ");
+    let name = printable(name);
     let nearest = known
         .iter()
         .map(|known| (strsim::jaro_winkler(&name.to_lowercase(), known), known))
@@ -17,6 +18,22 @@ pub(crate) fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
         }
         None => format!("unknown {kind} `{name}`; known: {all}"),
     }
+}
+
+/// A text of the user's without what would move the cursor of a terminal.
+pub(crate) fn printable(text: &str) -> String {
+    let shown = |it: char| match it.is_control() {
+        true => it.escape_default().to_string(),
+        false => it.to_string(),
+    };
+    text.chars().map(shown).collect()
+}
+
+/// The first name that stands twice.
+pub(crate) fn twice<'a>(names: &'a [impl AsRef<str>]) -> Option<&'a str> {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    let mut all = names.iter().enumerate();
+    all.find_map(|(index, name)| names[..index].contains(name).then_some(*name))
 }
 
 /// `a`, `a and b`, `a, b and c`.

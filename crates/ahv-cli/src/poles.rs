@@ -207,9 +207,17 @@ impl<M: GeneratedModel> Roots<'_, M> {
         let cancelled = finite.iter().filter(|it| it.decoupling.is_some());
         let cancelled = match cancelled.count() {
             0 => String::new(),
+            1 if finite.len() == 1 => {
+                "; it is a pole that inputs or outputs miss, and cancels".to_owned()
+            }
+            1 => "; 1 of them is a pole that inputs or outputs miss, and cancels".to_owned(),
             count => format!("; {count} of them are poles that inputs or outputs miss, and cancel"),
         };
-        format!("{rank}{} finite zeros: {why}{cancelled}", finite.len())
+        let zeros = match finite.len() {
+            1 => "zero",
+            _ => "zeros",
+        };
+        format!("{rank}{} finite {zeros}: {why}{cancelled}", finite.len())
     }
 
     fn json(&self) -> Json<'_> {
