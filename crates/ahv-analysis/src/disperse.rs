@@ -13,7 +13,7 @@ mod spread;
 use std::convert::Infallible;
 use std::sync::atomic::Ordering;
 
-use ahv_core::{GeneratedModel, Vector};
+use ahv_core::GeneratedModel;
 
 use crate::monte_carlo::Control;
 use crate::ordered::in_order;
@@ -30,11 +30,11 @@ use quantity::Ordered;
 
 /// The vehicle about which is drawn, with the numbers that are followed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Nominal<X, U> {
+pub struct Nominal {
     /// Where it flies.
-    pub flight: SteadyState<U>,
+    pub flight: SteadyState,
     /// The vehicle in trim.
-    pub solution: Solution<X, U>,
+    pub solution: Solution,
     /// What is followed.
     pub quantities: Vec<Quantity>,
 }
@@ -46,8 +46,8 @@ pub struct Nominal<X, U> {
 /// [`SolutionError`].
 pub fn nominal<M: GeneratedModel>(
     parameters: &M::ParametersOf<f64>,
-    flight: SteadyState<M::Input>,
-) -> Result<Nominal<M::State, M::Input>, SolutionError> {
+    flight: SteadyState,
+) -> Result<Nominal, SolutionError> {
     let solution = solve::<M>(parameters, &flight)?;
     let quantities = quantity::quantities(&solution, M::TRIM.shown);
     Ok(Nominal {
@@ -57,7 +57,7 @@ pub fn nominal<M: GeneratedModel>(
     })
 }
 
-impl<X: Vector<f64>, U: Vector<f64>> Nominal<X, U> {
+impl Nominal {
     /// The quantities of the nominal vehicle.
     pub fn values(&self) -> Vec<f64> {
         let values = self.values_of(&self.solution).into_iter();
@@ -66,7 +66,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Nominal<X, U> {
 
     /// The quantities of another vehicle. Poles correspond by mode, zeros such that the sum of the distances to the
     /// nominal ones is least; `None` where it has more or fewer of them.
-    pub fn values_of(&self, solution: &Solution<X, U>) -> Vec<Option<f64>> {
+    pub fn values_of(&self, solution: &Solution) -> Vec<Option<f64>> {
         let ordered = Ordered::new(&self.solution, solution);
         let value = |quantity: &Quantity| quantity.value(&ordered);
         self.quantities.iter().map(value).collect()
@@ -75,11 +75,11 @@ impl<X: Vector<f64>, U: Vector<f64>> Nominal<X, U> {
 
 /// A vehicle that was drawn.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Member<X, U> {
+pub struct Member {
     /// Its number, by which its parameters can be drawn again.
     pub number: u64,
     /// The vehicle in trim, or why there is none.
-    pub solution: Result<Solution<X, U>, SolutionError>,
+    pub solution: Result<Solution, SolutionError>,
     /// The values of the quantities; `None` where it has no such root, or no trim.
     pub values: Vec<Option<f64>>,
 }
@@ -87,12 +87,7 @@ pub struct Member<X, U> {
 /// Vehicles 0 to `members` − 1 of `draws`, each in the flight of `nominal`; fewer if `control` stops the work.
 ///
 /// A member does not depend on the others, nor on the number of threads.
-pub fn disperse<M>(
-    draws: &Draws<M::ParametersOf<f64>>,
-    nominal: &Nominal<M::State, M::Input>,
-    members: u64,
-    control: &Control,
-) -> Vec<Member<M::State, M::Input>>
+pub fn disperse<M>(draws: &Draws, nominal: &Nominal, members: u64, control: &Control) -> Vec<Member>
 where
     M: GeneratedModel,
 {
@@ -116,7 +111,7 @@ where
 }
 
 /// The spread of each quantity over `members`; `None` where fewer than two have it.
-pub fn spreads<X, U>(members: &[Member<X, U>], quantities: usize) -> Vec<Option<Spread>> {
+pub fn spreads(members: &[Member], quantities: usize) -> Vec<Option<Spread>> {
     let of = |index: usize| {
         let values = members
             .iter()

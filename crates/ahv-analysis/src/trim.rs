@@ -14,9 +14,11 @@ use ahv_core::{Bounds, DifferentiableModel, Equation, Given, Shown, Sought, Trim
 pub use response::{Shift, response};
 use system::{Point, System};
 
+use crate::erased::values;
+
 /// A steady state that is asked for.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SteadyState<U> {
+pub struct SteadyState {
     /// The problem's given and sought, in the model's units.
     given: Vec<Given>,
     sought: Vec<Sought>,
@@ -24,13 +26,13 @@ pub struct SteadyState<U> {
     moving: &'static [&'static str],
     /// Values of the given states by name.
     values: Vec<(&'static str, f64)>,
-    /// Inputs: those that are sought are where the search starts, all others are held.
-    pub input: U,
-    /// Where the inputs that are sought may lie, in their order.
-    bounds: Vec<Bounds>,
+    /// Inputs that are held elsewhere than at 0.
+    held: Vec<(&'static str, f64)>,
+    /// Where the inputs that are sought may lie.
+    bounds: Vec<(&'static str, Bounds)>,
 }
 
-impl<U: Vector<f64>> SteadyState<U> {
+impl SteadyState {
     /// What the problem gives where nothing else is asked for, in the model's units: all held inputs 0, the others without
     /// bounds.
     pub fn new(problem: &TrimProblem) -> Self {
@@ -52,22 +54,15 @@ impl<U: Vector<f64>> SteadyState<U> {
             let factor = factor(it.name);
             Sought::new(it.name, it.start * factor, it.scale * factor)
         });
-        let (given, sought): (Vec<_>, Vec<_>) = (given.collect(), sought.collect());
-        let start = |index| {
-            let name = U::NAMES.get(index);
-            let found = sought.iter().find(|it| Some(&it.name) == name);
-            found.map_or(0.0, |it| it.start)
-        };
-        let open = Bounds::new(f64::NEG_INFINITY, f64::INFINITY);
-        let inputs = sought.iter().filter(|it| U::index_of(it.name).is_some());
+        let given: Vec<Given> = given.collect();
         Self {
             values: given.iter().map(|it| (it.name, it.default)).collect(),
-            bounds: inputs.map(|_| open).collect(),
-            input: U::from_fn(start),
+            held: Vec::new(),
+            bounds: Vec::new(),
             equations: problem.equations,
             moving: problem.moving,
+            sought: sought.collect(),
             given,
-            sought,
         }
     }
 
@@ -79,14 +74,29 @@ impl<U: Vector<f64>> SteadyState<U> {
         self
     }
 
+    /// The same with an input held at `value`. One that is sought stays so.
+    #[must_use]
+    pub fn holding(mut self, name: &'static str, value: f64) -> Self {
+        self.held.retain(|&(known, _)| known != name);
+        self.held.push((name, value));
+        self
+    }
+
     /// The same with the sought inputs inside their `bounds`, a vector over the inputs.
     #[must_use]
-    pub fn within<B: Vector<Bounds>>(mut self, bounds: &B) -> Self {
-        let of = |name| B::index_of(name).and_then(|index| bounds.get(index));
-        let found: Vec<_> = self.sought_inputs().map(of).collect();
-        for (own, found) in self.bounds.iter_mut().zip(found) {
-            *own = found.unwrap_or(*own);
-        }
+    pub fn within<B: Vector<Bounds>>(self, bounds: &B) -> Self {
+        let names = B::NAMES.iter().copied().enumerate();
+        let named = names.filter_map(|(index, name)| Some((name, bounds.get(index)?)));
+        self.within_named(named)
+    }
+
+    /// The same, by the names of the inputs.
+    #[must_use]
+    pub fn within_named(
+        mut self,
+        bounds: impl IntoIterator<Item = (&'static str, Bounds)>,
+    ) -> Self {
+        self.bounds = bounds.into_iter().collect();
         self
     }
 
@@ -98,10 +108,32 @@ impl<U: Vector<f64>> SteadyState<U> {
             .filter_map(move |it| value(it.name).copied())
     }
 
-    /// The inputs that are sought.
-    pub fn sought_inputs(&self) -> impl Iterator<Item = &'static str> + '_ {
-        let sought = self.sought.iter().map(|it| it.name);
-        sought.filter(|name| U::index_of(name).is_some())
+    /// The states and inputs that are sought, states first.
+    pub fn sought(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.sought.iter().map(|it| it.name)
+    }
+
+    /// An input: where the search starts if it is sought, else where it is held.
+    pub fn input_value(&self, name: &str) -> f64 {
+        let start = self.sought.iter().find(|it| it.name == name);
+        let held = || self.held.iter().find(|(known, _)| *known == name);
+        let value = start.map(|it| it.start);
+        value.or_else(|| held().map(|it| it.1)).unwrap_or(0.0)
+    }
+
+    /// All inputs.
+    pub fn input<U: Vector<f64>>(&self) -> U {
+        U::from_fn(|index| {
+            U::NAMES
+                .get(index)
+                .map_or(0.0, |name| self.input_value(name))
+        })
+    }
+
+    /// Where a sought input may lie.
+    fn bounds(&self, name: &str) -> Bounds {
+        let found = self.bounds.iter().find(|(known, _)| *known == name);
+        found.map_or(Bounds::new(f64::NEG_INFINITY, f64::INFINITY), |it| it.1)
     }
 
     /// Whether there may be such a state: what is given lies in the problem's domain.
@@ -140,6 +172,19 @@ pub struct Trim<X, U> {
     pub residual_max: f64,
     /// Steps taken.
     pub iterations: usize,
+}
+
+impl<X: Vector<f64>, U: Vector<f64>> Trim<X, U> {
+    /// The same without a type for its vectors.
+    pub fn erased(&self) -> Trim<Vec<f64>, Vec<f64>> {
+        Trim {
+            state: values(&self.state),
+            input: values(&self.input),
+            residuals: values(&self.residuals),
+            residual_max: self.residual_max,
+            iterations: self.iterations,
+        }
+    }
 }
 
 /// The point inside the bounds that comes nearest to a trim.
@@ -276,10 +321,7 @@ fn list(blocking: &[Blocking]) -> String {
 ///
 /// [`TrimError`], with the nearest point and the bounds that block; a trim is only returned with a scaled residual
 /// below 1e-12.
-pub fn trim<M>(
-    model: &M,
-    flight: &SteadyState<M::Input>,
-) -> Result<Trim<M::State, M::Input>, TrimError>
+pub fn trim<M>(model: &M, flight: &SteadyState) -> Result<Trim<M::State, M::Input>, TrimError>
 where
     M: DifferentiableModel<Scalar = f64>,
 {

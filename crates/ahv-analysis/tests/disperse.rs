@@ -23,7 +23,7 @@ fn index(name: &str) -> usize {
     dcom::Parameters::<f64>::index_of(name).expect("a parameter")
 }
 
-fn draws(distribution: Distribution, groups: Vec<Group>) -> Draws<dcom::Parameters<f64>> {
+fn draws(distribution: Distribution, groups: Vec<Group>) -> Draws {
     Draws::new(dcom::NOMINAL, uncertainty(), distribution, groups, 11).expect("sound")
 }
 
@@ -36,10 +36,10 @@ fn group(correlation: f64, names: &[&str]) -> Group {
 }
 
 /// Relative changes of a parameter over members, in units of its uncertainty.
-fn changes(draws: &Draws<dcom::Parameters<f64>>, name: &str, members: u64) -> Vec<f64> {
+fn changes(draws: &Draws, name: &str, members: u64) -> Vec<f64> {
     let at = index(name);
-    let nominal = draws.nominal().to_array()[at];
-    let change = |member| (draws.member(member).to_array()[at] / nominal - 1.0) / 0.4;
+    let nominal = draws.nominal()[at];
+    let change = |member| (draws.member_values(member)[at] / nominal - 1.0) / 0.4;
     (0..members).map(change).collect()
 }
 
@@ -105,7 +105,7 @@ fn groups_move_together_as_far_as_asked() {
 #[test]
 fn what_is_certain_stays() {
     let draws = draws(Distribution::Uniform, Vec::new());
-    let (nominal, drawn) = (dcom::NOMINAL.to_array(), draws.member(5).to_array());
+    let (nominal, drawn) = (dcom::NOMINAL.to_array(), draws.member_values(5));
     let varied = draws.varied();
     for (index, (nominal, drawn)) in nominal.into_iter().zip(drawn).enumerate() {
         assert_eq!(nominal != drawn, varied.contains(&index), "{index}");
@@ -256,7 +256,7 @@ fn members_do_not_depend_on_each_other() {
     };
     let (one, two) = (on(1, 40), on(2, 60));
     assert_eq!(one, two[..40]);
-    assert_ne!(draws.member(1), draws.member(2));
+    assert_ne!(draws.member_values(1), draws.member_values(2));
     let other = Draws::new(
         dcom::NOMINAL,
         uncertainty(),
@@ -264,7 +264,7 @@ fn members_do_not_depend_on_each_other() {
         vec![],
         12,
     );
-    assert_ne!(other.expect("sound").member(1), draws.member(1));
+    assert_ne!(other.expect("sound").member_values(1), draws.member_values(1));
 }
 
 /// 40 % of uncertainty: what fails says why, and counts.

@@ -197,8 +197,7 @@ fn the_printed_form_trims_elsewhere() {
 
 #[test]
 fn held_inputs_are_held() {
-    let mut flight = level::<dcom::Model<f64>>();
-    flight.input.delta_c = 0.05;
+    let flight = level::<dcom::Model<f64>>().holding("delta_c", 0.05);
     let trim = trim(&dcom_model(Canard::Free), &flight).expect("the DCOM trims");
     assert_eq!(trim.input.delta_c, 0.05);
     assert!(trim.residual_max < 1e-9, "{trim:?}");
@@ -361,7 +360,7 @@ where
 }
 
 /// Level flight at this velocity and altitude.
-fn at<M: GeneratedModel>(velocity: f64, altitude: f64) -> SteadyState<M::Input> {
+fn at<M: GeneratedModel>(velocity: f64, altitude: f64) -> SteadyState {
     level::<M>()
         .with("velocity", velocity)
         .with("altitude", altitude)

@@ -3,84 +3,81 @@
 use std::f64::consts::PI;
 
 use ahv_analysis::statistics::OpenEstimate;
-use ahv_core::Vector;
 
 use crate::failure::Failure;
+use crate::labels::Labels;
 use crate::names;
 use crate::number::Shown;
-use crate::units::Units;
 
 const RAD_PER_DEG: f64 = PI / 180.0;
 
 /// Values given for components of a vector.
-pub(crate) struct Assignments(Vec<(usize, f64)>);
+pub(crate) struct Assignments {
+    names: &'static [&'static str],
+    values: Vec<(usize, f64)>,
+}
 
 impl Assignments {
-    /// Reads `name=value` pairs in `units` for a `V`, given by `option`.
+    /// Reads `name=value` pairs for the components of these labels, given by `option`.
     ///
     /// # Errors
     ///
     /// [`Failure::Request`] that says what is wrong and what would be right.
-    pub(crate) fn parse<V: Vector<f64>>(
-        option: &str,
-        texts: &[String],
-        units: Units,
-    ) -> Result<Self, Failure> {
-        let mut assignments: Vec<(usize, f64)> = Vec::new();
+    pub(crate) fn parse(option: &str, texts: &[String], labels: Labels) -> Result<Self, Failure> {
+        let mut values: Vec<(usize, f64)> = Vec::new();
         for text in texts {
-            let new = Self::one::<V>(option, text, units)?;
-            if assignments.iter().any(|old| old.0 == new.0) {
+            let new = Self::one(option, text, labels)?;
+            if values.iter().any(|old| old.0 == new.0) {
                 return Err(Failure::Request(format!(
                     "{option}: `{text}` gives a value a second time"
                 )));
             }
-            assignments.push(new);
+            values.push(new);
         }
-        Ok(Self(assignments))
+        Ok(Self {
+            names: labels.names,
+            values,
+        })
     }
 
-    /// Reads one `name=value` pair: the index of the component of a `V`, and its value.
+    /// Reads one `name=value` pair: the index of the component, and its value.
     ///
     /// # Errors
     ///
     /// As [`Self::parse`].
-    pub(crate) fn one<V: Vector<f64>>(
-        option: &str,
-        text: &str,
-        units: Units,
-    ) -> Result<(usize, f64), Failure> {
-        parse_one::<V>(text, units)
-            .map_err(|message| Failure::Request(format!("{option}: {message}")))
+    pub(crate) fn one(option: &str, text: &str, labels: Labels) -> Result<(usize, f64), Failure> {
+        parse_one(text, labels).map_err(|message| Failure::Request(format!("{option}: {message}")))
+    }
+
+    /// What is given, by name.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let named = |&(index, value)| Some((*self.names.get(index)?, value));
+        self.values.iter().filter_map(named)
     }
 
     /// The value given for `name`.
-    pub(crate) fn get<V: Vector<f64>>(&self, name: &str) -> Option<f64> {
-        let index = V::index_of(name)?;
-        self.0
-            .iter()
-            .find_map(|&(own, value)| (own == index).then_some(value))
+    pub(crate) fn get(&self, name: &str) -> Option<f64> {
+        self.iter().find(|(own, _)| *own == name).map(|it| it.1)
     }
 
-    /// Writes the values into `vector`, but for those of the components `except`.
-    pub(crate) fn apply<V: Vector<f64>>(&self, vector: &mut V, except: &[&str]) {
-        for &(index, value) in &self.0 {
-            if V::NAMES
-                .get(index)
-                .is_some_and(|name| !except.contains(name))
-            {
-                vector.set(index, value);
+    /// Writes the values into `vector`.
+    pub(crate) fn apply(&self, vector: &mut [f64]) {
+        for &(index, value) in &self.values {
+            if let Some(component) = vector.get_mut(index) {
+                *component = value;
             }
         }
     }
 }
 
-fn parse_one<V: Vector<f64>>(text: &str, units: Units) -> Result<(usize, f64), String> {
+fn parse_one(text: &str, labels: Labels) -> Result<(usize, f64), String> {
     let (name, value) = text
         .split_once('=')
         .ok_or_else(|| format!("`{text}` is not of the form NAME=VALUE"))?;
     let name = name.trim();
-    let index = V::index_of(name).ok_or_else(|| names::unknown("name", name, V::NAMES))?;
-    let value = parse_value(name, value.trim(), units.label::<V>(name))?;
+    let index = labels.index_of(name);
+    let index = index.ok_or_else(|| names::unknown("name", name, labels.names))?;
+    let value = parse_value(name, value.trim(), labels.unit(name))?;
     Ok((index, value))
 }
 

@@ -7,8 +7,8 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use ahv_analysis::covariance::{CovarianceError, Flight, Spreading};
-use ahv_analysis::monte_carlo::{Control, Experiment, Mode, Scheme, Snapshot};
-use ahv_core::{GeneratedModel, Vector};
+use ahv_analysis::erased::Experiment;
+use ahv_analysis::monte_carlo::{Control, Mode, Scheme, Snapshot};
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
 
@@ -17,9 +17,9 @@ use crate::flight_condition::FlightCondition;
 use crate::flights::deviations;
 use crate::flights::feedback::FeedbackArguments;
 use crate::number::{Shown, positive};
-use crate::output::{self, Pairs};
+use crate::output;
 use crate::progress::{Progress, Work};
-use crate::registry::without_noise;
+use crate::registry::needs_noise;
 use crate::signals::Stoppable;
 use crate::steps::{MOST_STEPS, allowed};
 use crate::vehicle::{Vehicle, VehicleArgs};
@@ -88,26 +88,24 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim or the
 /// flight diverges.
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let spreads = !(arguments.state_std.is_empty() && arguments.input_std.is_empty());
-    if <M::Noise as Vector<f64>>::LEN == 0 && !spreads {
-        return Err(Failure::Request(format!(
-            "--model: {}; without --state-std or --input-std nothing spreads",
-            without_noise::<M>()
-        )));
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let vehicle = arguments.vehicle.vehicle()?;
+    if arguments.state_std.is_empty() && arguments.input_std.is_empty() {
+        let why = "; without --state-std or --input-std nothing spreads";
+        needs_noise("--model", vehicle.model, why)?;
     }
-    spread::<M>(arguments)
+    spread(arguments, &vehicle)
 }
 
 /// What is printed: the spread to first order and of the ensemble, at the same times.
-struct Outcome<'a, M: GeneratedModel> {
-    vehicle: &'a Vehicle<M>,
+struct Outcome<'a> {
+    vehicle: &'a Vehicle,
     arguments: &'a Arguments,
     place: String,
     /// State and input of the trim.
-    start: (M::State, M::Input),
+    start: [Vec<f64>; 2],
     scheme: Scheme,
-    linear: Vec<Spreading<M::State>>,
+    linear: Vec<Spreading<Vec<f64>>>,
     /// Members that were flown.
     members: u64,
     sampled: Vec<Snapshot>,
@@ -121,25 +119,25 @@ fn steps(arguments: &Arguments) -> Result<u64, Failure> {
     Ok(allowed(t_end, dt, steps, MOST_STEPS)? / u64::from(SAMPLES))
 }
 
-fn spread<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
-    let scheme = Scheme::default_for::<M>(&vehicle.parameters);
-    let steady = arguments.condition.flight(&vehicle)?;
+fn spread(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
+    let (model, parameters) = (vehicle.model, &vehicle.parameters);
+    let scheme = model.default_scheme(parameters);
+    let steady = arguments.condition.flight(vehicle)?;
     let trim = vehicle.trim(&steady)?;
     let part = arguments.t_end / f64::from(SAMPLES);
     let steps = steps(arguments)?;
-    let experiment = Experiment::<M> {
-        parameters: vehicle.parameters,
+    let experiment = Experiment {
+        parameters: parameters.clone(),
         dispersion: None,
         state: [
             trim.state,
-            deviations("--state-std", &arguments.state_std, &vehicle)?,
+            deviations("--state-std", &arguments.state_std, vehicle, vehicle.states)?,
         ],
         input: [
             trim.input,
-            deviations("--input-std", &arguments.input_std, &vehicle)?,
+            deviations("--input-std", &arguments.input_std, vehicle, vehicle.inputs)?,
         ],
-        feedback: arguments.feedback.read::<M>(&vehicle, &steady)?,
+        feedback: arguments.feedback.read(vehicle, &steady)?,
         watched: Vec::new(),
         scheme,
         mode: Mode::Exact,
@@ -158,30 +156,31 @@ fn spread<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
         unit: "member-steps",
         total: Some(arguments.members.saturating_mul(experiment.steps())),
     });
-    let [x_std, u_std] = [
-        Pairs::of(&experiment.state[1]),
-        Pairs::of(&experiment.input[1]),
-    ];
-    let variances = x_std.0.iter().chain(&u_std.0).map(|(_, std)| std * std);
+    let [start, x_std] = &experiment.state;
+    let [input, u_std] = &experiment.input;
+    let variances = x_std.iter().chain(u_std).map(|std| std * std);
     let flight = Flight {
+        start: start.clone(),
+        input: input.clone(),
         initial: DMatrix::from_diagonal(&DVector::from_vec(variances.collect())),
         feedback: experiment.feedback.as_ref().map(|it| it.regulation()),
-        ..Flight::new(trim.state, trim.input, arguments.dt)
+        dt: arguments.dt,
     };
     let failed = |error: CovarianceError| match error {
         CovarianceError::Times => Failure::Request(format!("--dt and --t-end: {error}")),
-        _ => Failure::Numeric(format!("{}: {error}", M::NAME)),
+        _ => Failure::Numeric(format!("{}: {error}", vehicle.name())),
     };
     // Not multiples of a part: 14 of 20 parts of 1 s are 0.7 s.
     let time = |index| arguments.t_end * f64::from(index) / f64::from(SAMPLES);
     let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
-    let linear = flight.covariance(&vehicle.model, &times).map_err(failed)?;
+    let linear = model.covariance(parameters, &flight, &times);
+    let linear = linear.map_err(failed)?;
     let stationary = arguments
         .stationary
-        .then(|| flight.stationary(&vehicle.model).map_err(failed))
+        .then(|| model.stationary(parameters, &flight).map_err(failed))
         .transpose()?;
     let stoppable = Stoppable::new(progress.control());
-    let sampled = sample::<M>(&experiment, arguments.members, progress.control());
+    let sampled = sample(vehicle, &experiment, arguments.members, progress.control());
     drop(stoppable);
     drop(progress);
     let (members, sampled) = sampled?;
@@ -191,9 +190,9 @@ fn spread<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
         members,
         sampled,
         place: vehicle.at(&steady),
-        start: (trim.state, trim.input),
+        start: [flight.start, flight.input],
         scheme,
-        vehicle: &vehicle,
+        vehicle,
         arguments,
     };
     // Whatever fails, the rest is reported; the picture comes last.
@@ -217,15 +216,17 @@ fn spread<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Flies the ensemble: how many members, and their snapshots.
-fn sample<M: GeneratedModel>(
-    experiment: &Experiment<M>,
+fn sample(
+    vehicle: &Vehicle,
+    experiment: &Experiment,
     members: u64,
     control: &Control,
 ) -> Result<(u64, Vec<Snapshot>), Failure> {
     let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let outcome = experiment
-        .run(members, threads, control)
-        .map_err(|error| Failure::Numeric(format!("{}: {error}", M::NAME)))?;
+    let outcome = vehicle
+        .model
+        .run_and_list(experiment, members, threads, control, &mut |_, _| ())
+        .map_err(|error| Failure::Numeric(format!("{}: {error}", vehicle.name())))?;
     if outcome.members < members.min(FEWEST) {
         return Err(Failure::Interrupted(format!(
             "interrupted before {FEWEST} flights ended"
@@ -240,7 +241,7 @@ fn sample<M: GeneratedModel>(
         }) => Err(Failure::Numeric(format!(
             "{}: at {} s {left} of {} flights are left, too few for a standard deviation: the others are no longer \
              finite",
-            M::NAME,
+            vehicle.name(),
             Shown(*time),
             outcome.members
         ))),

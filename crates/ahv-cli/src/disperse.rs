@@ -7,10 +7,8 @@ mod report;
 use std::path::{Path, PathBuf};
 
 use ahv_analysis::disperse::{
-    Distribution, Draws, Member, Nominal, Slopes, SolutionError, Spread, disperse, nominal, slopes,
-    spreads,
+    Distribution, Draws, Member, Nominal, Slopes, SolutionError, Spread, spreads,
 };
-use ahv_core::{GeneratedModel, Vector};
 use clap::{Args, ValueEnum};
 
 use crate::failure::{Failure, print};
@@ -77,12 +75,12 @@ enum Shape {
 }
 
 /// What came of the draws.
-struct Outcome<'a, M: GeneratedModel> {
-    vehicle: &'a Vehicle<M>,
+struct Outcome<'a> {
+    vehicle: &'a Vehicle,
     arguments: &'a Arguments,
-    draws: Draws<M::ParametersOf<f64>>,
-    nominal: Nominal<M::State, M::Input>,
-    members: Vec<Member<M::State, M::Input>>,
+    draws: Draws,
+    nominal: Nominal,
+    members: Vec<Member>,
     spreads: Vec<Option<Spread>>,
     slopes: Slopes,
 }
@@ -93,8 +91,9 @@ struct Outcome<'a, M: GeneratedModel> {
 ///
 /// [`Failure::Request`] for bad input or files that cannot be written, [`Failure::Numeric`] if the vehicle of the table
 /// does not trim.
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let vehicle = arguments.vehicle.vehicle()?;
+    let model = vehicle.model;
     let draws = draws(&vehicle, arguments)?;
     let flight = arguments.condition.flight(&vehicle)?;
     let place = vehicle.at(&flight);
@@ -103,21 +102,21 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
             SolutionError::Trim(error) => vehicle.no_trim(error),
             other => other.to_string(),
         };
-        Failure::Numeric(format!("{}: {why} ({place})", M::NAME))
+        Failure::Numeric(format!("{}: {why} ({place})", vehicle.name()))
     };
     let folder = arguments.out.as_deref();
     if let Some(folder) = folder {
         output::folder(folder)?;
     }
-    let nominal = nominal::<M>(&vehicle.parameters, flight).map_err(failed)?;
-    let slopes = slopes::<M>(&draws, &nominal).map_err(failed)?;
+    let nominal = model.nominal(&vehicle.parameters, flight).map_err(failed)?;
+    let slopes = model.slopes(&draws, &nominal).map_err(failed)?;
     let progress = Progress::start(Work {
         command: "disperse",
         unit: "members",
         total: Some(arguments.members),
     });
     let stoppable = Stoppable::new(progress.control());
-    let members = disperse::<M>(&draws, &nominal, arguments.members, progress.control());
+    let members = model.disperse(&draws, &nominal, arguments.members, progress.control());
     drop(stoppable);
     drop(progress);
     if members.is_empty() {
@@ -154,24 +153,24 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
 }
 
 /// What is drawn, as the arguments have it.
-fn draws<M: GeneratedModel>(
-    vehicle: &Vehicle<M>,
-    arguments: &Arguments,
-) -> Result<Draws<M::ParametersOf<f64>>, Failure> {
-    let mut uncertainty = vehicle.uncertainty;
+fn draws(vehicle: &Vehicle, arguments: &Arguments) -> Result<Draws, Failure> {
+    let names = vehicle.model.parameters().names;
+    let mut uncertainty = vehicle.uncertainty.clone();
     if !arguments.vary.is_empty() {
-        let chosen = group::parameters::<M::ParametersOf<f64>>("--vary", &arguments.vary)?;
-        for index in (0..M::ParametersOf::<f64>::LEN).filter(|index| !chosen.contains(index)) {
-            uncertainty.set(index, 0.0);
+        let chosen = group::parameters("--vary", &arguments.vary, names)?;
+        let all = uncertainty.iter_mut().enumerate();
+        for (_, it) in all.filter(|(index, _)| !chosen.contains(index)) {
+            *it = 0.0;
         }
     }
-    let groups = group::parse::<M::ParametersOf<f64>>(&arguments.group)?;
+    let groups = group::parse(&arguments.group, names)?;
     let distribution = match arguments.distribution {
         Shape::Uniform => Distribution::Uniform,
         Shape::Normal => Distribution::Normal,
     };
-    Draws::new(
-        vehicle.parameters,
+    Draws::of_values(
+        names,
+        vehicle.parameters.clone(),
         uncertainty,
         distribution,
         groups,
@@ -180,7 +179,7 @@ fn draws<M: GeneratedModel>(
     .map_err(|error| Failure::Request(error.to_string()))
 }
 
-impl<M: GeneratedModel> Outcome<'_, M> {
+impl Outcome<'_> {
     /// Whether all members were drawn that were asked for.
     fn is_complete(&self) -> bool {
         self.members.len() as u64 == self.arguments.members

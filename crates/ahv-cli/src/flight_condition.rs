@@ -2,12 +2,14 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use ahv_analysis::trim::{SteadyState, Trim, TrimError, trim};
-use ahv_core::{Bounds, GeneratedModel, Given, Vector, all_outside};
+use ahv_analysis::erased::Components;
+use ahv_analysis::trim::{SteadyState, Trim, TrimError};
+use ahv_core::{Bounds, Given, Outside};
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
 use crate::assignment::{Assignments, show, show_beside};
 use crate::failure::{Failure, complain};
+use crate::labels::Labels;
 use crate::names;
 use crate::output::describe_outside;
 use crate::registry::models;
@@ -28,9 +30,11 @@ pub(crate) struct FlightCondition {
 fn all_given() -> Vec<(Given, [&'static str; 2])> {
     let mut all: Vec<(Given, [&str; 2])> = Vec::new();
     for model in models() {
-        for given in model.trim.given {
+        let states = model.states();
+        for given in model.trim_problem().given {
             if all.iter().all(|(known, _)| known.name != given.name) {
-                all.push((*given, model.units(given.name)));
+                let unit = |units: Units| units.labels(states).unit(given.name);
+                all.push((*given, [unit(Units::FootSlug), unit(Units::Si)]));
             }
         }
     }
@@ -144,22 +148,17 @@ impl FlightCondition {
     /// # Errors
     ///
     /// [`Failure::Request`] where there is no steady state, and for inputs that are not held, or have no effect.
-    pub(crate) fn flight<M: GeneratedModel>(
-        &self,
-        vehicle: &Vehicle<M>,
-    ) -> Result<SteadyState<M::Input>, Failure> {
+    pub(crate) fn flight(&self, vehicle: &Vehicle) -> Result<SteadyState, Failure> {
         let (flight, inputs) = self.flight_and_inputs(vehicle)?;
-        let sought: Vec<&str> = flight.sought_inputs().collect();
-        if let Some(name) = sought
-            .iter()
-            .find(|name| inputs.get::<M::Input>(name).is_some())
-        {
+        let sought = vehicle.sought_inputs(&flight);
+        if let Some(name) = sought.iter().find(|name| inputs.get(name).is_some()) {
             return Err(Failure::Request(format!(
                 "--input: {name} is not held; the trim finds {}",
                 names::list(&sought)
             )));
         }
-        Ok(flight.within(&vehicle.input_bounds))
+        let bounds = vehicle.inputs.names.iter().copied();
+        Ok(flight.within_named(bounds.zip(vehicle.input_bounds.iter().copied())))
     }
 
     /// The same without bounds, and all inputs that are given: those that are sought replace what the trim finds.
@@ -167,16 +166,16 @@ impl FlightCondition {
     /// # Errors
     ///
     /// [`Failure::Request`] where there is no steady state, and for inputs that have no effect.
-    pub(crate) fn flight_and_inputs<M: GeneratedModel>(
+    pub(crate) fn flight_and_inputs(
         &self,
-        vehicle: &Vehicle<M>,
-    ) -> Result<(SteadyState<M::Input>, Assignments), Failure> {
-        let units = vehicle.units;
+        vehicle: &Vehicle,
+    ) -> Result<(SteadyState, Assignments), Failure> {
         let inputs = self.inputs(vehicle)?;
         let mut flight = vehicle.steady();
+        let problem = vehicle.model.trim_problem();
         for &(name, value) in &self.given {
-            if M::TRIM.given.iter().all(|given| given.name != name) {
-                let known: Vec<_> = M::TRIM.given.iter().map(|given| given.name).collect();
+            if problem.given.iter().all(|given| given.name != name) {
+                let known: Vec<_> = problem.given.iter().map(|given| given.name).collect();
                 let problem = match known.as_slice() {
                     [] => "no state is given".to_owned(),
                     known => format!("given are {}", names::list(known)),
@@ -184,17 +183,18 @@ impl FlightCondition {
                 return Err(Failure::Request(format!(
                     "--{}: a steady state of {} does not take it; {problem}",
                     name.replace('_', "-"),
-                    M::NAME
+                    vehicle.name()
                 )));
             }
-            let is_angle = is_angle(units.label::<M::State>(name));
+            let is_angle = is_angle(vehicle.states.unit(name));
             flight = flight.with(name, if is_angle { value.to_radians() } else { value });
         }
-        let sought: Vec<&str> = flight.sought_inputs().collect();
-        inputs.apply(&mut flight.input, &sought);
+        for (name, value) in inputs.iter() {
+            flight = flight.holding(name, value);
+        }
         flight
             .check()
-            .map_err(|error| outside_domain::<M>(&error, units))?;
+            .map_err(|error| outside_domain(&error, vehicle.states))?;
         Ok((flight, inputs))
     }
 
@@ -203,18 +203,15 @@ impl FlightCondition {
     /// # Errors
     ///
     /// [`Failure::Request`] for one that has no effect.
-    pub(crate) fn inputs<M: GeneratedModel>(
-        &self,
-        vehicle: &Vehicle<M>,
-    ) -> Result<Assignments, Failure> {
-        let inputs = Assignments::parse::<M::Input>("--input", &self.input, vehicle.units)?;
+    pub(crate) fn inputs(&self, vehicle: &Vehicle) -> Result<Assignments, Failure> {
+        let inputs = Assignments::parse("--input", &self.input, vehicle.inputs)?;
         vehicle.check_effect("--input", &inputs)?;
         Ok(inputs)
     }
 }
 
 /// What to say of a flight condition outside the domain of steady states.
-fn outside_domain<M: GeneratedModel>(error: &TrimError, units: Units) -> Failure {
+fn outside_domain(error: &TrimError, states: Labels) -> Failure {
     Failure::Request(match *error {
         TrimError::Domain {
             name,
@@ -222,7 +219,7 @@ fn outside_domain<M: GeneratedModel>(error: &TrimError, units: Units) -> Failure
             above,
             below,
         } => {
-            let unit = units.label::<M::State>(name);
+            let unit = states.unit(name);
             let given = Given::new(name, 0.0, above, below);
             let must = domain(&given, if is_angle(unit) { "deg" } else { unit });
             let must = must.strip_prefix(", ").unwrap_or("a finite number");
@@ -236,43 +233,58 @@ fn outside_domain<M: GeneratedModel>(error: &TrimError, units: Units) -> Failure
     })
 }
 
-impl<M: GeneratedModel> Vehicle<M> {
-    /// The trim of a steady flight; a warning says if it is outside the validity box.
+impl Vehicle {
+    /// The trim of a steady flight; warnings say what is outside the validity box.
     ///
     /// # Errors
     ///
     /// [`Failure::Numeric`] if there is none.
-    pub(crate) fn trim(
-        &self,
-        flight: &SteadyState<M::Input>,
-    ) -> Result<Trim<M::State, M::Input>, Failure> {
-        let trim = trim(&self.model, flight).map_err(|error| {
+    pub(crate) fn trim(&self, flight: &SteadyState) -> Result<Trim<Vec<f64>, Vec<f64>>, Failure> {
+        let trim = self.model.trim(&self.parameters, flight).map_err(|error| {
             let why = self.no_trim(&error);
-            Failure::Numeric(format!("{}: {why} ({})", M::NAME, self.at(flight)))
+            Failure::Numeric(format!("{}: {why} ({})", self.name(), self.at(flight)))
         })?;
         self.warn_outside(&trim.state, &trim.input);
         Ok(trim)
     }
 
     /// Warns of every component of a point that is outside the validity box.
-    pub(crate) fn warn_outside(&self, state: &M::State, input: &M::Input) {
-        let states = all_outside(state, &self.state_bounds);
-        for outside in states.chain(all_outside(input, &self.input_bounds)) {
+    pub(crate) fn warn_outside(&self, state: &[f64], input: &[f64]) {
+        for outside in self.outside(state, input) {
             let outside = describe_outside(&outside, self.unit(outside.name));
-            complain(&format!("warning: {}: {outside}", M::NAME));
+            complain(&format!("warning: {}: {outside}", self.name()));
         }
     }
 
+    /// Every component of a point that is outside the validity box.
+    pub(crate) fn outside(&self, state: &[f64], input: &[f64]) -> Vec<Outside> {
+        let states = self.states.outside(state, &self.state_bounds);
+        states
+            .chain(self.inputs.outside(input, &self.input_bounds))
+            .collect()
+    }
+
     /// What is given where nothing is asked for, in the units of the vehicle.
-    pub(crate) fn steady(&self) -> SteadyState<M::Input> {
-        let factor = |name: &str| {
-            let state = M::State::index_of(name).and_then(|index| M::State::SI_FACTORS.get(index));
-            let input = M::Input::index_of(name).and_then(|index| M::Input::SI_FACTORS.get(index));
-            let factor = state.or(input).copied().unwrap_or(1.0);
-            self.units
-                .factor_from(Units::of_table(M::TABLE.unit_system), factor)
+    pub(crate) fn steady(&self) -> SteadyState {
+        let own = Units::of_table(self.model.table().unit_system);
+        let of = |components: Components, name: &str| {
+            let index = components.index_of(name)?;
+            components.si_factors.get(index).copied()
         };
-        SteadyState::converted(&M::TRIM, factor)
+        let factor = |name: &str| {
+            let state = of(self.model.states(), name);
+            let factor = state
+                .or_else(|| of(self.model.inputs(), name))
+                .unwrap_or(1.0);
+            self.units.factor_from(own, factor)
+        };
+        SteadyState::converted(&self.model.trim_problem(), factor)
+    }
+
+    /// The inputs that a trim seeks.
+    pub(crate) fn sought_inputs(&self, flight: &SteadyState) -> Vec<&'static str> {
+        let is_input = |name: &&str| self.inputs.index_of(name).is_some();
+        flight.sought().filter(is_input).collect()
     }
 
     /// Whether a state can fly: outside the domain of steady states its rates are no numbers, or mean nothing.
@@ -280,15 +292,16 @@ impl<M: GeneratedModel> Vehicle<M> {
     /// # Errors
     ///
     /// What is wrong, for a person.
-    pub(crate) fn moves(&self, state: &M::State) -> Result<(), String> {
-        for given in M::TRIM.given {
-            let value = M::State::index_of(given.name).and_then(|index| state.get(index));
+    pub(crate) fn moves(&self, state: &[f64]) -> Result<(), String> {
+        for given in self.model.trim_problem().given {
+            let index = self.states.index_of(given.name);
+            let value = index.and_then(|index| state.get(index).copied());
             // Angles are periodic; a rate at 90 deg is a number.
             if given.above.abs() == FRAC_PI_2 {
                 continue;
             }
             if value.is_some_and(|value| value.is_nan() || value <= given.above) {
-                let unit = self.units.label::<M::State>(given.name);
+                let unit = self.states.unit(given.name);
                 return Err(format!(
                     "{} must be above {}, not {}",
                     given.name,
@@ -303,9 +316,9 @@ impl<M: GeneratedModel> Vehicle<M> {
     /// Refuses an input other than 0 that changes nothing at any point of the validity box: it is a misunderstanding. None at
     /// all may be said, as reports do.
     pub(crate) fn check_effect(&self, option: &str, inputs: &Assignments) -> Result<(), Failure> {
-        for name in M::Input::NAMES {
-            let moved = inputs.get::<M::Input>(name);
-            if moved.is_some_and(|value| value != 0.0)
+        for (name, value) in inputs.iter() {
+            if value != 0.0
+                && self.inputs.index_of(name).is_some()
                 && let Some(why) = self.idle(name)
             {
                 return Err(Failure::Request(format!("{option}: {why}")));
@@ -320,10 +333,13 @@ impl<M: GeneratedModel> Vehicle<M> {
             return None;
         }
         let choices = self.choices.iter().filter_map(|(name, chosen)| {
-            let mut known = M::TABLE.choices.iter();
+            let mut known = self.model.table().choices.iter();
             let choice = known.find(|choice| choice.name == *name)?;
-            let mut options = choice.options.iter();
-            let option = options.find(|it| self.moved_by(&it.apply(self.parameters), input))?;
+            let option = choice.options.iter().find(|option| {
+                let mut with = self.parameters.clone();
+                option.apply_to(self.model.parameters().names, &mut with);
+                self.moved_by(&with, input)
+            })?;
             let chosen = chosen.unwrap_or("of the table");
             Some(format!(
                 " with the {name} {chosen}; choose --{name} {}",
@@ -335,22 +351,22 @@ impl<M: GeneratedModel> Vehicle<M> {
     }
 
     /// Whether an input moves a state of the model with these parameters, at a point of the validity box with nothing special.
-    fn moved_by(&self, parameters: &M::ParametersOf<f64>, input: &str) -> bool {
+    fn moved_by(&self, parameters: &[f64], input: &str) -> bool {
         let within = |bounds: &Bounds| {
             let value = bounds.min + SHARE * (bounds.max - bounds.min);
             if value.is_finite() { value } else { 1.0 }
         };
-        let x = M::map_state(&self.state_bounds, within);
-        let u = M::map_input(&self.input_bounds, within);
-        let (_, by_input) = M::with_parameters(parameters).jacobians(&x, &u);
-        let mut rows = (0..M::State::LEN).filter_map(|row| by_input.get(row));
-        M::Input::index_of(input).is_some_and(|index| rows.any(|row| row.get(index) != Some(0.0)))
+        let x: Vec<f64> = self.state_bounds.iter().map(within).collect();
+        let u: Vec<f64> = self.input_bounds.iter().map(within).collect();
+        let [_, by_input] = self.model.jacobians(parameters, &x, &u);
+        let index = self.inputs.index_of(input);
+        index.is_some_and(|index| by_input.column(index).iter().any(|&entry| entry != 0.0))
     }
 
     /// Where a steady state is, for a person.
-    pub(crate) fn at(&self, flight: &SteadyState<M::Input>) -> String {
+    pub(crate) fn at(&self, flight: &SteadyState) -> String {
         let given = flight.given().map(|(name, value)| {
-            let unit = self.units.label::<M::State>(name);
+            let unit = self.states.unit(name);
             format!("{name} {}", show_beside(value, 0.0, unit))
         });
         let given: Vec<String> = given.collect();
@@ -377,7 +393,7 @@ impl<M: GeneratedModel> Vehicle<M> {
                     .map(|&(name, value)| {
                         let mut bounds = blocking.iter().filter(|it| it.input == name);
                         let bound = bounds.next().map_or(f64::NAN, |it| it.bound);
-                        let unit = self.units.label::<M::Input>(name);
+                        let unit = self.inputs.unit(name);
                         format!("{name} = {}", show_beside(value, bound, unit))
                     })
                     .collect();
@@ -385,7 +401,7 @@ impl<M: GeneratedModel> Vehicle<M> {
             }
             None => "nor was one found beyond".to_owned(),
         };
-        let rate = self.units.label::<M::State>(nearest.worst);
+        let rate = self.states.unit(nearest.worst);
         format!(
             "no trim with {}; {instead}; at the nearest point {} still changes by {} a second",
             self.blocking(error).join(" and "),
@@ -401,7 +417,7 @@ impl<M: GeneratedModel> Vehicle<M> {
         };
         let bounds = blocking.iter().map(|it| {
             let relation = if it.upper { "<=" } else { ">=" };
-            let bound = show(it.bound, self.units.label::<M::Input>(it.input));
+            let bound = show(it.bound, self.inputs.unit(it.input));
             format!("{} {relation} {bound}", it.input)
         });
         bounds.collect()

@@ -5,9 +5,9 @@ pub(crate) mod feedback;
 use std::num::NonZeroUsize;
 
 use ahv_analysis::disperse::{Distribution, Draws};
-use ahv_analysis::monte_carlo::{Control, Experiment, LANES, Mode, MonteCarloError, Scheme};
+use ahv_analysis::erased::Experiment;
+use ahv_analysis::monte_carlo::{Control, LANES, Mode, MonteCarloError, Scheme};
 use ahv_analysis::trim::SteadyState;
-use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
@@ -15,10 +15,11 @@ use serde::Serialize;
 use crate::assignment::Assignments;
 use crate::failure::Failure;
 use crate::flight_condition::FlightCondition;
+use crate::labels::Labels;
 use crate::number::positive;
 use crate::number::{self, Shown};
 use crate::progress::Progress;
-use crate::registry::without_noise;
+use crate::registry::needs_noise;
 use crate::signals::Stoppable;
 use crate::steps::allowed;
 use crate::vehicle::{PointJson, Vehicle, VehicleArgs};
@@ -88,11 +89,11 @@ fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
 }
 
 /// Flights that are about to start, with no limits but the validity box.
-pub(crate) struct Ready<M: GeneratedModel> {
-    pub(crate) vehicle: Vehicle<M>,
+pub(crate) struct Ready {
+    pub(crate) vehicle: Vehicle,
     /// Where they start, in words.
     pub(crate) place: String,
-    pub(crate) experiment: Experiment<M>,
+    pub(crate) experiment: Experiment,
     threads: usize,
 }
 
@@ -102,8 +103,8 @@ impl Flights {
     /// # Errors
     ///
     /// [`Failure::Request`] for bad input, [`Failure::Numeric`] if there is no trim.
-    pub(crate) fn ready<M: GeneratedModel>(&self) -> Result<Ready<M>, Failure> {
-        let vehicle: Vehicle<M> = self.vehicle.vehicle()?;
+    pub(crate) fn ready(&self) -> Result<Ready, Failure> {
+        let vehicle = self.vehicle.vehicle()?;
         let flight = self.condition.flight(&vehicle)?;
         let trim = vehicle.trim(&flight)?;
         let experiment = self.experiment(&vehicle, &flight, (trim.state, trim.input))?;
@@ -117,31 +118,34 @@ impl Flights {
         })
     }
 
-    fn experiment<M: GeneratedModel>(
+    fn experiment(
         &self,
-        vehicle: &Vehicle<M>,
-        flight: &SteadyState<M::Input>,
-        (state, input): (M::State, M::Input),
-    ) -> Result<Experiment<M>, Failure> {
-        let spreads = !(self.state_std.is_empty() && self.input_std.is_empty());
-        if <M::Noise as Vector<f64>>::LEN == 0 && !(spreads || self.disperse) {
-            return Err(Failure::Request(format!(
-                "--model: {}; without --disperse, --state-std or --input-std all members are one",
-                without_noise::<M>()
-            )));
+        vehicle: &Vehicle,
+        flight: &SteadyState,
+        (state, input): (Vec<f64>, Vec<f64>),
+    ) -> Result<Experiment, Failure> {
+        if self.state_std.is_empty() && self.input_std.is_empty() && !self.disperse {
+            let why = "; without --disperse, --state-std or --input-std all members are one";
+            needs_noise("--model", vehicle.model, why)?;
         }
         let steps = (self.t_end / self.dt).round();
         let steps = allowed(self.t_end, self.dt, steps, MOST_STEPS)?;
         Ok(Experiment {
-            parameters: vehicle.parameters,
+            parameters: vehicle.parameters.clone(),
             dispersion: self.dispersion(vehicle)?,
-            state: [state, deviations("--state-std", &self.state_std, vehicle)?],
-            input: [input, deviations("--input-std", &self.input_std, vehicle)?],
-            feedback: self.feedback.read::<M>(vehicle, flight)?,
-            watched: vec![vehicle.state_bounds],
+            state: [
+                state,
+                deviations("--state-std", &self.state_std, vehicle, vehicle.states)?,
+            ],
+            input: [
+                input,
+                deviations("--input-std", &self.input_std, vehicle, vehicle.inputs)?,
+            ],
+            feedback: self.feedback.read(vehicle, flight)?,
+            watched: vec![vehicle.state_bounds.clone()],
             scheme: self
                 .scheme
-                .unwrap_or_else(|| Scheme::default_for::<M>(&vehicle.parameters)),
+                .unwrap_or_else(|| vehicle.model.default_scheme(&vehicle.parameters)),
             mode: self.mode,
             dt: self.dt,
             snapshots: vec![steps],
@@ -149,14 +153,12 @@ impl Flights {
         })
     }
 
-    fn dispersion<M: GeneratedModel>(
-        &self,
-        vehicle: &Vehicle<M>,
-    ) -> Result<Option<Draws<M::ParametersOf<f64>>>, Failure> {
+    fn dispersion(&self, vehicle: &Vehicle) -> Result<Option<Draws>, Failure> {
         let draws = self.disperse.then(|| {
-            Draws::new(
-                vehicle.parameters,
-                vehicle.uncertainty,
+            Draws::of_values(
+                vehicle.model.parameters().names,
+                vehicle.parameters.clone(),
+                vehicle.uncertainty.clone(),
                 Distribution::Uniform,
                 Vec::new(),
                 self.seed,
@@ -181,7 +183,7 @@ pub(crate) struct Settings {
     feedback: bool,
 }
 
-impl<M: GeneratedModel> Ready<M> {
+impl Ready {
     /// Threads for so many members that fly at a time.
     pub(crate) fn threads(&self, members: u64) -> usize {
         let batches = members.div_ceil(LANES as u64);
@@ -223,19 +225,19 @@ impl<M: GeneratedModel> Ready<M> {
 }
 
 /// Standard deviations, 0 where none is given.
-pub(crate) fn deviations<M: GeneratedModel, V: Vector<f64>>(
+pub(crate) fn deviations(
     option: &str,
     texts: &[String],
-    vehicle: &Vehicle<M>,
-) -> Result<V, Failure> {
-    let mut deviations = V::splat(0.0);
-    let given = Assignments::parse::<V>(option, texts, vehicle.units)?;
-    given.apply(&mut deviations, &[]);
-    if V::NAMES == M::Input::NAMES {
-        vehicle.check_effect(option, &given)?;
-    }
-    match deviations.find(|deviation| deviation < 0.0) {
-        Some((name, value)) => Err(Failure::Request(format!(
+    vehicle: &Vehicle,
+    labels: Labels,
+) -> Result<Vec<f64>, Failure> {
+    let mut deviations = vec![0.0; labels.len()];
+    let given = Assignments::parse(option, texts, labels)?;
+    given.apply(&mut deviations);
+    vehicle.check_effect(option, &given)?;
+    let mut named = labels.names.iter().zip(&deviations);
+    match named.find(|(_, deviation)| **deviation < 0.0) {
+        Some((name, &value)) => Err(Failure::Request(format!(
             "{option}: {name} is {}; a standard deviation is 0 or more",
             Shown(value)
         ))),

@@ -3,14 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use ahv_analysis::trim::SteadyState;
-use ahv_core::{GeneratedModel, Vector};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use sha2::{Digest, Sha256};
 
 use crate::named::{Named, shown_as};
 use crate::number::Shown;
-use crate::output::Pairs;
 use crate::table::text_of;
 use crate::vehicle::Vehicle;
 
@@ -69,11 +67,11 @@ pub(crate) struct GainsFile<'a> {
     pub(crate) gains: &'a Gains,
 }
 
-impl<M: GeneratedModel> Vehicle<M> {
+impl Vehicle {
     /// SHA-256 of names and values of all parameters, in hexadecimal digits.
     pub(crate) fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
-        for (name, value) in Pairs::of(&self.parameters).0 {
+        for (name, value) in self.model.parameters().names.iter().zip(&self.parameters) {
             hash.update(name.as_bytes());
             hash.update(value.to_le_bytes());
         }
@@ -81,9 +79,20 @@ impl<M: GeneratedModel> Vehicle<M> {
         digest.iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
+    /// The inputs that a trim does not seek, and where they are held.
+    fn held(&self, flight: &SteadyState) -> Vec<(&'static str, f64)> {
+        let sought = self.sought_inputs(flight);
+        let held = self
+            .inputs
+            .names
+            .iter()
+            .filter(|name| !sought.contains(name));
+        held.map(|&name| (name, flight.input_value(name))).collect()
+    }
+
     /// The command that writes gains for this vehicle in this flight.
-    fn design(&self, flight: &SteadyState<M::Input>) -> String {
-        let mut command = format!("ahv lqr --model {}", M::NAME);
+    fn design(&self, flight: &SteadyState) -> String {
+        let mut command = format!("ahv lqr --model {}", self.name());
         if let Some(table) = &self.table {
             command += &format!(" --table {}", quoted(&table.display().to_string()));
         }
@@ -94,12 +103,12 @@ impl<M: GeneratedModel> Vehicle<M> {
             }
         }
         for (name, value) in flight.given() {
-            let (_, value) = shown_as(name, value, self.units.label::<M::State>(name));
+            let (_, value) = shown_as(name, value, self.states.unit(name));
             command += &format!(" --{} {value}", name.replace('_', "-"));
         }
-        for (name, value) in held(flight, &flight.input) {
+        for (name, value) in self.held(flight) {
             if value != 0.0 {
-                let unit = self.units.label::<M::Input>(name);
+                let unit = self.inputs.unit(name);
                 let unit = if unit == "1" { "" } else { unit };
                 command += &format!(" --input {name}={value}{unit}");
             }
@@ -113,14 +122,6 @@ fn sorted<'a>(names: &[&'a str]) -> Vec<&'a str> {
     let mut names = names.to_vec();
     names.sort_unstable();
     names
-}
-
-/// The inputs that a trim does not seek.
-fn held<U: Vector<f64>>(flight: &SteadyState<U>, input: &U) -> Vec<(&'static str, f64)> {
-    let sought: Vec<&str> = flight.sought_inputs().collect();
-    let mut pairs = Pairs::of(input).0;
-    pairs.retain(|(name, _)| !sought.contains(name));
-    pairs
 }
 
 /// The text of a file of gains without what is given of the trim, and that.
@@ -173,13 +174,13 @@ impl Gains {
     /// # Errors
     ///
     /// What is wrong with the file, and the command that writes a right one.
-    pub(crate) fn read<M: GeneratedModel>(
+    pub(crate) fn read(
         path: &Path,
-        vehicle: &Vehicle<M>,
-        flight: &SteadyState<M::Input>,
+        vehicle: &Vehicle,
+        flight: &SteadyState,
     ) -> Result<Self, String> {
         let text = text_of(path).map_err(|error| error.to_string())?;
-        let given: Vec<String> = Named::given::<M>(flight)
+        let given: Vec<String> = Named::given(vehicle.model.states(), flight)
             .0
             .into_iter()
             .map(|it| it.0)
@@ -190,10 +191,10 @@ impl Gains {
         });
         let checked = gains.and_then(|gains: Self| gains.check(vehicle, flight).map(|()| gains));
         checked.map_err(|what| {
-            let what = match model_of(&text).filter(|model| model != M::NAME) {
+            let what = match model_of(&text).filter(|model| model != vehicle.name()) {
                 Some(model) => format!(
                     "its gains are of the model {model}, the flights of {}: {what}",
-                    M::NAME
+                    vehicle.name()
                 ),
                 None => what,
             };
@@ -203,11 +204,7 @@ impl Gains {
     }
 
     /// What cannot be gains for this model.
-    fn check<M: GeneratedModel>(
-        &self,
-        vehicle: &Vehicle<M>,
-        flight: &SteadyState<M::Input>,
-    ) -> Result<(), String> {
+    fn check(&self, vehicle: &Vehicle, flight: &SteadyState) -> Result<(), String> {
         if self.law != LAW {
             return Err(format!("its law is `{}`; known: `{LAW}`", self.law));
         }
@@ -218,13 +215,13 @@ impl Gains {
                 vehicle.units.name()
             ));
         }
-        let (states, inputs) = (M::State::NAMES, M::Input::NAMES);
+        let (states, inputs) = (vehicle.states.names, vehicle.inputs.names);
         if self.states != states {
             return Err(format!(
                 "its gains of {} are for the states {}; {} has {}, in this order",
                 self.model,
                 self.states.join(", "),
-                M::NAME,
+                vehicle.name(),
                 states.join(", ")
             ));
         }
@@ -235,16 +232,16 @@ impl Gains {
             return Err(format!(
                 "its inputs are {}; {} has {}, each once and in this order",
                 self.inputs.join(", "),
-                M::NAME,
+                vehicle.name(),
                 inputs.join(", ")
             ));
         }
         self.check_sizes(vehicle)?;
-        self.check_condition::<M>(flight)
+        self.check_condition(vehicle, flight)
     }
 
     /// Lists that do not fit the names, and units of other quantities.
-    fn check_sizes<M: GeneratedModel>(&self, vehicle: &Vehicle<M>) -> Result<(), String> {
+    fn check_sizes(&self, vehicle: &Vehicle) -> Result<(), String> {
         let (rows, columns) = (self.inputs.len(), self.states.len());
         let count = |what: &str, found: usize, expected: usize| match found == expected {
             true => Ok(()),
@@ -256,7 +253,7 @@ impl Gains {
         }
         count("its poles", self.poles.len(), columns)?;
         let own: Vec<&str> = self.inputs.iter().map(String::as_str).collect();
-        let (states, inputs) = (M::State::NAMES, M::Input::NAMES);
+        let (states, inputs) = (vehicle.states.names, vehicle.inputs.names);
         let all = [states, inputs].concat();
         for (key, found, expected) in [
             ("state", self.state.names(), states),
@@ -274,7 +271,7 @@ impl Gains {
                 ));
             }
         }
-        let right = Pairs::units_of_both::<M::State, M::Input>(vehicle.units).0;
+        let right = vehicle.point_units().0;
         let mut units = self.units.0.iter();
         let other = units.find(|(name, unit)| right.iter().any(|it| it.0 == name && it.1 != unit));
         match other {
@@ -287,16 +284,12 @@ impl Gains {
     }
 
     /// The trim that the gains are about is of their condition: these states are given, not sought.
-    fn check_condition<M: GeneratedModel>(
-        &self,
-        flight: &SteadyState<M::Input>,
-    ) -> Result<(), String> {
+    fn check_condition(&self, vehicle: &Vehicle, flight: &SteadyState) -> Result<(), String> {
         for ((name, _), (_, value)) in flight.given().zip(&self.condition.0) {
             let Some((_, own)) = self.state.0.iter().find(|(own, _)| own == name) else {
                 continue;
             };
-            let unit = M::State::index_of(name).and_then(|index| M::State::UNITS.get(index));
-            let (_, own) = shown_as(name, *own, unit.copied().unwrap_or("1"));
+            let (_, own) = shown_as(name, *own, vehicle.states.unit(name));
             if (own - value).abs() > SAME * value.abs().max(1.0) {
                 return Err(format!(
                     "its `state` is not of its flight condition: {name}"
@@ -307,18 +300,14 @@ impl Gains {
     }
 
     /// How these gains were designed for another vehicle or flight than this one; empty if they were not.
-    pub(crate) fn differences<M: GeneratedModel>(
-        &self,
-        vehicle: &Vehicle<M>,
-        flight: &SteadyState<M::Input>,
-    ) -> Vec<String> {
+    pub(crate) fn differences(&self, vehicle: &Vehicle, flight: &SteadyState) -> Vec<String> {
         let mut differences = Vec::new();
         let mut text = |what: &str, own: &str, flown: &str| {
             if own != flown {
                 differences.push(format!("{what} {own}, the flights {flown}"));
             }
         };
-        text("model", &self.model, M::NAME);
+        text("model", &self.model, vehicle.name());
         text("set", &self.set, &vehicle.set);
         let option = |option: Option<&str>| option.unwrap_or("of the table").to_owned();
         for (name, chosen) in &vehicle.choices {
@@ -327,16 +316,15 @@ impl Gains {
             let own = own.and_then(|(_, chosen)| chosen.as_deref());
             text(name, &option(own), &option(*chosen));
         }
-        let flown = Named::given::<M>(flight);
+        let flown = Named::given(vehicle.model.states(), flight);
         let mut pairs: Vec<(String, (f64, f64))> = Vec::new();
         for ((name, own), (_, flown)) in self.condition.0.iter().zip(&flown.0) {
             pairs.push((name.replace("_deg", " in deg"), (*own, *flown)));
         }
-        let input: M::Input = self.input.vector();
-        let both = held(flight, &input)
-            .into_iter()
-            .zip(held(flight, &flight.input));
-        pairs.extend(both.map(|((name, own), (_, flown))| (name.to_owned(), (own, flown))));
+        for (name, flown) in vehicle.held(flight) {
+            let own = self.input.values(&[name]).first().copied();
+            pairs.push((name.to_owned(), (own.unwrap_or(0.0), flown)));
+        }
         for (name, (own, flown)) in pairs {
             if (own - flown).abs() > SAME * own.abs().max(flown.abs()) {
                 let [own, flown] = [own, flown].map(Shown);
@@ -361,10 +349,7 @@ impl Gains {
     }
 
     /// What to do about such differences.
-    pub(crate) fn remedy<M: GeneratedModel>(
-        vehicle: &Vehicle<M>,
-        flight: &SteadyState<M::Input>,
-    ) -> String {
+    pub(crate) fn remedy(vehicle: &Vehicle, flight: &SteadyState) -> String {
         format!(
             "choose the same for both, or let `{}` write new gains; --feedback-mismatch allow flies them all the same",
             vehicle.design(flight)

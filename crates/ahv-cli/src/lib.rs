@@ -15,6 +15,7 @@ mod flights;
 mod gains;
 #[cfg(feature = "generate")]
 mod generate;
+mod labels;
 mod linearize;
 mod lqr;
 mod monte_carlo;
@@ -39,9 +40,8 @@ use std::process::ExitCode;
 
 use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use ahv_core::{GeneratedModel, ModelList};
+use ahv_core::ModelList;
 use failure::{Failure, written};
-use vehicle::VehicleArgs;
 
 /// Trims, linearises and flies models that were generated from tables.
 #[derive(Parser)]
@@ -113,7 +113,7 @@ pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
         // It handles signals itself.
         #[cfg(feature = "generate")]
         Command::Generate(arguments) => generate::run(&arguments),
-        Command::Model(command) => listening(|| (command.vehicle().registered()?.run)(&command)),
+        Command::Model(command) => listening(|| command.run()),
     }
 }
 
@@ -143,33 +143,17 @@ fn listening(run: impl FnOnce() -> Result<(), Failure>) -> ExitCode {
 }
 
 impl ModelCommand {
-    /// Which vehicle it is about.
-    fn vehicle(&self) -> &VehicleArgs {
+    fn run(&self) -> Result<(), Failure> {
         match self {
-            Self::Covariance(arguments) => &arguments.vehicle,
-            Self::Disperse(arguments) => &arguments.vehicle,
-            Self::Linearize(arguments) => &arguments.vehicle,
-            Self::Lqr(arguments) => &arguments.vehicle,
-            Self::MonteCarlo(arguments) => &arguments.flights.vehicle,
-            Self::Poles(arguments) => &arguments.vehicle,
-            Self::Rare(arguments) => &arguments.flights.vehicle,
-            Self::Simulate(arguments) => &arguments.vehicle,
-            Self::Trim(arguments) => &arguments.vehicle,
-        }
-    }
-
-    /// Runs it with the model `M`.
-    fn run<M: GeneratedModel>(&self) -> Result<(), Failure> {
-        match self {
-            Self::Covariance(arguments) => covariance::run::<M>(arguments),
-            Self::Disperse(arguments) => disperse::run::<M>(arguments),
-            Self::Linearize(arguments) => linearize::run::<M>(arguments),
-            Self::Lqr(arguments) => lqr::run::<M>(arguments),
-            Self::MonteCarlo(arguments) => monte_carlo::run::<M>(arguments),
-            Self::Poles(arguments) => poles::run::<M>(arguments),
-            Self::Rare(arguments) => rare::run::<M>(arguments),
-            Self::Simulate(arguments) => simulate::run::<M>(arguments),
-            Self::Trim(arguments) => trim::run::<M>(arguments),
+            Self::Covariance(arguments) => covariance::run(arguments),
+            Self::Disperse(arguments) => disperse::run(arguments),
+            Self::Linearize(arguments) => linearize::run(arguments),
+            Self::Lqr(arguments) => lqr::run(arguments),
+            Self::MonteCarlo(arguments) => monte_carlo::run(arguments),
+            Self::Poles(arguments) => poles::run(arguments),
+            Self::Rare(arguments) => rare::run(arguments),
+            Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Trim(arguments) => trim::run(arguments),
         }
     }
 }

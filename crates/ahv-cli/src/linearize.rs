@@ -4,9 +4,8 @@ mod mat;
 
 use std::path::{Path, PathBuf};
 
-use ahv_analysis::linearize::{LinearSystem, LinearizeError, with_outputs};
+use ahv_analysis::linearize::{LinearSystem, LinearizeError};
 use ahv_analysis::trim::SteadyState;
-use ahv_core::{GeneratedModel, Model, Vector};
 use clap::Args;
 use nalgebra::DMatrix;
 use serde::Serialize;
@@ -18,7 +17,7 @@ use crate::flight_condition::FlightCondition;
 use crate::named::Named;
 use crate::names;
 use crate::number::{Shown, cell};
-use crate::output::{self, Pairs, describe};
+use crate::output::{self, Pairs};
 use crate::vehicle::{Heading, Vehicle, VehicleArgs};
 
 /// Linearises a model about its trim, or a given state: dx/dt = A x + B u, y = C x + D u.
@@ -60,14 +59,11 @@ pub(crate) struct Arguments {
 /// # Errors
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim.
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    about_point::<M>(arguments, &arguments.vehicle.vehicle()?)
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    about_point(arguments, &arguments.vehicle.vehicle()?)
 }
 
-fn about_point<M: GeneratedModel>(
-    arguments: &Arguments,
-    vehicle: &Vehicle<M>,
-) -> Result<(), Failure> {
+fn about_point(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let (flight, point) = match arguments.state.as_slice() {
         [] => {
             let flight = arguments.condition.flight(vehicle)?;
@@ -91,35 +87,30 @@ fn about_point<M: GeneratedModel>(
 }
 
 /// A steady state that is asked for, and a state with an input.
-type At<M> = (
-    SteadyState<<M as Model>::Input>,
-    (<M as Model>::State, <M as Model>::Input),
-);
+type At = (SteadyState, (Vec<f64>, Vec<f64>));
 
 /// The state that is given, which is no trim.
-fn given<M: GeneratedModel>(
-    arguments: &Arguments,
-    vehicle: &Vehicle<M>,
-    texts: &[String],
-) -> Result<At<M>, Failure> {
+fn given(arguments: &Arguments, vehicle: &Vehicle, texts: &[String]) -> Result<At, Failure> {
     let (mut flight, inputs) = arguments.condition.flight_and_inputs(vehicle)?;
-    let states = Assignments::parse::<M::State>("--state", texts, vehicle.units)?;
+    let states = Assignments::parse("--state", texts, vehicle.states)?;
     let mut flags = arguments.condition.names();
-    if let Some(name) = flags.find(|name| states.get::<M::State>(name).is_some()) {
+    if let Some(name) = flags.find(|name| states.get(name).is_some()) {
         return Err(Failure::Request(format!(
             "--state: {name} is given twice; leave --{name} out"
         )));
     }
-    let (mut state, mut input) = (M::State::splat(0.0), M::Input::splat(0.0));
+    let mut state = vec![0.0; vehicle.states.len()];
+    let mut input = vec![0.0; vehicle.inputs.len()];
     for (name, value) in flight.given().collect::<Vec<_>>() {
-        let value = states.get::<M::State>(name).unwrap_or(value);
+        let value = states.get(name).unwrap_or(value);
         flight = flight.with(name, value);
-        if let Some(index) = M::State::index_of(name) {
-            state.set(index, value);
+        let index = vehicle.states.index_of(name);
+        if let Some(component) = index.and_then(|index| state.get_mut(index)) {
+            *component = value;
         }
     }
-    states.apply(&mut state, &[]);
-    inputs.apply(&mut input, &[]);
+    states.apply(&mut state);
+    inputs.apply(&mut input);
     vehicle
         .moves(&state)
         .map_err(|why| Failure::Request(format!("--state: {why}")))?;
@@ -127,7 +118,7 @@ fn given<M: GeneratedModel>(
     Ok((flight, (state, input)))
 }
 
-impl<M: GeneratedModel> Vehicle<M> {
+impl Vehicle {
     /// The linear system about a point; without names from the model's default inputs to its default outputs.
     ///
     /// # Errors
@@ -135,7 +126,7 @@ impl<M: GeneratedModel> Vehicle<M> {
     /// [`Failure::Request`] for an unknown input or output, [`Failure::Numeric`] for a derivative that is not finite.
     pub(crate) fn linear(
         &self,
-        (state, input): (&M::State, &M::Input),
+        point: (&[f64], &[f64]),
         inputs: &[String],
         outputs: &[String],
     ) -> Result<LinearSystem, Failure> {
@@ -143,8 +134,8 @@ impl<M: GeneratedModel> Vehicle<M> {
             [] => default.iter().map(ToString::to_string).collect(),
             names => names.to_vec(),
         };
-        let inputs: Vec<String> = or_default(inputs, M::DEFAULT_INPUTS);
-        let outputs: Vec<String> = or_default(outputs, M::DEFAULT_OUTPUTS);
+        let inputs: Vec<String> = or_default(inputs, self.model.default_inputs());
+        let outputs: Vec<String> = or_default(outputs, self.model.default_outputs());
         let unknown = |option, kind, name: &str, known: &[&str]| {
             let problem = names::unknown(kind, name, known);
             Failure::Request(format!("{option}: {problem}"))
@@ -154,28 +145,21 @@ impl<M: GeneratedModel> Vehicle<M> {
                 return Err(Failure::Request(format!("{option}: {name} is given twice")));
             }
         }
-        let system = with_outputs::<M>(&self.parameters, state, input, &inputs, &outputs);
+        let system = self
+            .model
+            .linearize(&self.parameters, point, &inputs, &outputs);
         system.map_err(|error| match &error {
             LinearizeError::UnknownInput(name) => {
-                unknown("--inputs", "input", name, M::Input::NAMES)
+                unknown("--inputs", "input", name, self.inputs.names)
             }
             LinearizeError::UnknownOutput(name) => {
-                let known = [M::State::NAMES, M::OutputsOf::<f64>::NAMES].concat();
+                let known = [self.states.names, self.outputs.names].concat();
                 unknown("--outputs", "state or output", name, &known)
             }
-            LinearizeError::NonFinite { .. } => Failure::Numeric(format!("{}: {error}", M::NAME)),
+            LinearizeError::NonFinite { .. } => {
+                Failure::Numeric(format!("{}: {error}", self.name()))
+            }
         })
-    }
-
-    /// The unit of a state, an input or another quantity.
-    pub(crate) fn unit(&self, name: &str) -> &'static str {
-        if M::State::index_of(name).is_some() {
-            self.units.label::<M::State>(name)
-        } else if M::Input::index_of(name).is_some() {
-            self.units.label::<M::Input>(name)
-        } else {
-            self.units.label::<M::OutputsOf<f64>>(name)
-        }
     }
 }
 
@@ -203,16 +187,16 @@ struct Json<'a> {
     d: Vec<Vec<f64>>,
 }
 
-fn json<'a, M: GeneratedModel>(
-    vehicle: &'a Vehicle<M>,
-    flight: &SteadyState<M::Input>,
-    (state, input): &(M::State, M::Input),
+fn json<'a>(
+    vehicle: &'a Vehicle,
+    flight: &SteadyState,
+    (state, input): &(Vec<f64>, Vec<f64>),
     system: &'a LinearSystem,
 ) -> Json<'a> {
     let point = vehicle.point(state, input);
     Json {
         heading: vehicle.heading(),
-        condition: Named::given::<M>(flight),
+        condition: Named::given(vehicle.model.states(), flight),
         states: &system.states,
         inputs: &system.inputs,
         outputs: &system.outputs,
@@ -235,9 +219,9 @@ fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 }
 
 /// Writes the system in the format that the file's name asks for.
-fn write<M: GeneratedModel>(
+fn write(
     path: &Path,
-    vehicle: &Vehicle<M>,
+    vehicle: &Vehicle,
     system: &LinearSystem,
     json: &Json<'_>,
 ) -> Result<(), Failure> {
@@ -267,9 +251,9 @@ fn write<M: GeneratedModel>(
 }
 
 /// [A, B; C, D] with a label at each row and column.
-fn csv<M: GeneratedModel>(
+fn csv(
     path: &Path,
-    vehicle: &Vehicle<M>,
+    vehicle: &Vehicle,
     system: &LinearSystem,
     json: &Json<'_>,
 ) -> Result<(), Failure> {
@@ -297,11 +281,7 @@ fn csv<M: GeneratedModel>(
     file.finish()
 }
 
-fn text<M: GeneratedModel>(
-    vehicle: &Vehicle<M>,
-    (state, input): &(M::State, M::Input),
-    system: &LinearSystem,
-) -> String {
+fn text(vehicle: &Vehicle, (state, input): &(Vec<f64>, Vec<f64>), system: &LinearSystem) -> String {
     let LinearSystem {
         states,
         inputs,
@@ -322,10 +302,10 @@ fn text<M: GeneratedModel>(
         .concat();
     format!(
         "{}: linear system, {}\nabout\n{}\n{}{matrices}",
-        M::NAME,
+        vehicle.name(),
         vehicle.described(),
-        describe(state, vehicle.units),
-        describe(input, vehicle.units)
+        vehicle.states.describe(state),
+        vehicle.inputs.describe(input)
     )
 }
 

@@ -3,10 +3,9 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use ahv_analysis::linearize::linearize;
-use ahv_analysis::lqr::{Regulator, bryson, deviations};
+use ahv_analysis::erased::Components;
+use ahv_analysis::lqr::{Regulator, bryson};
 use ahv_analysis::trim::{SteadyState, Trim};
-use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use nalgebra::DMatrix;
 
@@ -16,7 +15,7 @@ use crate::flight_condition::FlightCondition;
 use crate::gains::{Gains, GainsFile, LAW};
 use crate::named::Named;
 use crate::number::Shown;
-use crate::output::{self, Pairs, describe};
+use crate::output;
 use crate::vehicle::{Vehicle, VehicleArgs};
 
 /// Designs a linear-quadratic regulator at a trim.
@@ -55,12 +54,14 @@ pub(crate) struct Arguments {
 /// # Errors
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] without trim or regulator.
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let vehicle = arguments.vehicle.vehicle()?;
     let flight = arguments.condition.flight(&vehicle)?;
     let trim = vehicle.trim(&flight)?;
-    let states: M::State = costs("--state-deviation", &arguments.state_deviation, &vehicle)?;
-    let inputs: M::Input = costs("--input-deviation", &arguments.input_deviation, &vehicle)?;
+    let (own, given) = (vehicle.model.states(), &arguments.state_deviation);
+    let states = costs("--state-deviation", given, &vehicle, own)?;
+    let (own, given) = (vehicle.model.inputs(), &arguments.input_deviation);
+    let inputs = costs("--input-deviation", given, &vehicle, own)?;
     let gains = gains(&vehicle, &flight, &trim, &states, &inputs)?;
     let file = GainsFile {
         condition: &gains.condition,
@@ -75,26 +76,33 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
         let place = format!("{}\n{}", vehicle.at(&flight), vehicle.described());
         let trim = format!(
             "{}\n{}",
-            describe(&trim.state, vehicle.units),
-            describe(&trim.input, vehicle.units)
+            vehicle.states.describe(&trim.state),
+            vehicle.inputs.describe(&trim.input)
         );
         print(&text(&gains, &place, &trim))
     }
 }
 
 /// The deviations that cost 1: the customary ones, with those of `texts` in their place.
-fn costs<M: GeneratedModel, V: Vector<f64>>(
+fn costs(
     option: &str,
     texts: &[String],
-    vehicle: &Vehicle<M>,
-) -> Result<V, Failure> {
-    let given = Assignments::parse::<V>(option, texts, vehicle.units)?;
-    if V::NAMES == M::Input::NAMES {
-        vehicle.check_effect(option, &given)?;
-    }
-    let mut costs: V = vehicle.units.convert(deviations(M::DEVIATIONS));
-    given.apply(&mut costs, &[]);
-    match costs.find(|deviation| deviation <= 0.0) {
+    vehicle: &Vehicle,
+    components: Components,
+) -> Result<Vec<f64>, Failure> {
+    let labels = vehicle.units.labels(components);
+    let given = Assignments::parse(option, texts, labels)?;
+    vehicle.check_effect(option, &given)?;
+    let listed = vehicle.model.deviations();
+    let customary = |name: &&str| {
+        let found = listed.iter().find(|(own, _)| own == name);
+        found.map_or(f64::INFINITY, |it| it.1)
+    };
+    let mut costs: Vec<f64> = components.names.iter().map(customary).collect();
+    vehicle.units.convert(components, &mut costs);
+    given.apply(&mut costs);
+    let mut named = labels.names.iter().zip(&costs);
+    match named.find(|(_, deviation)| **deviation <= 0.0) {
         Some((name, value)) => Err(Failure::Request(format!(
             "{option}: {name} is {value}; a deviation that costs 1 is above 0"
         ))),
@@ -103,56 +111,64 @@ fn costs<M: GeneratedModel, V: Vector<f64>>(
 }
 
 /// The gains at a trim for deviations of states and inputs that cost 1.
-fn gains<M: GeneratedModel>(
-    vehicle: &Vehicle<M>,
-    flight: &SteadyState<M::Input>,
-    trim: &Trim<M::State, M::Input>,
-    states: &M::State,
-    inputs: &M::Input,
+fn gains(
+    vehicle: &Vehicle,
+    flight: &SteadyState,
+    trim: &Trim<Vec<f64>, Vec<f64>>,
+    costs: &[f64],
+    inputs: &[f64],
 ) -> Result<Gains, Failure> {
-    let moved: Vec<_> = Pairs::of(inputs)
-        .0
-        .into_iter()
-        .filter(|it| it.1.is_finite())
-        .collect();
-    let (names, efforts): (Vec<_>, Vec<_>) = moved.into_iter().unzip();
-    let costs: Vec<f64> = Pairs::of(states).0.into_iter().map(|it| it.1).collect();
-    let numeric = |error: String| Failure::Numeric(format!("{}: {error}", M::NAME));
-    let system = linearize(&vehicle.model, &trim.state, &trim.input, &names, &[])
-        .map_err(|error| numeric(error.to_string()))?;
-    let (q, r) = (bryson(&costs), bryson(&efforts));
+    let moved = vehicle
+        .inputs
+        .names
+        .iter()
+        .copied()
+        .zip(inputs.iter().copied());
+    let (names, efforts): (Vec<_>, Vec<_>) = moved.filter(|it| it.1.is_finite()).unzip();
+    let numeric = |error: String| Failure::Numeric(format!("{}: {error}", vehicle.name()));
+    let text = |names: &[&str]| -> Vec<String> { names.iter().map(ToString::to_string).collect() };
+    let point = (trim.state.as_slice(), trim.input.as_slice());
+    let system = vehicle
+        .model
+        .linearize(&vehicle.parameters, point, &text(&names), &[]);
+    let system = system.map_err(|error| numeric(error.to_string()))?;
+    let (q, r) = (bryson(costs), bryson(&efforts));
     let regulator =
         Regulator::new(&system.a, &system.b, &q, &r).map_err(|error| numeric(error.to_string()))?;
     let weights = |names: &[&str], weight: &DMatrix<f64>| {
         Named::new(names.iter().zip(weight.diagonal().iter().copied()))
     };
-    let drift = Pairs::of(&vehicle.model.drift(&trim.state, &trim.input)).0;
+    let drift = vehicle
+        .model
+        .drift(&vehicle.parameters, &trim.state, &trim.input);
+    let drift = vehicle.states.pairs(drift).0;
     // Of all other states the trim leaves no more than rounding.
-    let moves = |name| M::TRIM.moving.contains(&name);
+    let moves = |name| vehicle.model.trim_problem().moving.contains(&name);
     let rate = |(name, rate)| (name, if moves(name) { rate } else { 0.0 });
     let choices = vehicle.choices.iter();
-    let text = |names: &[&str]| names.iter().map(ToString::to_string).collect();
+    let values = vehicle.point(&trim.state, &trim.input);
     Ok(Gains {
-        model: M::NAME.to_owned(),
+        model: vehicle.name().to_owned(),
         table: vehicle.table.clone(),
         set: vehicle.set.to_string(),
         choices: Named::new(choices.map(|(name, chosen)| (name, chosen.map(str::to_owned)))),
         unit_system: vehicle.units.name().to_owned(),
         parameters_sha256: vehicle.fingerprint(),
-        condition: Named::given::<M>(flight),
+        condition: Named::given(vehicle.model.states(), flight),
         law: LAW.to_owned(),
         states: text(&system.states),
         inputs: text(&names),
         units: Named::new(
-            Pairs::units_of_both::<M::State, M::Input>(vehicle.units)
+            vehicle
+                .point_units()
                 .0
                 .into_iter()
                 .map(|(name, unit)| (name, unit.to_owned())),
         ),
-        state: Named::of(&trim.state),
+        state: Named::new(values.state.0),
         state_rate: Named::new(drift.into_iter().map(rate)),
-        input: Named::of(&trim.input),
-        outputs: Named::of(&vehicle.outputs(&trim.state, &trim.input)),
+        input: Named::new(values.input.0),
+        outputs: Named::new(values.outputs.0),
         gain: regulator
             .gain
             .row_iter()

@@ -9,7 +9,7 @@ mod trajectories;
 use std::path::PathBuf;
 
 use ahv_analysis::monte_carlo::Outcome;
-use ahv_core::{Bounds, GeneratedModel, Vector};
+use ahv_core::Bounds;
 use clap::Args;
 
 use crate::assignment::Assignments;
@@ -31,7 +31,7 @@ use trajectories::Format;
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    pub(crate) flights: Flights,
+    flights: Flights,
 
     /// Flights
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000_000))]
@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "MEMBERS", value_delimiter = ',')]
     trajectories: Vec<u64>,
 
-    /// File format of the trajectories
+    /// File format of the trajectories; parquet is there in a program built with the feature `parquet`
     #[arg(long, value_enum, default_value_t = Format::Csv, requires = "trajectories")]
     trajectory_format: Format,
 
@@ -73,25 +73,25 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim,
 /// [`Failure::Interrupted`] once the part is reported that was flown.
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    arguments.run::<M>()
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.run()
 }
 
 /// What was flown, and what came of it.
-struct Told<'a, M: GeneratedModel> {
+struct Told<'a> {
     arguments: &'a Arguments,
-    ready: Ready<M>,
+    ready: Ready,
     outcome: Outcome,
 }
 
 impl Arguments {
-    fn run<M: GeneratedModel>(&self) -> Result<(), Failure> {
-        let mut ready: Ready<M> = self.flights.ready()?;
+    fn run(&self) -> Result<(), Failure> {
+        let mut ready = self.flights.ready()?;
         let experiment = &mut ready.experiment;
         experiment.snapshots = snapshots(experiment.steps(), self.snapshots);
         experiment
             .watched
-            .extend(limits::<M>(&self.limit, &ready.vehicle)?);
+            .extend(limits(&self.limit, &ready.vehicle)?);
         // Before the work: what cannot be written is not found out after it.
         trajectories::check(self)?;
         if let Some(folder) = &self.out {
@@ -107,13 +107,18 @@ impl Arguments {
         });
         let threads = ready.threads(self.members);
         let outcome = watched(progress, |control| {
-            ready
-                .experiment
-                .run_and_list(self.members, threads, control, |first, seen| {
+            let (model, experiment) = (ready.vehicle.model, &ready.experiment);
+            model.run_and_list(
+                experiment,
+                self.members,
+                threads,
+                control,
+                &mut |first, seen| {
                     if let Some(list) = &mut list {
                         list.add(first, seen);
                     }
-                })
+                },
+            )
         })?;
         let complete = outcome.members == outcome.asked;
         let listed = list.map_or(Ok(()), |list| list.finish(complete));
@@ -153,10 +158,7 @@ fn snapshots(steps: u64, parts: u64) -> Vec<u64> {
 }
 
 /// Limits of the user's; `None` if there are none. States without are not limited.
-fn limits<M: GeneratedModel>(
-    texts: &[String],
-    vehicle: &Vehicle<M>,
-) -> Result<Option<M::StateOf<Bounds>>, Failure> {
+fn limits(texts: &[String], vehicle: &Vehicle) -> Result<Option<Vec<Bounds>>, Failure> {
     let (mut low, mut high) = (Vec::new(), Vec::new());
     for text in texts {
         let form = || {
@@ -172,21 +174,21 @@ fn limits<M: GeneratedModel>(
     if texts.is_empty() {
         return Ok(None);
     }
-    let parse = |texts: &[String], infinite: f64| -> Result<M::State, Failure> {
-        let mut ends = M::State::splat(infinite);
-        Assignments::parse::<M::State>("--limit", texts, vehicle.units)?.apply(&mut ends, &[]);
+    let states = vehicle.states;
+    let parse = |texts: &[String], infinite: f64| -> Result<Vec<f64>, Failure> {
+        let mut ends = vec![infinite; states.len()];
+        Assignments::parse("--limit", texts, states)?.apply(&mut ends);
         Ok(ends)
     };
     let (low, high) = (
         parse(&low, f64::NEG_INFINITY)?,
         parse(&high, f64::INFINITY)?,
     );
-    let bounds = M::StateOf::from_fn(|index| {
-        let end = |ends: &M::State| ends.get(index).unwrap_or(f64::NAN);
-        Bounds::new(end(&low), end(&high))
-    });
-    match bounds.find(|it| it.min >= it.max) {
-        Some((name, Bounds { min, max })) => Err(Failure::Request(format!(
+    let ends = low.into_iter().zip(high);
+    let bounds: Vec<Bounds> = ends.map(|(low, high)| Bounds::new(low, high)).collect();
+    let mut named = states.names.iter().zip(&bounds);
+    match named.find(|(_, it)| it.min >= it.max) {
+        Some((name, &Bounds { min, max })) => Err(Failure::Request(format!(
             "--limit: of {name} the lower limit {} is not below the upper one {}",
             Shown(min),
             Shown(max)

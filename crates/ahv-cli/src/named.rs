@@ -3,12 +3,10 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use ahv_analysis::erased::Components;
 use ahv_analysis::trim::SteadyState;
-use ahv_core::{GeneratedModel, Vector};
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-use crate::output::Pairs;
 
 /// Values by name in their own order, each name once; an object in JSON.
 pub(crate) struct Named<T>(pub(crate) Vec<(String, T)>);
@@ -35,26 +33,23 @@ impl<T> Named<T> {
 }
 
 impl Named<f64> {
-    /// What is given of a steady state; angles in deg, as their names say.
-    pub(crate) fn given<M: GeneratedModel>(flight: &SteadyState<M::Input>) -> Self {
+    /// What is given of a steady state, of `states` in the model's own units; angles in deg, as their names say.
+    pub(crate) fn given(states: Components, flight: &SteadyState) -> Self {
         Self::new(flight.given().map(|(name, value)| {
-            let unit = M::State::index_of(name).and_then(|index| M::State::UNITS.get(index));
+            let unit = states
+                .index_of(name)
+                .and_then(|index| states.units.get(index));
             shown_as(name, value, unit.copied().unwrap_or("1"))
         }))
     }
 
-    /// The components of a vector by name.
-    pub(crate) fn of<V: Vector<f64>>(vector: &V) -> Self {
-        Self::new(Pairs::of(vector).0)
-    }
-
-    /// The vector whose components these are; what has no name here is 0.
-    pub(crate) fn vector<V: Vector<f64>>(&self) -> V {
-        V::from_fn(|index| {
-            let mut pairs = self.0.iter();
-            let found = pairs.find(|(name, _)| V::NAMES.get(index) == Some(&name.as_str()));
+    /// The components with these names; 0 for one that has no name here.
+    pub(crate) fn values(&self, names: &[&str]) -> Vec<f64> {
+        let value = |name: &&str| {
+            let found = self.0.iter().find(|(own, _)| own == name);
             found.map_or(0.0, |&(_, value)| value)
-        })
+        };
+        names.iter().map(value).collect()
     }
 }
 

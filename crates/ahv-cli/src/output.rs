@@ -7,14 +7,13 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use ahv_core::{Outside, Vector};
+use ahv_core::Outside;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use tempfile::{Builder, NamedTempFile};
 
 use crate::assignment::show;
 use crate::failure::{Failure, complain, print};
-use crate::units::Units;
 
 /// Temporary files that are there now.
 static TEMPORARIES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -244,36 +243,6 @@ impl<V: Serialize> Serialize for Pairs<V> {
         }
         map.end()
     }
-}
-
-impl Pairs<f64> {
-    /// The components of a vector by name.
-    pub(crate) fn of<V: Vector<f64>>(vector: &V) -> Self {
-        let component = |(index, &name)| Some((name, vector.get(index)?));
-        Self(V::NAMES.iter().enumerate().filter_map(component).collect())
-    }
-}
-
-impl Pairs<&'static str> {
-    /// The units of a vector's components by name.
-    pub(crate) fn units<V: Vector<f64>>(units: Units) -> Self {
-        let labels = units.labels::<V>().iter().copied();
-        Self(V::NAMES.iter().copied().zip(labels).collect())
-    }
-
-    /// The units of a state's and an input's components by name.
-    pub(crate) fn units_of_both<X: Vector<f64>, U: Vector<f64>>(units: Units) -> Self {
-        Self([Self::units::<X>(units).0, Self::units::<U>(units).0].concat())
-    }
-}
-
-/// One line for each component, in units for a person.
-pub(crate) fn describe<V: Vector<f64>>(vector: &V, units: Units) -> String {
-    let components = Pairs::of(vector).0.into_iter().zip(units.labels::<V>());
-    let lines: Vec<String> = components
-        .map(|((name, value), unit)| format!("  {name:<12} {}", show(value, unit)))
-        .collect();
-    lines.join("\n")
 }
 
 /// A component outside its validity box, for a person.

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use ahv_analysis::poles::{
     Decoupling, Pole, PolesError, Zero, Zeros, damping, frequency, poles, zeros,
 };
-use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use nalgebra::Complex;
 use serde::Serialize;
@@ -53,16 +52,16 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim or the
 /// eigenvalues do not converge.
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    about_trim::<M>(arguments, &arguments.vehicle.vehicle()?)
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    about_trim(arguments, &arguments.vehicle.vehicle()?)
 }
 
 /// Poles and zeros with where they belong to.
-struct Roots<'a, M: GeneratedModel> {
-    vehicle: &'a Vehicle<M>,
+struct Roots<'a> {
+    vehicle: &'a Vehicle,
     place: String,
-    state: M::State,
-    input: M::Input,
+    state: Vec<f64>,
+    input: Vec<f64>,
     inputs: Vec<&'static str>,
     outputs: Vec<&'static str>,
     poles: Vec<Pole>,
@@ -109,10 +108,7 @@ struct JsonZero {
     decoupling: Option<&'static str>,
 }
 
-fn about_trim<M: GeneratedModel>(
-    arguments: &Arguments,
-    vehicle: &Vehicle<M>,
-) -> Result<(), Failure> {
+fn about_trim(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let flight = arguments.condition.flight(vehicle)?;
     let folder = arguments.out.as_deref();
     if let Some(folder) = folder {
@@ -124,7 +120,7 @@ fn about_trim<M: GeneratedModel>(
         &arguments.inputs,
         &arguments.outputs,
     )?;
-    let failed = |error: PolesError| Failure::Numeric(format!("{}: {error}", M::NAME));
+    let failed = |error: PolesError| Failure::Numeric(format!("{}: {error}", vehicle.name()));
     let columns = system.inputs.iter().zip(system.b.column_iter());
     let idle = columns.filter(|(_, column)| column.iter().all(|&entry| entry == 0.0));
     let roots = Roots {
@@ -133,7 +129,7 @@ fn about_trim<M: GeneratedModel>(
         place: vehicle.at(&flight),
         state: trim.state,
         input: trim.input,
-        poles: poles(&system, M::MODES).map_err(failed)?,
+        poles: poles(&system, vehicle.model.modes()).map_err(failed)?,
         zeros: zeros(&system).map_err(failed)?,
         inputs: system.inputs,
         outputs: system.outputs,
@@ -165,7 +161,7 @@ fn decoupling(zero: &Zero) -> Option<&'static str> {
     })
 }
 
-impl<M: GeneratedModel> Roots<'_, M> {
+impl Roots<'_> {
     /// How many finite zeros there are, and why.
     fn count(&self) -> String {
         let Zeros {
@@ -194,7 +190,7 @@ impl<M: GeneratedModel> Roots<'_, M> {
             let texts: Vec<String> = numbers.iter().map(usize::to_string).collect();
             texts.join(", ")
         };
-        let mut why = format!("{} states", M::State::LEN);
+        let mut why = format!("{} states", self.vehicle.states.len());
         for (what, numbers) in [
             ("orders of the infinite zeros", infinite_orders),
             ("Kronecker indices of the inputs", right_indices),
@@ -283,7 +279,7 @@ impl<M: GeneratedModel> Roots<'_, M> {
         );
         format!(
             "{}: {}\n{}\npoles\n{head}  mode (participation)\n{}\nzeros from {} to {}\n{head}{}\n{}",
-            M::NAME,
+            self.vehicle.name(),
             self.place,
             self.vehicle.described(),
             poles.collect::<Vec<_>>().join("\n"),

@@ -6,7 +6,6 @@ use ahv_analysis::monte_carlo::{
     FEWEST_REPETITIONS, MonteCarloError, RareError, RareEstimate, RareEvent,
 };
 use ahv_analysis::statistics::Estimate;
-use ahv_core::{GeneratedModel, Vector};
 use clap::Args;
 use serde::Serialize;
 
@@ -16,9 +15,9 @@ use crate::flights::{Flights, Ready, Settings, watched};
 use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
-use crate::registry::without_noise;
+use crate::registry::needs_noise;
 use crate::signals::interrupted;
-use crate::vehicle::{Heading, Vehicle};
+use crate::vehicle::Heading;
 
 /// Estimates the probability that a state passes a limit before the flight ends, however small it is.
 ///
@@ -29,7 +28,7 @@ use crate::vehicle::{Heading, Vehicle};
 #[derive(Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    pub(crate) flights: Flights,
+    flights: Flights,
 
     /// State and limit, above or below where the flights start, e.g. alpha=4deg
     #[arg(long, value_name = "NAME=VALUE")]
@@ -54,23 +53,19 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input, [`Failure::Numeric`] if there is no trim or no member comes near the limit,
 /// [`Failure::Interrupted`].
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    arguments.run::<M>()
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.run()
 }
 
 impl Arguments {
-    fn run<M: GeneratedModel>(&self) -> Result<(), Failure> {
-        if <M::Noise as Vector<f64>>::LEN == 0 {
-            let why = without_noise::<M>();
-            return Err(Failure::Request(format!(
-                "--model: {why}, by which copies part"
-            )));
-        }
-        let mut ready: Ready<M> = self.flights.ready()?;
+    fn run(&self) -> Result<(), Failure> {
+        let model = self.flights.vehicle.model()?;
+        needs_noise("--model", model, ", by which copies part")?;
+        let mut ready = self.flights.ready()?;
         // The validity box is not reported.
         ready.experiment.watched.clear();
-        let (state, limit) =
-            Assignments::one::<M::State>("--passes", &self.passes, ready.vehicle.units)?;
+        let states = ready.vehicle.states;
+        let (state, limit) = Assignments::one("--passes", &self.passes, states)?;
         let event = RareEvent {
             state,
             limit,
@@ -85,16 +80,18 @@ impl Arguments {
         });
         let threads = ready.threads(self.effort);
         let found = watched(progress, |control| {
-            let found = ready.experiment.first_passage(&event, threads, control);
-            match found {
+            match model.first_passage(&ready.experiment, &event, threads, control) {
                 Err(MonteCarloError::Rare(error)) => Ok(Err(error)),
                 other => other.map(Ok),
             }
         })?;
-        let unit = unit(&ready.vehicle, state);
+        // There it was found.
+        let (name, unit) = states.iter().nth(state).unwrap_or_default();
         let estimate = found.map_err(|error| failure(&error, self.effort, unit))?;
         let told = Told {
             ready,
+            name,
+            unit,
             event,
             estimate,
         };
@@ -112,12 +109,6 @@ impl Arguments {
             self.repetitions
         )))
     }
-}
-
-/// Unit of a state.
-fn unit<M: GeneratedModel>(vehicle: &Vehicle<M>, state: usize) -> &'static str {
-    let labels = vehicle.units.labels::<M::State>();
-    labels.get(state).copied().unwrap_or("")
 }
 
 fn failure(error: &RareError, effort: u64, unit: &str) -> Failure {
@@ -149,8 +140,11 @@ fn failure(error: &RareError, effort: u64, unit: &str) -> Failure {
 }
 
 /// What was asked, and what came of it.
-struct Told<M: GeneratedModel> {
-    ready: Ready<M>,
+struct Told {
+    ready: Ready,
+    /// Name and unit of the state.
+    name: &'static str,
+    unit: &'static str,
     event: RareEvent,
     estimate: RareEstimate,
 }
@@ -173,16 +167,7 @@ struct Json<'a> {
     settings: Settings,
 }
 
-impl<M: GeneratedModel> Told<M> {
-    /// Name and unit of the state.
-    fn state(&self) -> (&'static str, &'static str) {
-        let name = M::State::NAMES.get(self.event.state).copied();
-        (
-            name.unwrap_or(""),
-            unit(&self.ready.vehicle, self.event.state),
-        )
-    }
-
+impl Told {
     /// Whether all repetitions were flown that were asked for.
     fn is_complete(&self) -> bool {
         self.estimate.repetitions == self.event.repetitions
@@ -194,11 +179,10 @@ impl<M: GeneratedModel> Told<M> {
     }
 
     fn json(&self) -> Json<'_> {
-        let (state, unit) = self.state();
         Json {
             heading: self.ready.vehicle.heading(),
-            state,
-            unit,
+            state: self.name,
+            unit: self.unit,
             limit: self.event.limit,
             time: self.ready.duration(),
             estimate: &self.estimate,
@@ -217,7 +201,7 @@ impl<M: GeneratedModel> Told<M> {
             experiment,
             ..
         } = &self.ready;
-        let (name, unit) = self.state();
+        let (name, unit) = (self.name, self.unit);
         let Estimate { value, low, high } = self.estimate.probability;
         let [value, low, high] = [value, low, high].map(Shown);
         let (flown, asked) = (self.estimate.repetitions, self.event.repetitions);
@@ -228,7 +212,7 @@ impl<M: GeneratedModel> Told<M> {
         };
         let mut text = format!(
             "{}: {place}, {}\n{name} passes {} within {} s with probability {value:.3e} [{low:.3e}, {high:.3e}]\nlevels, and the share that passes each from the one before",
-            M::NAME,
+            vehicle.name(),
             vehicle.described(),
             show(self.event.limit, unit),
             Shown(self.ready.duration()),

@@ -2,107 +2,70 @@
 
 use std::sync::OnceLock;
 
-use ahv_core::{
-    GeneratedModel, ModelList, ModelVisitor, ParameterSetOf, Table, TrimProblem, Vector,
-};
-
+use ahv_analysis::erased::{self, AnyModel};
+use ahv_core::ModelList;
 use ahv_table::Family;
 
-use crate::ModelCommand;
 use crate::failure::Failure;
 use crate::names;
 
-/// A model, behind what is the same for all.
-pub(crate) struct Registered {
-    /// Its name.
-    pub(crate) name: &'static str,
-    /// What it is.
-    pub(crate) title: &'static str,
-    /// Its table.
-    pub(crate) table: &'static Table,
-    /// Its table, for the check of another.
-    pub(crate) family: Family,
-    /// What a steady state of it is.
-    pub(crate) trim: TrimProblem,
-    /// Whether noise drives it.
-    pub(crate) has_noise: bool,
-    /// Unit and SI unit of a state.
-    units: fn(&str) -> Option<[&'static str; 2]>,
-    /// Names of the choices that change anything in it.
-    pub(crate) choices: fn() -> Vec<&'static str>,
-    /// Runs a command with it.
-    pub(crate) run: fn(&ModelCommand) -> Result<(), Failure>,
+static REGISTRY: OnceLock<Vec<Box<dyn AnyModel>>> = OnceLock::new();
+
+/// Makes the models of `L` those that this program knows; the first call of a process decides.
+pub(crate) fn register<L: ModelList>() {
+    REGISTRY.get_or_init(erased::all::<L>);
 }
 
-impl Registered {
-    fn new<M: GeneratedModel>() -> Self {
-        Self {
-            name: M::NAME,
-            title: M::TITLE,
-            table: M::TABLE,
-            family: Family::of::<M>(),
-            trim: M::TRIM,
-            has_noise: <M::Noise as Vector<f64>>::LEN > 0,
-            units: |name| {
-                let index = <M::State as Vector<f64>>::index_of(name)?;
-                let unit = <M::State as Vector<f64>>::UNITS.get(index)?;
-                Some([*unit, *<M::State as Vector<f64>>::SI_UNITS.get(index)?])
-            },
-            choices: heeded::<M>,
-            run: ModelCommand::run::<M>,
-        }
-    }
+/// The models that this program knows.
+pub(crate) fn models() -> impl Iterator<Item = &'static dyn AnyModel> {
+    REGISTRY.get().into_iter().flatten().map(|model| &**model)
+}
 
-    /// Unit and SI unit of a state.
-    pub(crate) fn units(&self, state: &str) -> [&'static str; 2] {
-        (self.units)(state).unwrap_or(["1", "1"])
+/// The table of a model, for the check of another.
+pub(crate) fn family(model: &dyn AnyModel) -> Family {
+    let parameters = model.parameters();
+    Family {
+        table: model.table(),
+        names: parameters.names,
+        units: parameters.units,
+        si_units: parameters.si_units,
     }
 }
 
 /// Names of the choices that change anything in this model: DCOM has no coloured noise to reduce a mode to.
-pub(crate) fn heeded<M: GeneratedModel>() -> Vec<&'static str> {
-    let Some(ParameterSetOf::<M> { parameters, .. }) = M::SETS.first() else {
+pub(crate) fn heeded(model: &dyn AnyModel) -> Vec<&'static str> {
+    let Some(set) = model.sets().into_iter().next() else {
         return Vec::new();
     };
-    let model = M::with_parameters(parameters);
-    let changes =
-        |option: &ahv_core::ChoiceOption| M::with_parameters(&option.apply(*parameters)) != model;
-    let heeded = M::TABLE.choices.iter();
-    let heeded = heeded.filter(|choice| choice.options.iter().any(changes));
+    let heeded = model.table().choices.iter().filter(|choice| {
+        let mut options = choice.options.iter();
+        options.any(|option| {
+            let mut changed = set.parameters.clone();
+            option.apply_to(model.parameters().names, &mut changed);
+            !model.is_same(&changed, &set.parameters)
+        })
+    });
     heeded.map(|choice| choice.name).collect()
 }
 
-static REGISTRY: OnceLock<Vec<Registered>> = OnceLock::new();
-
-struct Collector(Vec<Registered>);
-
-impl ModelVisitor for Collector {
-    fn visit<M: GeneratedModel>(&mut self) {
-        self.0.push(Registered::new::<M>());
+/// Refuses a model without noise where noise is needed; `why` ends the sentence.
+///
+/// # Errors
+///
+/// [`Failure::Request`]
+pub(crate) fn needs_noise(option: &str, model: &dyn AnyModel, why: &str) -> Result<(), Failure> {
+    if model.channels() > 0 {
+        return Ok(());
     }
-}
-
-/// Makes the models of `L` those that this program knows; the first call of a process decides.
-pub(crate) fn register<L: ModelList>() {
-    REGISTRY.get_or_init(|| {
-        let mut collector = Collector(Vec::new());
-        L::visit(&mut collector);
-        collector.0
-    });
-}
-
-/// The models that this program knows.
-pub(crate) fn models() -> &'static [Registered] {
-    REGISTRY.get().map_or(&[], Vec::as_slice)
-}
-
-/// What to say of a model without noise where noise is needed.
-pub(crate) fn without_noise<M: GeneratedModel>() -> String {
-    let noisy = models().iter().filter(|model| model.has_noise);
-    let noisy: Vec<_> = noisy.map(|model| model.name).collect();
-    match noisy.as_slice() {
-        [] => format!("{} has no noise", M::NAME),
-        [one] => format!("{} has no noise; {one} has", M::NAME),
-        _ => format!("{} has no noise; {} have", M::NAME, names::list(&noisy)),
-    }
+    let noisy: Vec<_> = models()
+        .filter(|model| model.channels() > 0)
+        .map(AnyModel::name)
+        .collect();
+    let name = model.name();
+    let others = match noisy.as_slice() {
+        [] => format!("{name} has no noise"),
+        [one] => format!("{name} has no noise; {one} has"),
+        _ => format!("{name} has no noise; {} have", names::list(&noisy)),
+    };
+    Err(Failure::Request(format!("{option}: {others}{why}")))
 }

@@ -6,13 +6,13 @@ mod report;
 
 use std::path::PathBuf;
 
-use ahv_core::{GeneratedModel, Vector};
-use ahv_integrate::{Euler, Heun, ItoEulerMaruyama, ItoHeun, NormalStream, Rk4, StratonovichHeun};
+use ahv_analysis::erased::Stepper;
+use ahv_integrate::NormalStream;
 use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;
 use crate::flight_condition::FlightCondition;
-use crate::registry::without_noise;
+use crate::registry::needs_noise;
 use crate::vehicle::{Vehicle, VehicleArgs};
 use flight::Flight;
 use grid::grid;
@@ -97,65 +97,62 @@ fn other_scheme(scheme: Scheme, flight: &str, known: &str) -> Failure {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if the
 /// trim or the simulation fails. The output file is then as it was.
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.stochastic || M::coloured_states() > 0 {
-        noisy::<M>(arguments)
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let vehicle = arguments.vehicle.vehicle()?;
+    if arguments.stochastic || vehicle.model.coloured_states() > 0 {
+        noisy(arguments, &vehicle)
     } else {
-        calm::<M>(arguments)
+        calm(arguments, &vehicle)
     }
 }
 
 /// Without noise.
-fn calm<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+fn calm(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let scheme = arguments.scheme.unwrap_or(Scheme::Rk4);
-    if matches!(scheme, Scheme::EulerMaruyama | Scheme::StratonovichHeun) {
-        return Err(other_scheme(scheme, "without noise", "rk4, heun and euler"));
-    }
+    let stepper = match scheme {
+        Scheme::Euler => Stepper::Euler,
+        Scheme::Heun => Stepper::Heun,
+        Scheme::Rk4 => Stepper::Rk4,
+        Scheme::EulerMaruyama | Scheme::StratonovichHeun => {
+            return Err(other_scheme(scheme, "without noise", "rk4, heun and euler"));
+        }
+    };
     let grid = grid(arguments.t_end, arguments.dt)?;
-    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
     let flight = Flight {
-        vehicle: &vehicle,
+        vehicle,
         seed: None,
     };
-    flight.simulate(arguments, &grid, |x, u, _, dt| match scheme {
-        Scheme::Euler => Euler::new(dt).step(&vehicle.model, x, u),
-        Scheme::Heun => Heun::new(dt).step(&vehicle.model, x, u),
-        _ => Rk4::new(dt).step(&vehicle.model, x, u),
+    let model = vehicle.model.flight(&vehicle.parameters);
+    flight.simulate(arguments, &grid, |x, u, _, dt| {
+        model.step(stepper, dt, x, u, &[])
     })
 }
 
 /// With noise.
-fn noisy<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
+fn noisy(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let scheme = arguments.scheme.unwrap_or(Scheme::EulerMaruyama);
-    if matches!(scheme, Scheme::Rk4 | Scheme::Euler) {
-        let known = "euler-maruyama, heun and stratonovich-heun";
-        return Err(other_scheme(scheme, "with noise", known));
-    }
-    let channels = <M::Noise as Vector<f64>>::LEN;
-    if channels == 0 {
-        return Err(Failure::Request(format!(
-            "--stochastic: {}",
-            without_noise::<M>()
-        )));
-    }
+    let stepper = match scheme {
+        Scheme::Heun => Stepper::ItoHeun,
+        Scheme::StratonovichHeun => Stepper::StratonovichHeun,
+        Scheme::EulerMaruyama => Stepper::ItoEulerMaruyama,
+        Scheme::Rk4 | Scheme::Euler => {
+            let known = "euler-maruyama, heun and stratonovich-heun";
+            return Err(other_scheme(scheme, "with noise", known));
+        }
+    };
+    needs_noise("--stochastic", vehicle.model, "")?;
     let grid = grid(arguments.t_end, arguments.dt)?;
-    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
-    let normals =
-        (0..channels as u64).map(|channel| NormalStream::new(arguments.seed, MEMBER, channel));
+    let channels = 0..vehicle.model.channels() as u64;
+    let normals = channels.map(|channel| NormalStream::new(arguments.seed, MEMBER, channel));
     let mut normals: Vec<NormalStream> = normals.collect();
     let flight = Flight {
-        vehicle: &vehicle,
+        vehicle,
         seed: Some(arguments.seed),
     };
+    let model = vehicle.model.flight(&vehicle.parameters);
     flight.simulate(arguments, &grid, |x, u, step, dt| {
-        let mut normals = normals
-            .iter_mut()
-            .map(|normals| normals.normal(step.into()));
-        let dw = M::Noise::from_fn(|_| normals.next().unwrap_or(0.0) * dt.sqrt());
-        match scheme {
-            Scheme::Heun => ItoHeun::new(dt).step(&vehicle.model, x, u, &dw),
-            Scheme::StratonovichHeun => StratonovichHeun::new(dt).step(&vehicle.model, x, u, &dw),
-            _ => ItoEulerMaruyama::new(dt).step(&vehicle.model, x, u, &dw),
-        }
+        let normals = normals.iter_mut().map(|it| it.normal(step.into()));
+        let dw: Vec<f64> = normals.map(|normal| normal * dt.sqrt()).collect();
+        model.step(stepper, dt, x, u, &dw)
     })
 }

@@ -3,26 +3,28 @@
 use std::path::Path;
 use std::{fs, io};
 
-use ahv_core::{Bounds, GeneratedModel, Table, Vector};
+use ahv_analysis::erased::{AnyModel, Components};
+use ahv_core::{Bounds, Table};
 use ahv_table::{Checked, Family, Fault, Set, Text};
 
 use crate::failure::Failure;
 use crate::names;
-use crate::registry::models;
+use crate::registry::{family, models};
 use crate::vehicle::Values;
 
 /// More faults than these are counted, not listed.
 const MOST_LISTED: usize = 20;
 
-/// The values of the table at `path` for the model `M`, and for the set called `set` or the table's own.
+/// The values of the table at `path` for a model, and for the set called `set` or the table's own.
 ///
 /// # Errors
 ///
 /// [`Failure::Request`] with all faults of the table and their places; also if it lacks the model or the set.
-pub(crate) fn values<M: GeneratedModel>(
+pub(crate) fn values(
+    model: &dyn AnyModel,
     path: &Path,
     set: Option<&str>,
-) -> Result<Values<M>, Failure> {
+) -> Result<Values, Failure> {
     let shown = path.display().to_string();
     let text =
         text_of(path).map_err(|error| Failure::Request(format!("cannot read {shown}: {error}")))?;
@@ -30,17 +32,17 @@ pub(crate) fn values<M: GeneratedModel>(
         .map_err(|unreadable| Failure::Request(unreadable.line(&shown, &text)))?;
     let checked = ahv_table::check(&table, &families())
         .map_err(|faults| Failure::Request(listed(&table, &shown, &faults)))?;
-    if !checked.models.contains(&M::NAME) {
-        let fault = Fault::other_model(M::NAME);
+    if !checked.models.contains(&model.name()) {
+        let fault = Fault::other_model(model.name());
         return Err(Failure::Request(table.line(&shown, &fault)));
     }
     let set = chosen(&checked.sets, set, &shown)?;
-    Ok(of_model(&checked, set))
+    Ok(of_model(model, &checked, set))
 }
 
 /// The families of the models that this program has, each once.
 fn families() -> Vec<Family> {
-    let mut families: Vec<Family> = models().iter().map(|model| model.family).collect();
+    let mut families: Vec<Family> = models().map(family).collect();
     families.dedup_by_key(|family| family.table.models);
     families
 }
@@ -68,48 +70,63 @@ fn chosen<'a>(sets: &'a [Set], name: Option<&str>, shown: &str) -> Result<&'a Se
 }
 
 /// The values of a set, in the units that the model was generated in. What the set does not replace is the table's own.
-fn of_model<M: GeneratedModel>(checked: &Checked, set: &Set) -> Values<M> {
-    let from_si = checked.unit_system != M::TABLE.unit_system;
+fn of_model(model: &dyn AnyModel, checked: &Checked, set: &Set) -> Values {
+    let from_si = checked.unit_system != model.table().unit_system;
     let own = checked.sets.first();
     let number = |index: usize| {
         let of = |set: &Set| set.entries.get(index).copied().flatten();
         of(set).or_else(|| own.and_then(of))
     };
+    let components = model.parameters();
+    let all = || 0..components.len();
     // A coefficient that the table does not list is 0, and so is what only other models have.
-    let parameters = M::ParametersOf::<f64>::from_fn(|index| {
-        let factor = factor::<M::ParametersOf<f64>, f64>(index, from_si);
+    let parameters = all().map(|index| {
+        let factor = factor(components, index, from_si);
         number(index).map_or(0.0, |number| number.value * factor)
     });
-    let choices = checked.choices.iter();
+    let mut parameters: Vec<f64> = parameters.collect();
+    for option in &checked.choices {
+        option.apply_to(components.names, &mut parameters);
+    }
+    let uncertainty = all().map(|index| number(index).map_or(0.0, |number| number.uncertainty));
+    let (states, inputs) = (model.states(), model.inputs());
+    let bounds =
+        |components, built_in| bounds(model.table(), checked, components, built_in, from_si);
     Values {
         set: set.name.clone().into(),
-        parameters: choices.fold(parameters, |parameters, option| option.apply(parameters)),
-        uncertainty: M::ParametersOf::<f64>::from_fn(|index| {
-            number(index).map_or(0.0, |number| number.uncertainty)
-        }),
-        state_bounds: bounds(M::TABLE, checked, M::STATE_BOUNDS, from_si),
-        input_bounds: bounds(M::TABLE, checked, M::INPUT_BOUNDS, from_si),
+        parameters,
+        uncertainty: uncertainty.collect(),
+        state_bounds: bounds(states, model.state_bounds()),
+        input_bounds: bounds(inputs, model.input_bounds()),
     }
 }
 
-/// The table's intervals for the components of `built_in`.
-fn bounds<B: Vector<Bounds>>(table: &Table, checked: &Checked, built_in: B, from_si: bool) -> B {
-    let mut bounds = built_in;
-    for (index, name) in B::NAMES.iter().enumerate() {
+/// The table's intervals in the place of those that the model was generated with.
+fn bounds(
+    table: &Table,
+    checked: &Checked,
+    components: Components,
+    built_in: Vec<Bounds>,
+    from_si: bool,
+) -> Vec<Bounds> {
+    let named = components.names.iter().zip(built_in).enumerate();
+    let bounds = named.map(|(index, (name, built_in))| {
         let mut intervals = table.validity.iter().zip(&checked.validity);
         let interval = intervals.find(|(interval, _)| interval.variables.contains(name));
-        if let Some((_, Some(Bounds { min, max }))) = interval {
-            let factor = factor::<B, Bounds>(index, from_si);
-            // The index is one of the names.
-            let _ = bounds.set(index, Bounds::new(min * factor, max * factor));
+        match interval {
+            Some((_, Some(Bounds { min, max }))) => {
+                let factor = factor(components, index, from_si);
+                Bounds::new(min * factor, max * factor)
+            }
+            _ => built_in,
         }
-    }
-    bounds
+    });
+    bounds.collect()
 }
 
-/// What turns component `index` of a `V` of the table into the unit of the generated models.
-fn factor<V: Vector<T>, T>(index: usize, from_si: bool) -> f64 {
-    match V::SI_FACTORS.get(index) {
+/// What turns component `index` of the table into the unit of the generated models.
+fn factor(components: Components, index: usize, from_si: bool) -> f64 {
+    match components.si_factors.get(index) {
         Some(factor) if from_si => 1.0 / factor,
         _ => 1.0,
     }

@@ -3,10 +3,8 @@
 mod map;
 mod report;
 
-use ahv_core::GeneratedModel;
 use std::path::PathBuf;
 
-use ahv_analysis::trim::trim;
 use clap::Args;
 
 use crate::failure::{Failure, print};
@@ -47,8 +45,8 @@ pub(crate) struct Arguments {
 ///
 /// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim; the
 /// JSON is printed then all the same.
-pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let vehicle = arguments.vehicle.vehicle()?;
     let (Some(size), Some(folder)) = (arguments.map, &arguments.out) else {
         return at_a_point(arguments, &vehicle);
     };
@@ -64,12 +62,9 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
     written.and(printed).and(map.draw(folder))
 }
 
-fn at_a_point<M: GeneratedModel>(
-    arguments: &Arguments,
-    vehicle: &Vehicle<M>,
-) -> Result<(), Failure> {
+fn at_a_point(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let flight = arguments.condition.flight(vehicle)?;
-    let result = trim(&vehicle.model, &flight);
+    let result = vehicle.model.trim(&vehicle.parameters, &flight);
     let report = Report::new(vehicle, &flight, &result);
     if arguments.json {
         output::print_json(&report.json())?;
@@ -80,7 +75,10 @@ fn at_a_point<M: GeneratedModel>(
         Ok(_) => Ok(()),
         Err(error) => {
             let (why, place) = (vehicle.no_trim(&error), vehicle.at(&flight));
-            Err(Failure::Numeric(format!("{}: {why} ({place})", M::NAME)))
+            Err(Failure::Numeric(format!(
+                "{}: {why} ({place})",
+                vehicle.name()
+            )))
         }
     }
 }

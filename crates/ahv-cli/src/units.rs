@@ -1,7 +1,10 @@
 //! The systems of units in which a model can be run.
 
-use ahv_core::{Bounds, Vector};
+use ahv_analysis::erased::Components;
+use ahv_core::Bounds;
 use clap::ValueEnum;
+
+use crate::labels::Labels;
 
 /// A system of units, for inputs, results, and the model itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -32,20 +35,15 @@ impl Units {
         }
     }
 
-    /// Units of the components of a `V`, in order.
-    pub(crate) fn labels<V: Vector<f64>>(self) -> &'static [&'static str] {
-        match self {
-            Self::FootSlug => V::UNITS,
-            Self::Si => V::SI_UNITS,
+    /// Names and units of these components.
+    pub(crate) const fn labels(self, components: Components) -> Labels {
+        Labels {
+            names: components.names,
+            units: match self {
+                Self::FootSlug => components.units,
+                Self::Si => components.si_units,
+            },
         }
-    }
-
-    /// The unit of the component of a `V` called `name`; `1` if there is none.
-    pub(crate) fn label<V: Vector<f64>>(self, name: &str) -> &'static str {
-        V::index_of(name)
-            .and_then(|index| self.labels::<V>().get(index))
-            .copied()
-            .unwrap_or("1")
     }
 
     /// The factor of a number in the units of `own` to this system, `si` being that of its unit to the International System.
@@ -53,23 +51,22 @@ impl Units {
         if self == own { 1.0 } else { si }
     }
 
-    /// A vector of a table, in this system.
-    pub(crate) fn convert<V: Vector<f64>>(self, vector: V) -> V {
-        let mut factors = self.factors(V::SI_FACTORS);
-        vector.map(|component| component * factors.next().unwrap_or(1.0))
+    /// Values of a table, in this system.
+    pub(crate) fn convert(self, components: Components, values: &mut [f64]) {
+        for (value, factor) in values.iter_mut().zip(self.factors(components)) {
+            *value *= factor;
+        }
     }
 
     /// The intervals of a table, in this system.
-    pub(crate) fn convert_bounds<B: Vector<Bounds>>(self, bounds: B) -> B {
-        let mut factors = self.factors(B::SI_FACTORS);
-        bounds.map(|Bounds { min, max }| {
-            let factor = factors.next().unwrap_or(1.0);
-            Bounds::new(min * factor, max * factor)
-        })
+    pub(crate) fn convert_bounds(self, components: Components, bounds: &mut [Bounds]) {
+        for (bounds, factor) in bounds.iter_mut().zip(self.factors(components)) {
+            *bounds = Bounds::new(bounds.min * factor, bounds.max * factor);
+        }
     }
 
-    fn factors(self, si: &'static [f64]) -> impl Iterator<Item = f64> {
-        si.iter().map(move |&factor| match self {
+    fn factors(self, components: Components) -> impl Iterator<Item = f64> {
+        components.si_factors.iter().map(move |&factor| match self {
             Self::FootSlug => 1.0,
             Self::Si => factor,
         })

@@ -4,15 +4,17 @@ use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use ahv_core::{Bounds, Choice, ChoiceOption, GeneratedModel, Vector};
+use ahv_analysis::erased::AnyModel;
+use ahv_core::{Bounds, Choice, ChoiceOption};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command, Error, FromArgMatches, value_parser};
 use serde::Serialize;
 
 use crate::failure::{Failure, complain};
+use crate::labels::Labels;
 use crate::names;
 use crate::output::Pairs;
-use crate::registry::{Registered, heeded, models};
+use crate::registry::{heeded, models};
 use crate::table;
 use crate::units::Units;
 
@@ -37,7 +39,7 @@ pub(crate) fn hyphenated(name: &'static str) -> &'static str {
 /// The choices of all models, each once, with all that some model has to choose from.
 fn all_choices() -> Vec<(&'static Choice, Vec<&'static ChoiceOption>)> {
     let mut all: Vec<(&Choice, Vec<&ChoiceOption>)> = Vec::new();
-    for choice in models().iter().flat_map(|model| model.table.choices) {
+    for choice in models().flat_map(|model| model.table().choices) {
         let known = all.iter().position(|(known, _)| known.name == choice.name);
         let known = known.unwrap_or_else(|| {
             all.push((choice, Vec::new()));
@@ -80,9 +82,9 @@ impl FromArgMatches for VehicleArgs {
 
 impl clap::Args for VehicleArgs {
     fn augment_args(command: Command) -> Command {
-        let names = models().iter().map(|model| {
-            let value = PossibleValue::new(model.name).help(model.title);
-            value.alias(hyphenated(model.name))
+        let names = models().map(|model| {
+            let value = PossibleValue::new(model.name()).help(model.title());
+            value.alias(hyphenated(model.name()))
         });
         let model = Arg::new("model").long("model").required(true);
         let model = model.help("Model").value_name("MODEL");
@@ -123,8 +125,8 @@ impl clap::Args for VehicleArgs {
 }
 
 /// A model in its condition.
-pub(crate) struct Vehicle<M: GeneratedModel> {
-    pub(crate) model: M,
+pub(crate) struct Vehicle {
+    pub(crate) model: &'static dyn AnyModel,
     pub(crate) units: Units,
     /// Table that the values come from, if they are not those that the model was generated with.
     pub(crate) table: Option<PathBuf>,
@@ -133,11 +135,15 @@ pub(crate) struct Vehicle<M: GeneratedModel> {
     /// Choices that the model has, each with what is chosen; a table may hold a mixture that has no name.
     pub(crate) choices: Vec<(&'static str, Option<&'static str>)>,
     /// The parameters of the model.
-    pub(crate) parameters: M::ParametersOf<f64>,
+    pub(crate) parameters: Vec<f64>,
     /// Their relative uncertainties.
-    pub(crate) uncertainty: M::ParametersOf<f64>,
-    pub(crate) state_bounds: M::StateOf<Bounds>,
-    pub(crate) input_bounds: M::InputOf<Bounds>,
+    pub(crate) uncertainty: Vec<f64>,
+    pub(crate) state_bounds: Vec<Bounds>,
+    pub(crate) input_bounds: Vec<Bounds>,
+    pub(crate) states: Labels,
+    pub(crate) inputs: Labels,
+    /// Of the quantities that people look at.
+    pub(crate) outputs: Labels,
 }
 
 /// Which model an outcome is of: what the JSON of every command that takes a vehicle begins with.
@@ -160,14 +166,14 @@ pub(crate) struct PointJson {
 }
 
 /// What a table says of a model, in the units that the model was generated with.
-pub(crate) struct Values<M: GeneratedModel> {
+pub(crate) struct Values {
     /// Set of parameters.
     pub(crate) set: Cow<'static, str>,
-    pub(crate) parameters: M::ParametersOf<f64>,
+    pub(crate) parameters: Vec<f64>,
     /// Relative uncertainties of the parameters.
-    pub(crate) uncertainty: M::ParametersOf<f64>,
-    pub(crate) state_bounds: M::StateOf<Bounds>,
-    pub(crate) input_bounds: M::InputOf<Bounds>,
+    pub(crate) uncertainty: Vec<f64>,
+    pub(crate) state_bounds: Vec<Bounds>,
+    pub(crate) input_bounds: Vec<Bounds>,
 }
 
 impl VehicleArgs {
@@ -176,72 +182,80 @@ impl VehicleArgs {
     /// # Errors
     ///
     /// [`Failure::Request`] if there is none; the command line has refused such a name before.
-    pub(crate) fn registered(&self) -> Result<&'static Registered, Failure> {
+    pub(crate) fn model(&self) -> Result<&'static dyn AnyModel, Failure> {
         let name = self.model.replace('-', "_");
-        let found = models().iter().find(|model| model.name == name);
+        let found = models().find(|model| model.name() == name);
         found.ok_or_else(|| Failure::Request(format!("--model: there is no model {name}")))
     }
 
-    /// The model `M`, which must be the one that is asked for.
+    /// The vehicle that is asked for.
     ///
     /// # Errors
     ///
     /// [`Failure::Request`] for a set, choice or system of units that the model does not have.
-    pub(crate) fn vehicle<M: GeneratedModel>(&self) -> Result<Vehicle<M>, Failure> {
-        let units = self.units::<M>()?;
+    pub(crate) fn vehicle(&self) -> Result<Vehicle, Failure> {
+        let model = self.model()?;
+        let units = self.units(model)?;
         let Values {
             set,
             mut parameters,
             uncertainty,
-            state_bounds,
-            input_bounds,
-        } = self.values::<M>()?;
-        let heeded = heeded::<M>();
+            mut state_bounds,
+            mut input_bounds,
+        } = self.values(model)?;
+        let names = model.parameters().names;
+        let heeded = heeded(model);
         let own = || {
-            M::TABLE
-                .choices
-                .iter()
-                .filter(|choice| heeded.contains(&choice.name))
+            let choices = model.table().choices.iter();
+            choices.filter(|choice| heeded.contains(&choice.name))
         };
         for (name, option) in &self.choices {
             let choice = own().find(|choice| choice.name == *name);
-            let choice = choice.ok_or_else(|| lacks::<M>(name))?;
+            let choice = choice.ok_or_else(|| lacks(model, name))?;
             let chosen = choice.option(option).ok_or_else(|| {
                 let known: Vec<_> = choice.options.iter().map(|option| option.name).collect();
                 let problem = names::unknown(name, option, &known);
                 Failure::Request(format!("--{name}: {problem}"))
             })?;
-            parameters = chosen.apply(parameters);
+            chosen.apply_to(names, &mut parameters);
         }
         let choices = own().map(|choice| {
-            let mut options = choice.options.iter();
-            let chosen = options.find(|option| same(&option.apply(parameters), &parameters));
+            let chosen = choice.options.iter().find(|option| {
+                let mut with = parameters.clone();
+                option.apply_to(names, &mut with);
+                with == parameters
+            });
             (choice.name, chosen.map(|option| option.name))
         });
-        if let Some(note) = M::NOTE {
+        if let Some(note) = model.note() {
             complain(&format!("note: {note}"));
         }
         let choices = choices.collect();
-        let parameters = units.convert(parameters);
+        units.convert(model.parameters(), &mut parameters);
+        units.convert_bounds(model.states(), &mut state_bounds);
+        units.convert_bounds(model.inputs(), &mut input_bounds);
         Ok(Vehicle {
-            model: M::with_parameters(&parameters),
+            model,
             units,
             table: self.table.clone(),
             set,
             choices,
             parameters,
             uncertainty,
-            state_bounds: units.convert_bounds(state_bounds),
-            input_bounds: units.convert_bounds(input_bounds),
+            state_bounds,
+            input_bounds,
+            states: units.labels(model.states()),
+            inputs: units.labels(model.inputs()),
+            outputs: units.labels(model.outputs()),
         })
     }
 
-    fn units<M: GeneratedModel>(&self) -> Result<Units, Failure> {
-        let own = Units::of_table(M::TABLE.unit_system);
+    fn units(&self, model: &dyn AnyModel) -> Result<Units, Failure> {
+        let own = Units::of_table(model.table().unit_system);
         match self.units {
             Some(Units::FootSlug) if own == Units::Si => Err(Failure::Request(format!(
                 "--units: the table of {} is in {}, and is not converted to {}",
-                M::NAME,
+                model.name(),
                 own.name(),
                 Units::FootSlug.name()
             ))),
@@ -250,50 +264,49 @@ impl VehicleArgs {
     }
 
     /// The values of the table, or those that the model was generated with.
-    fn values<M: GeneratedModel>(&self) -> Result<Values<M>, Failure> {
-        if let Some(path) = &self.table {
-            return table::values(path, self.set.as_deref());
-        }
+    fn values(&self, model: &dyn AnyModel) -> Result<Values, Failure> {
         let name = self.set.as_deref();
-        let mut sets = M::SETS.iter();
+        if let Some(path) = &self.table {
+            return table::values(model, path, name);
+        }
+        let sets = model.sets();
+        let known: Vec<_> = sets.iter().map(|set| set.name).collect();
+        let mut sets = sets.into_iter();
         let found = sets.find(|set| name.is_none_or(|name| name == set.name));
         let set = found.ok_or_else(|| {
-            let known: Vec<_> = M::SETS.iter().map(|set| set.name).collect();
             let problem = names::unknown("set of parameters", name.unwrap_or_default(), &known);
             Failure::Request(format!("--set: {problem}"))
         })?;
         Ok(Values {
             set: set.name.into(),
             parameters: set.parameters,
-            uncertainty: set.uncertainty(),
-            state_bounds: M::STATE_BOUNDS,
-            input_bounds: M::INPUT_BOUNDS,
+            uncertainty: set.uncertainty,
+            state_bounds: model.state_bounds(),
+            input_bounds: model.input_bounds(),
         })
     }
 }
 
-/// Whether two vectors have the same components.
-fn same<V: Vector<f64>>(a: &V, b: &V) -> bool {
-    (0..V::LEN).all(|index| a.get(index) == b.get(index))
-}
-
-fn lacks<M: GeneratedModel>(choice: &str) -> Failure {
-    let having = models()
-        .iter()
-        .filter(|model| (model.choices)().contains(&choice));
-    let having: Vec<_> = having.map(|model| model.name).collect();
+fn lacks(model: &dyn AnyModel, choice: &str) -> Failure {
+    let having = models().filter(|model| heeded(*model).contains(&choice));
+    let having: Vec<_> = having.map(AnyModel::name).collect();
     Failure::Request(format!(
         "--{choice}: {} has no such choice; {} have it",
-        M::NAME,
+        model.name(),
         names::list(&having)
     ))
 }
 
-impl<M: GeneratedModel> Vehicle<M> {
+impl Vehicle {
+    /// Its model's name.
+    pub(crate) fn name(&self) -> &'static str {
+        self.model.name()
+    }
+
     /// Model, parameters and choices, for a program.
     pub(crate) fn heading(&self) -> Heading<'_> {
         Heading {
-            model: M::NAME,
+            model: self.name(),
             table: self.table.as_deref(),
             set: &self.set,
             choices: Pairs(self.choices.clone()),
@@ -302,22 +315,36 @@ impl<M: GeneratedModel> Vehicle<M> {
     }
 
     /// State, input and outputs by name with their units, for a program.
-    pub(crate) fn point(&self, state: &M::State, input: &M::Input) -> PointJson {
-        let mut units = Pairs::units_of_both::<M::State, M::Input>(self.units);
-        let outputs = M::OutputsOf::<f64>::NAMES.iter().copied();
-        let labels = self.units.labels::<M::OutputsOf<f64>>().iter().copied();
-        units.0.extend(outputs.zip(labels));
+    pub(crate) fn point(&self, state: &[f64], input: &[f64]) -> PointJson {
+        let outputs = self.model.output_values(&self.parameters, state, input);
+        let all = [self.states, self.inputs, self.outputs];
         PointJson {
-            state: Pairs::of(state),
-            input: Pairs::of(input),
-            outputs: Pairs::of(&self.outputs(state, input)),
-            units,
+            state: self.states.pairs(state.iter().copied()),
+            input: self.inputs.pairs(input.iter().copied()),
+            outputs: self.outputs.pairs(outputs),
+            units: Pairs(all.into_iter().flat_map(Labels::iter).collect()),
         }
     }
 
-    /// The quantities that people look at.
-    pub(crate) fn outputs(&self, state: &M::State, input: &M::Input) -> M::OutputsOf<f64> {
-        M::outputs(&M::generic(&self.parameters), state, input)
+    /// Units of states and inputs by name.
+    pub(crate) fn point_units(&self) -> Pairs<&'static str> {
+        Pairs(self.states.iter().chain(self.inputs.iter()).collect())
+    }
+
+    /// A state, an input or another quantity of a point.
+    pub(crate) fn value(&self, name: &str, state: &[f64], input: &[f64]) -> Option<f64> {
+        let of = |labels: Labels, values: &[f64]| values.get(labels.index_of(name)?).copied();
+        let outputs = || self.model.output_values(&self.parameters, state, input);
+        of(self.states, state)
+            .or_else(|| of(self.inputs, input))
+            .or_else(|| of(self.outputs, &outputs()))
+    }
+
+    /// The unit of a state, an input or another quantity.
+    pub(crate) fn unit(&self, name: &str) -> &'static str {
+        let all = [self.states, self.inputs, self.outputs];
+        let own = all.into_iter().find(|it| it.index_of(name).is_some());
+        own.map_or("1", |labels| labels.unit(name))
     }
 
     /// Parameters and choices, for a person.

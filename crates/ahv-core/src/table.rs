@@ -158,6 +158,16 @@ impl ChoiceOption {
         }
         parameters
     }
+
+    /// Makes those of `parameters`, in the order of their `names`, the ones with this option.
+    pub fn apply_to(&self, names: &[&str], parameters: &mut [f64]) {
+        for (name, value) in self.values {
+            let mut pairs = names.iter().zip(&mut *parameters);
+            if let Some((_, parameter)) = pairs.find(|(own, _)| *own == name) {
+                *parameter = *value;
+            }
+        }
+    }
 }
 
 /// An entry of the validity box.

@@ -5,6 +5,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use ahv_core::{Shown, Vector};
 use ahv_integrate::NormalStream;
 
+use crate::erased::{values, vector};
+
 /// Set in the seed, so that parameters have nothing to do with the noise of flights of the same seed.
 const PARAMETER_SEED: u64 = 0x5851_F42D_4C95_7F2D;
 /// Standard deviations that the uncertainty of a normal parameter stands for.
@@ -98,14 +100,14 @@ pub enum DrawError {
     Nothing,
 }
 
-/// Parameters `P` with what is drawn.
+/// Parameters with what is drawn.
 ///
 /// A member is a function of (seed, member, parameter) alone. Draws of a group are joined by a normal copula with one
 /// common factor, whose correlation is chosen such that the draws have the one asked for (of uniform numbers 2 sin(πρ/6)).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Draws<P> {
-    nominal: P,
-    uncertainty: P,
+pub struct Draws {
+    nominal: Vec<f64>,
+    uncertainty: Vec<f64>,
     distribution: Distribution,
     groups: Vec<Group>,
     /// Group of each parameter that is in one.
@@ -113,23 +115,41 @@ pub struct Draws<P> {
     seed: u64,
 }
 
-impl<P: Vector<f64>> Draws<P> {
+impl Draws {
     /// Draws about `nominal` within `uncertainty`, relative: 0.4 stands for 40 %. What has an uncertainty or a value of 0 stays.
     ///
     /// # Errors
     ///
     /// [`DrawError`].
-    pub fn new(
+    pub fn new<P: Vector<f64>>(
         nominal: P,
         uncertainty: P,
         distribution: Distribution,
         groups: Vec<Group>,
         seed: u64,
     ) -> Result<Self, DrawError> {
-        if let Some((name, value)) = uncertainty.find(|u| !(u.is_finite() && u >= 0.0)) {
+        let (nominal, uncertainty) = (values(&nominal), values(&uncertainty));
+        Self::of_values(P::NAMES, nominal, uncertainty, distribution, groups, seed)
+    }
+
+    /// The same for parameters of these names.
+    ///
+    /// # Errors
+    ///
+    /// [`DrawError`].
+    pub fn of_values(
+        names: &[&'static str],
+        nominal: Vec<f64>,
+        uncertainty: Vec<f64>,
+        distribution: Distribution,
+        groups: Vec<Group>,
+        seed: u64,
+    ) -> Result<Self, DrawError> {
+        let mut named = names.iter().zip(&uncertainty);
+        if let Some((&name, &value)) = named.find(|(_, u)| !(u.is_finite() && **u >= 0.0)) {
             return Err(DrawError::Uncertainty { name, value });
         }
-        let mut group_of = vec![None; P::LEN];
+        let mut group_of = vec![None; nominal.len()];
         for (index, group) in groups.iter().enumerate() {
             let name = || group.name.clone();
             if !(0.0..=1.0).contains(&group.correlation) {
@@ -147,7 +167,7 @@ impl<P: Vector<f64>> Draws<P> {
                     })?;
                 if place.replace(index).is_some() {
                     return Err(DrawError::Twice {
-                        name: P::NAMES.get(parameter).copied().unwrap_or_default(),
+                        name: names.get(parameter).copied().unwrap_or_default(),
                         group: name(),
                     });
                 }
@@ -168,7 +188,7 @@ impl<P: Vector<f64>> Draws<P> {
     }
 
     /// The parameters about which is drawn.
-    pub const fn nominal(&self) -> &P {
+    pub fn nominal(&self) -> &[f64] {
         &self.nominal
     }
 
@@ -180,13 +200,13 @@ impl<P: Vector<f64>> Draws<P> {
     /// Indices of the parameters that vary.
     pub fn varied(&self) -> Vec<usize> {
         let varies = |&index: &usize| self.deviation(index) != 0.0;
-        (0..P::LEN).filter(varies).collect()
+        (0..self.nominal.len()).filter(varies).collect()
     }
 
     /// A standard deviation of a parameter, in its own unit, with the parameter's sign; 0 out of range.
     pub fn deviation(&self, index: usize) -> f64 {
-        let value = self.nominal.get(index).unwrap_or(0.0);
-        let uncertainty = self.uncertainty.get(index).unwrap_or(0.0);
+        let number = |values: &[f64]| values.get(index).copied().unwrap_or(0.0);
+        let (value, uncertainty) = (number(&self.nominal), number(&self.uncertainty));
         value * uncertainty * self.distribution.deviation()
     }
 
@@ -203,15 +223,19 @@ impl<P: Vector<f64>> Draws<P> {
     }
 
     /// The parameters of member number `member`.
-    pub fn member(&self, member: u64) -> P {
+    pub fn member<P: Vector<f64>>(&self, member: u64) -> P {
+        vector(&self.member_values(member))
+    }
+
+    /// The same, in order.
+    pub fn member_values(&self, member: u64) -> Vec<f64> {
         let seed = self.seed ^ PARAMETER_SEED;
         let normal = |channel: usize| NormalStream::new(seed, member, channel as u64).normal(0);
         let common: Vec<f64> = (0..self.groups.len())
-            .map(|group| normal(P::LEN + group))
+            .map(|group| normal(self.nominal.len() + group))
             .collect();
-        P::from_fn(|index| {
-            let value = self.nominal.get(index).unwrap_or(0.0);
-            let uncertainty = self.uncertainty.get(index).unwrap_or(0.0);
+        let pairs = self.nominal.iter().zip(&self.uncertainty).enumerate();
+        let drawn = pairs.map(|(index, (&value, &uncertainty))| {
             // What stays, stays to the last bit.
             if value == 0.0 || uncertainty == 0.0 {
                 return value;
@@ -229,6 +253,7 @@ impl<P: Vector<f64>> Draws<P> {
                 None => own,
             };
             value * (1.0 + uncertainty * self.distribution.of_normal(z))
-        })
+        });
+        drawn.collect()
     }
 }

@@ -2,7 +2,6 @@
 
 use std::cmp::Ordering;
 
-use ahv_core::Vector;
 use nalgebra::Complex;
 
 use super::matching::partners;
@@ -48,10 +47,7 @@ pub struct Quantity {
 
 /// The quantities of `nominal`, the vehicle about which is drawn: of its trim those that are `shown`, and its roots, of a
 /// pair the upper one.
-pub(super) fn quantities<X: Vector<f64>, U: Vector<f64>>(
-    nominal: &Solution<X, U>,
-    shown: &[&str],
-) -> Vec<Quantity> {
+pub(super) fn quantities(nominal: &Solution, shown: &[&str]) -> Vec<Quantity> {
     let trim = |name: &&str| Quantity {
         kind: Kind::Trim,
         name: (*name).to_owned(),
@@ -113,10 +109,7 @@ fn name(poles: &[Pole], pole: &Pole) -> String {
 
 impl Quantity {
     /// Its value in a vehicle whose roots stand in the order of the nominal ones; `None` if it has no such root.
-    pub(super) fn value<X: Vector<f64>, U: Vector<f64>>(
-        &self,
-        solution: &Ordered<'_, X, U>,
-    ) -> Option<f64> {
+    pub(super) fn value(&self, solution: &Ordered<'_>) -> Option<f64> {
         let Ordered {
             solution,
             poles,
@@ -150,15 +143,15 @@ impl Quantity {
 /// A vehicle with its roots in the order of the nominal ones; `None` where there are more or fewer.
 ///
 /// Poles correspond by mode, those of one mode from right to left; zeros such that the sum of the distances is least.
-pub(super) struct Ordered<'a, X, U> {
-    solution: &'a Solution<X, U>,
+pub(super) struct Ordered<'a> {
+    solution: &'a Solution,
     poles: Option<Vec<Complex<f64>>>,
     zeros: Option<Vec<Complex<f64>>>,
 }
 
-impl<'a, X, U> Ordered<'a, X, U> {
+impl<'a> Ordered<'a> {
     /// The roots of `solution` in the order of those of `nominal`.
-    pub(super) fn new(nominal: &Solution<X, U>, solution: &'a Solution<X, U>) -> Self {
+    pub(super) fn new(nominal: &Solution, solution: &'a Solution) -> Self {
         let zeros = || {
             let partners = partners(&nominal.zeros, &solution.zeros)?.into_iter();
             partners

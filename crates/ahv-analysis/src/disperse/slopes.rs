@@ -6,9 +6,10 @@ use nalgebra::{Complex, DMatrix};
 use super::draws::Draws;
 use super::quantity::{Kind, Quantity};
 use super::{Nominal, SolutionError};
+use crate::erased::vector;
 use crate::linearize::{LinearSystem, linearize};
 use crate::sensitivity::RootVectors;
-use crate::trim::{Shift, response};
+use crate::trim::{Shift, Trim, response};
 
 /// Step of the central differences, as a share of the parameter.
 const STEP: f64 = 1e-5;
@@ -36,7 +37,7 @@ pub struct Contribution {
 impl Slopes {
     /// What each parameter contributes to the quantity number `quantity`, the greatest first; empty for a root that is
     /// not simple.
-    pub fn ranked<P: Vector<f64>>(&self, quantity: usize, draws: &Draws<P>) -> Vec<Contribution> {
+    pub fn ranked(&self, quantity: usize, draws: &Draws) -> Vec<Contribution> {
         let slopes = self.by_quantity.get(quantity).and_then(Option::as_ref);
         let pairs = slopes
             .into_iter()
@@ -53,7 +54,7 @@ impl Slopes {
     }
 
     /// Standard deviation of the quantity number `quantity` to first order, correlations included.
-    pub fn std<P: Vector<f64>>(&self, quantity: usize, draws: &Draws<P>) -> Option<f64> {
+    pub fn std(&self, quantity: usize, draws: &Draws) -> Option<f64> {
         self.by_quantity.get(quantity)?.as_ref()?;
         let effects = self.ranked(quantity, draws);
         let pairs = effects
@@ -79,12 +80,13 @@ struct Change {
 ///
 /// [`SolutionError`].
 pub fn slopes<M: GeneratedModel>(
-    draws: &Draws<M::ParametersOf<f64>>,
-    nominal: &Nominal<M::State, M::Input>,
+    draws: &Draws,
+    nominal: &Nominal,
 ) -> Result<Slopes, SolutionError> {
     let parameters = draws.varied();
-    let model = M::with_parameters(draws.nominal());
-    let trim = &nominal.solution.trim;
+    let parameters_there: M::ParametersOf<f64> = vector(draws.nominal());
+    let model = M::with_parameters(&parameters_there);
+    let trim = typed::<M>(nominal);
     let jacobian = model.parameter_jacobian(&trim.state, &trim.input);
     let by = |parameter: usize| {
         let row = |row| {
@@ -95,7 +97,7 @@ pub fn slopes<M: GeneratedModel>(
         M::State::from_fn(|index| row(index).unwrap_or(0.0))
     };
     let drifts: Vec<M::State> = parameters.iter().map(|&parameter| by(parameter)).collect();
-    let Some(moves) = response(&model, &nominal.flight, trim, &drifts)? else {
+    let Some(moves) = response(&model, &nominal.flight, &trim, &drifts)? else {
         return Ok(Slopes {
             by_quantity: vec![None; nominal.quantities.len()],
             parameters,
@@ -104,7 +106,7 @@ pub fn slopes<M: GeneratedModel>(
     let changes = parameters
         .iter()
         .zip(&moves)
-        .map(|(&parameter, by)| change::<M>(draws.nominal(), nominal, parameter, by))
+        .map(|(&parameter, by)| change::<M>(&parameters_there, nominal, parameter, by))
         .collect::<Result<Vec<_>, _>>()?;
     let slopes = |quantity: &Quantity| -> Option<Vec<f64>> {
         if quantity.kind == Kind::Trim {
@@ -134,15 +136,27 @@ pub fn slopes<M: GeneratedModel>(
     })
 }
 
+/// The nominal trim.
+fn typed<M: GeneratedModel>(nominal: &Nominal) -> Trim<M::State, M::Input> {
+    let trim = &nominal.solution.trim;
+    Trim {
+        state: vector(&trim.state),
+        input: vector(&trim.input),
+        residuals: vector(&trim.residuals),
+        residual_max: trim.residual_max,
+        iterations: trim.iterations,
+    }
+}
+
 /// Central differences by the parameter number `parameter`, the trim moving by `shift` per unit of it.
 fn change<M: GeneratedModel>(
     parameters: &M::ParametersOf<f64>,
-    nominal: &Nominal<M::State, M::Input>,
+    nominal: &Nominal,
     parameter: usize,
     shift: &Shift<M::State, M::Input>,
 ) -> Result<Change, SolutionError> {
     let value = parameters.get(parameter).unwrap_or(0.0);
-    let trim = &nominal.solution.trim;
+    let trim = typed::<M>(nominal);
     let at = |step: f64| {
         let mut moved = *parameters;
         moved.set(parameter, value + step);
@@ -165,10 +179,10 @@ fn change<M: GeneratedModel>(
 }
 
 /// The null vectors of a quantity's root, and whether they are those of the system's pencil.
-fn root_vectors<X, U>(
+fn root_vectors(
     system: &LinearSystem,
     quantity: &Quantity,
-    nominal: &Nominal<X, U>,
+    nominal: &Nominal,
 ) -> Option<(RootVectors, bool)> {
     let (n, outputs) = (system.a.nrows(), system.c.nrows());
     if quantity.kind == Kind::Pole {

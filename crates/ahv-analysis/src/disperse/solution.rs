@@ -30,9 +30,11 @@ pub enum SolutionError {
 
 /// A vehicle in trim.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solution<X, U> {
+pub struct Solution {
     /// Its trim.
-    pub trim: Trim<X, U>,
+    pub trim: Trim<Vec<f64>, Vec<f64>>,
+    /// Names of states and inputs.
+    names: [&'static [&'static str]; 2],
     /// Other quantities of the trim by name: those of [`GeneratedModel::OutputsOf`].
     pub outputs: Vec<(&'static str, f64)>,
     /// The linear system about the trim, from the model's default inputs to its default outputs.
@@ -43,19 +45,20 @@ pub struct Solution<X, U> {
     pub zeros: Vec<Complex<f64>>,
 }
 
-impl<X: Vector<f64>, U: Vector<f64>> Solution<X, U> {
+impl Solution {
     /// A state, an input or another quantity of the trim by its name.
     pub fn trim_value(&self, name: &str) -> Option<f64> {
-        let state = X::index_of(name).and_then(|index| self.trim.state.get(index));
-        let input = U::index_of(name).and_then(|index| self.trim.input.get(index));
+        let of = |names: &[&str], values: &[f64]| {
+            let index = names.iter().position(|own| *own == name)?;
+            values.get(index).copied()
+        };
+        let ([states, inputs], trim) = (self.names, &self.trim);
         let output = || self.outputs.iter().find(|(known, _)| *known == name);
-        state
-            .or(input)
+        of(states, &trim.state)
+            .or_else(|| of(inputs, &trim.input))
             .or_else(|| output().map(|&(_, value)| value))
     }
-}
 
-impl<X, U> Solution<X, U> {
     /// Poles to the right of the imaginary axis.
     pub fn unstable_poles(&self) -> usize {
         self.poles
@@ -77,8 +80,8 @@ impl<X, U> Solution<X, U> {
 /// [`SolutionError`].
 pub fn solve<M: GeneratedModel>(
     parameters: &M::ParametersOf<f64>,
-    flight: &SteadyState<M::Input>,
-) -> Result<Solution<M::State, M::Input>, SolutionError> {
+    flight: &SteadyState,
+) -> Result<Solution, SolutionError> {
     if let Some(rule) = M::broken_rule(parameters) {
         return Err(SolutionError::Rule(rule.reason));
     }
@@ -98,7 +101,8 @@ pub fn solve<M: GeneratedModel>(
             .iter()
             .map(|zero| zero.value)
             .collect(),
-        trim,
+        trim: trim.erased(),
+        names: [M::State::NAMES, M::Input::NAMES],
         system,
     })
 }

@@ -21,7 +21,7 @@ pub struct Experiment<F: GeneratedModel> {
     /// Parameters.
     pub parameters: F::ParametersOf<f64>,
     /// Parameters drawn for each member, in the place of those.
-    pub dispersion: Option<Draws<F::ParametersOf<f64>>>,
+    pub dispersion: Option<Draws>,
     /// State at the start, and the standard deviation of a normal distribution about it.
     pub state: [F::StateOf<f64>; 2],
     /// Input, and the standard deviation of a normal distribution about it: held, or where actuators start.

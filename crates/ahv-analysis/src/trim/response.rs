@@ -28,7 +28,7 @@ type Shifts<M> = Option<Vec<Shift<<M as Model>::State, <M as Model>::Input>>>;
 /// [`TrimError::MissingName`] and [`TrimError::NonFinite`], as [`trim`](super::trim).
 pub fn response<M>(
     model: &M,
-    flight: &SteadyState<M::Input>,
+    flight: &SteadyState,
     trim: &Trim<M::State, M::Input>,
     changes: &[M::State],
 ) -> Result<Shifts<M>, TrimError>

@@ -40,7 +40,7 @@ pub(super) struct System<'a, M> {
 }
 
 impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
-    pub(super) fn new(model: &'a M, flight: &SteadyState<M::Input>) -> Result<Self, TrimError> {
+    pub(super) fn new(model: &'a M, flight: &SteadyState) -> Result<Self, TrimError> {
         let (mut states, mut inputs) = (Vec::new(), Vec::new());
         for name in flight.sought.iter().map(|it| it.name) {
             match (M::State::index_of(name), M::Input::index_of(name)) {
@@ -52,13 +52,15 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
         let row = |name| M::State::index_of(name).ok_or(TrimError::MissingName { name });
         let rows = flight.equations.iter().map(|it| row(it.name));
         let rows = rows.collect::<Result<Vec<_>, _>>()?;
+        let is_input = |name: &&str| M::State::index_of(name).is_none();
+        let input_names: Vec<_> = flight.sought().filter(is_input).collect();
         let scales = flight.sought.iter().map(|it| it.scale);
         let mut system = Self {
             model,
             states,
             inputs,
-            input_names: flight.sought_inputs().collect(),
-            bounds: flight.bounds.clone(),
+            bounds: input_names.iter().map(|name| flight.bounds(name)).collect(),
+            input_names,
             row_scale: DVector::from_element(rows.len(), 1.0),
             rows,
             column_scale: DVector::from_iterator(flight.sought.len(), scales),
@@ -91,7 +93,7 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
     }
 
     /// Where the search starts, if the drift is finite there.
-    pub(super) fn start(&self, flight: &SteadyState<M::Input>) -> Result<Point<M>, TrimError> {
+    pub(super) fn start(&self, flight: &SteadyState) -> Result<Point<M>, TrimError> {
         let mut x = M::State::splat(0.0);
         let sought = self.sought.iter().map(|it| (it.name, it.start));
         let is_state = |(name, _): &(&str, f64)| M::State::index_of(name).is_some();
@@ -100,7 +102,7 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
                 .and_then(|index| x.set(index, value))
                 .ok_or(TrimError::MissingName { name })?;
         }
-        let u = flight.input;
+        let u = flight.input();
         match self.model.drift(&x, &u).find(|it| !Real::is_finite(it)) {
             Some((name, value)) => Err(TrimError::NonFinite { name, value }),
             None => Ok(Point { x, u }),

@@ -1,6 +1,5 @@
 //! The picture of `ahv covariance`: a panel a state.
 
-use ahv_core::{GeneratedModel, Vector};
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
 
 use super::Outcome;
@@ -10,14 +9,13 @@ use crate::output::readable;
 const COLUMNS: usize = 3;
 
 /// Standard deviations over time.
-pub(super) fn draw<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
-    let panels = (0..M::State::LEN).filter_map(|index| panel(outcome, index));
+pub(super) fn draw(outcome: &Outcome<'_>) -> Result<String, PlotError> {
+    let states = outcome.vehicle.states.iter().enumerate();
+    let panels = states.map(|(index, (name, unit))| panel(outcome, index, name, unit));
     Figure::new(outcome.mark(), COLUMNS, panels.collect()).svg()
 }
 
-fn panel<M: GeneratedModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Panel> {
-    let name = M::State::NAMES.get(index)?;
-    let unit = outcome.vehicle.units.labels::<M::State>().get(index)?;
+fn panel(outcome: &Outcome<'_>, index: usize, name: &str, unit: &str) -> Panel {
     let (unit, factor) = readable(unit);
     let linear = outcome
         .linear
@@ -27,8 +25,8 @@ fn panel<M: GeneratedModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Pa
         let std = it.states.get(index)?.std?.closed()?;
         Some((it.time, factor * std.low, factor * std.high))
     });
-    Some(Panel {
-        title: (*name).to_owned(),
+    Panel {
+        title: name.to_owned(),
         x: Axis::linear("time [s]"),
         y: Axis::linear(format!("standard deviation [{unit}]")),
         layers: vec![
@@ -43,5 +41,5 @@ fn panel<M: GeneratedModel>(outcome: &Outcome<'_, M>, index: usize) -> Option<Pa
                 Mark::Line(linear.collect()),
             ),
         ],
-    })
+    }
 }

@@ -6,7 +6,6 @@ use std::path::Path;
 use ahv_analysis::covariance::Spreading;
 use ahv_analysis::monte_carlo::Snapshot;
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
-use ahv_core::{GeneratedModel, Vector};
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -85,27 +84,17 @@ pub(super) fn stds(snapshot: &Snapshot) -> Vec<Option<OpenEstimate>> {
     snapshot.states.iter().map(|state| state.std).collect()
 }
 
-/// Names of the states, each with its value.
-fn named<X: Vector<f64>, V: Clone>(values: &[V]) -> Pairs<V> {
-    Pairs(
-        X::NAMES
-            .iter()
-            .copied()
-            .zip(values.iter().cloned())
-            .collect(),
-    )
-}
-
-impl<M: GeneratedModel> Outcome<'_, M> {
-    pub(super) fn pairs(&self) -> impl Iterator<Item = (&Spreading<M::State>, &Snapshot)> {
+impl Outcome<'_> {
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (&Spreading<Vec<f64>>, &Snapshot)> {
         self.linear.iter().zip(&self.sampled)
     }
 
     /// Ratios of linear to sampled standard deviation, over states and times.
     fn ratios(&self) -> impl Iterator<Item = JsonRatio> {
+        let names = self.vehicle.states.names;
         self.pairs().flat_map(|(linear, sampled)| {
             let stds = linear.std().into_iter().zip(stds(sampled));
-            let named = M::State::NAMES.iter().zip(stds);
+            let named = names.iter().zip(stds);
             let time = time(linear.time);
             named.filter_map(move |(&state, (linear, sampled))| {
                 Some(JsonRatio {
@@ -160,26 +149,24 @@ impl<M: GeneratedModel> Outcome<'_, M> {
     }
 
     pub(super) fn json(&self) -> Json<'_> {
-        let at = |(linear, sampled): (&Spreading<M::State>, &Snapshot)| {
-            let stds = stds(sampled);
-            let ratios = linear.std().into_iter().zip(&stds);
-            let ratios: Vec<_> = ratios.map(|(linear, &std)| ratio(linear, std)).collect();
-            let means: Vec<_> = sampled.states.iter().map(|state| state.mean).collect();
+        let states = self.vehicle.states;
+        let at = |(linear, sampled): (&Spreading<Vec<f64>>, &Snapshot)| {
+            let ratios = linear.std().into_iter().zip(stds(sampled));
+            let ratios = ratios.map(|(linear, std)| ratio(linear, std));
             JsonTime {
                 time: time(linear.time),
                 members: sampled.members,
-                linear_std: named::<M::State, _>(&linear.std()),
-                sampled_std: named::<M::State, _>(&stds),
-                ratio: named::<M::State, _>(&ratios),
+                linear_std: states.pairs(linear.std()),
+                sampled_std: states.pairs(stds(sampled)),
+                ratio: states.pairs(ratios),
                 linear_covariance: rows(&linear.covariance),
-                linear_mean: Pairs::of(&linear.state),
-                sampled_mean: named::<M::State, _>(&means),
+                linear_mean: states.pairs(linear.state.iter().copied()),
+                sampled_mean: states.pairs(sampled.states.iter().map(|state| state.mean)),
             }
         };
-        let stationary = self.stationary_std();
         Json {
             heading: self.vehicle.heading(),
-            point: self.vehicle.point(&self.start.0, &self.start.1),
+            point: self.vehicle.point(&self.start[0], &self.start[1]),
             members: self.members,
             complete: self.is_complete(),
             seed: self.arguments.seed,
@@ -188,7 +175,7 @@ impl<M: GeneratedModel> Outcome<'_, M> {
             feedback: self.arguments.feedback.is_given(),
             share_inside: self.share_inside(),
             worst_ratio: self.worst(),
-            stationary_std: stationary.map(|std| named::<M::State, _>(&std)),
+            stationary_std: self.stationary_std().map(|std| states.pairs(std)),
             stationary_covariance: self.stationary.as_ref().map(rows),
             times: self.pairs().map(at).collect(),
         }
@@ -198,16 +185,16 @@ impl<M: GeneratedModel> Outcome<'_, M> {
         let mut text = format!(
             "{}: {}, {}\nstandard deviations to first order, and of {} ({}, seed {}) with intervals of 95 %, and the \
              ratio of the two",
-            M::NAME,
+            self.vehicle.name(),
             self.place,
             self.vehicle.described(),
             self.flights(),
             self.scheme.name(),
             self.arguments.seed
         );
-        let units = self.vehicle.units.labels::<M::State>();
+        let states = self.vehicle.states;
         // Writing into a String cannot fail.
-        for (index, (name, unit)) in M::State::NAMES.iter().zip(units).enumerate() {
+        for (index, (name, unit)) in states.iter().enumerate() {
             let shown = |value: f64| show(value, unit);
             for (linear, sampled) in self.pairs().skip(STRIDE - 1).step_by(STRIDE) {
                 let (Some(std), Some(Some(flown))) = (
@@ -228,11 +215,8 @@ impl<M: GeneratedModel> Outcome<'_, M> {
                 }
             }
         }
-        for ((name, unit), std) in M::State::NAMES
-            .iter()
-            .zip(units)
-            .zip(self.stationary_std().into_iter().flatten())
-        {
+        let stationary = self.stationary_std().into_iter().flatten();
+        for ((name, unit), std) in states.iter().zip(stationary) {
             let _ = write!(text, "\n  {name:<12} stationary: {}", show(std, unit));
         }
         if let Some(worst) = self.worst() {
@@ -259,8 +243,7 @@ impl<M: GeneratedModel> Outcome<'_, M> {
     /// Writes the table.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
         let mut file = CsvFile::create(&folder.join("covariance.csv"))?;
-        let units = self.vehicle.units.labels::<M::State>();
-        let columns = M::State::NAMES.iter().zip(units).flat_map(|(name, unit)| {
+        let columns = self.vehicle.states.iter().flat_map(|(name, unit)| {
             let kinds = [
                 "linear_std",
                 "sampled_std",

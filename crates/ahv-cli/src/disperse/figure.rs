@@ -2,12 +2,10 @@
 
 use ahv_analysis::disperse::{Contribution, Kind, Part, Quantity};
 use ahv_analysis::statistics::densities;
-use ahv_core::GeneratedModel;
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError, Shape};
 use nalgebra::Complex;
 
 use super::Outcome;
-use super::report::parameter;
 
 /// Half the height of a bar, in rows.
 const BAR: f64 = 0.32;
@@ -22,14 +20,14 @@ const ZEROS: (Colour, Colour) = (Colour::Orange, Colour::Vermillion);
 const DRAWN: usize = 400;
 
 /// What people look at of a trim over the first of it, a dot a member.
-pub(super) fn trim<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
+pub(super) fn trim(outcome: &Outcome<'_>) -> Result<String, PlotError> {
     let quantities = &outcome.nominal.quantities;
     let place = |name: &str| {
         quantities
             .iter()
             .position(|it| it.kind == Kind::Trim && it.name == name)
     };
-    let shown = M::TRIM.shown;
+    let shown = outcome.vehicle.model.trim_problem().shown;
     let panels = shown.iter().skip(1).take(3).filter_map(|name| {
         let (x, y) = (place(shown.first()?)?, place(name)?);
         Some(scatter(outcome, x, y))
@@ -37,7 +35,7 @@ pub(super) fn trim<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String
     Figure::new(outcome.mark(), 3, panels.collect()).svg()
 }
 
-fn scatter<M: GeneratedModel>(outcome: &Outcome<'_, M>, x: usize, y: usize) -> Panel {
+fn scatter(outcome: &Outcome<'_>, x: usize, y: usize) -> Panel {
     let labels = [x, y].map(|index| outcome.label(&outcome.nominal.quantities[index]));
     let [(x_label, x_factor), (y_label, y_factor)] = labels;
     let members = outcome.members.iter().filter_map(|it| {
@@ -68,7 +66,7 @@ fn scatter<M: GeneratedModel>(outcome: &Outcome<'_, M>, x: usize, y: usize) -> P
 }
 
 /// Poles and zeros of the members about the nominal ones, those of the upper half plane, and how the fast real ones spread.
-pub(super) fn roots<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, PlotError> {
+pub(super) fn roots(outcome: &Outcome<'_>) -> Result<String, PlotError> {
     let nominal = &outcome.nominal.solution;
     let solved = outcome
         .members
@@ -118,7 +116,7 @@ fn cloud(
 }
 
 /// How the poles of the short period and the real zeros off the origin spread.
-fn histograms<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Panel {
+fn histograms(outcome: &Outcome<'_>) -> Panel {
     let values = outcome.nominal.values();
     let quantities = &outcome.nominal.quantities;
     let real = |it: &Quantity| {
@@ -179,7 +177,7 @@ fn bins(sample: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
 }
 
 /// The parameters that matter most to each of the headline quantities, as bars.
-pub(super) fn sensitivities<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Result<String, String> {
+pub(super) fn sensitivities(outcome: &Outcome<'_>) -> Result<String, String> {
     let panels = outcome.headline().into_iter().filter_map(|index| {
         let quantity = outcome.nominal.quantities.get(index)?;
         let mut ranked = outcome.ranked(index);
@@ -196,13 +194,9 @@ pub(super) fn sensitivities<M: GeneratedModel>(outcome: &Outcome<'_, M>) -> Resu
         .map_err(|error| error.to_string())
 }
 
-fn tornado<M: GeneratedModel>(
-    outcome: &Outcome<'_, M>,
-    quantity: &Quantity,
-    ranked: &[Contribution],
-) -> Panel {
+fn tornado(outcome: &Outcome<'_>, quantity: &Quantity, ranked: &[Contribution]) -> Panel {
     let (label, factor) = outcome.label(quantity);
-    let names = ranked.iter().map(|it| parameter::<M>(it).to_owned());
+    let names = ranked.iter().map(|it| outcome.parameter(it).to_owned());
     let bars = (0..).zip(ranked).map(|(row, it): (i32, _)| {
         let (at, length) = (-f64::from(row), factor * it.effect);
         let (name, colour) = if length > 0.0 {

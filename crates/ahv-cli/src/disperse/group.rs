@@ -1,7 +1,6 @@
 //! Parameters and groups of them, as a person types them.
 
 use ahv_analysis::disperse::Group;
-use ahv_core::Vector;
 
 use crate::failure::Failure;
 use crate::names;
@@ -11,9 +10,10 @@ use crate::names;
 /// # Errors
 ///
 /// [`Failure::Request`] for a name that is neither, with the one that was perhaps meant; `option` is where it was given.
-pub(super) fn parameters<P: Vector<f64>>(
+pub(super) fn parameters(
     option: &str,
     texts: &[String],
+    names: &[&str],
 ) -> Result<Vec<usize>, Failure> {
     let mut found = Vec::new();
     for text in texts {
@@ -22,14 +22,15 @@ pub(super) fn parameters<P: Vector<f64>>(
             own.strip_prefix(&name)
                 .is_some_and(|rest| rest.starts_with('_'))
         };
-        let indices: Vec<usize> = match P::index_of(&name) {
+        let indices: Vec<usize> = match names.iter().position(|own| *own == name) {
             Some(index) => vec![index],
-            None => (0..P::LEN)
-                .filter(|&index| P::NAMES.get(index).is_some_and(|own| begins(own)))
+            None => (0..)
+                .zip(names)
+                .filter_map(|(index, own)| begins(own).then_some(index))
                 .collect(),
         };
         if indices.is_empty() {
-            let problem = names::unknown("parameter", &name, P::NAMES);
+            let problem = names::unknown("parameter", &name, names);
             return Err(Failure::Request(format!("{option}: {problem}")));
         }
         found.extend(indices);
@@ -42,11 +43,11 @@ pub(super) fn parameters<P: Vector<f64>>(
 /// # Errors
 ///
 /// [`Failure::Request`] that says what is wrong.
-pub(super) fn parse<P: Vector<f64>>(texts: &[String]) -> Result<Vec<Group>, Failure> {
-    texts.iter().map(|text| parse_one::<P>(text)).collect()
+pub(super) fn parse(texts: &[String], names: &[&str]) -> Result<Vec<Group>, Failure> {
+    texts.iter().map(|text| parse_one(text, names)).collect()
 }
 
-fn parse_one<P: Vector<f64>>(text: &str) -> Result<Group, Failure> {
+fn parse_one(text: &str, names: &[&str]) -> Result<Group, Failure> {
     let problem = |why: &str| Failure::Request(format!("--group: `{text}` {why}"));
     let (name, rest) = text
         .split_once('=')
@@ -64,7 +65,7 @@ fn parse_one<P: Vector<f64>>(text: &str) -> Result<Group, Failure> {
     let list: Vec<String> = list.split(',').map(str::to_owned).collect();
     Ok(Group {
         name: name.trim().to_owned(),
-        parameters: parameters::<P>("--group", &list)?,
+        parameters: parameters("--group", &list, names)?,
         correlation,
     })
 }

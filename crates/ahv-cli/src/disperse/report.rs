@@ -10,7 +10,6 @@ use ahv_analysis::disperse::{
 use ahv_analysis::linearize::LinearizeError;
 use ahv_analysis::statistics::Estimate;
 use ahv_analysis::trim::TrimError;
-use ahv_core::{GeneratedModel, Vector, first_outside};
 use serde::Serialize;
 
 use super::Outcome;
@@ -45,7 +44,7 @@ struct JsonQuantity {
     kind: Kind,
     name: String,
     part: Part,
-    unit: String,
+    unit: &'static str,
     nominal: f64,
     spread: Option<Spread>,
     linear_std: Option<f64>,
@@ -87,7 +86,7 @@ fn reason(error: &SolutionError) -> String {
     }
 }
 
-impl<M: GeneratedModel> Outcome<'_, M> {
+impl Outcome<'_> {
     pub(super) fn json(&self) -> Json<'_> {
         let values = self.nominal.values();
         let quantity = |(index, quantity): (usize, &Quantity)| JsonQuantity {
@@ -104,7 +103,7 @@ impl<M: GeneratedModel> Outcome<'_, M> {
                 .into_iter()
                 .filter(|it| it.effect != 0.0)
                 .map(|it| JsonSensitivity {
-                    parameter: parameter::<M>(&it),
+                    parameter: self.parameter(&it),
                     slope: it.slope,
                     effect: it.effect,
                 })
@@ -159,10 +158,9 @@ impl<M: GeneratedModel> Outcome<'_, M> {
             .filter_map(|it| it.solution.as_ref().ok())
             .collect();
         let of_trimmed = |hits: usize| Estimate::of_share(hits as u64, solutions.len() as u64);
-        let bounds = &self.vehicle.state_bounds;
-        let inside = solutions
-            .iter()
-            .filter(|it| first_outside(&it.trim.state, bounds).is_none());
+        let (states, bounds) = (self.vehicle.states, &self.vehicle.state_bounds);
+        let outside = |state: &[f64]| states.outside(state, bounds).next().is_some();
+        let inside = solutions.iter().filter(|it| !outside(&it.trim.state));
         let stable = solutions.iter().filter(|it| it.unstable_poles() == 0);
         let non_minimum_phase = solutions.iter().filter(|it| it.is_non_minimum_phase());
         vec![
@@ -177,19 +175,16 @@ impl<M: GeneratedModel> Outcome<'_, M> {
     }
 
     /// The unit of a quantity.
-    pub(super) fn unit(&self, quantity: &Quantity) -> String {
-        let units = self.vehicle.units;
+    pub(super) fn unit(&self, quantity: &Quantity) -> &'static str {
+        let (states, inputs) = (self.vehicle.states, self.vehicle.inputs);
         match (quantity.kind, quantity.part) {
             (Kind::Trim, _) => {
                 let names = [quantity.name.clone(), quantity.name.replace("eta", "chi")];
-                let state = names.iter().find(|name| M::State::index_of(name).is_some());
-                match state {
-                    Some(name) => units.label::<M::State>(name).to_owned(),
-                    None => units.label::<M::Input>(&quantity.name).to_owned(),
-                }
+                let state = names.iter().find(|name| states.index_of(name).is_some());
+                state.map_or_else(|| inputs.unit(&quantity.name), |name| states.unit(name))
             }
-            (_, Part::Imaginary) => "rad/s".to_owned(),
-            _ => "1/s".to_owned(),
+            (_, Part::Imaginary) => "rad/s",
+            _ => "1/s",
         }
     }
 
@@ -205,7 +200,7 @@ impl<M: GeneratedModel> Outcome<'_, M> {
         };
         let mut text = format!(
             "{}: {}, {}\n{} members, {} parameters {}, seed {}\n",
-            M::NAME,
+            self.vehicle.name(),
             self.vehicle.at(&self.nominal.flight),
             self.vehicle.described(),
             members,
@@ -270,7 +265,7 @@ impl<M: GeneratedModel> Outcome<'_, M> {
                 let _ = write!(
                     text,
                     "\n    {:<20} {:+.5}",
-                    parameter::<M>(it),
+                    self.parameter(it),
                     Shown(factor * it.effect)
                 );
             }
@@ -304,10 +299,9 @@ impl<M: GeneratedModel> Outcome<'_, M> {
 
     /// Name and unit for a person, and the factor to that unit.
     pub(super) fn label(&self, quantity: &Quantity) -> (String, f64) {
-        let unit = self.unit(quantity);
-        let (unit, factor) = match unit.as_str() {
-            "rad" => ("deg".to_owned(), 1_f64.to_degrees()),
-            _ => (unit, 1.0),
+        let (unit, factor) = match self.unit(quantity) {
+            "rad" => ("deg", 1_f64.to_degrees()),
+            unit => (unit, 1.0),
         };
         let name = quantity.name.replace('_', " ");
         let part = match quantity.part {
@@ -328,6 +322,15 @@ impl<M: GeneratedModel> Outcome<'_, M> {
         (format!("{kind}{name}{part}{unit}"), factor)
     }
 
+    /// Name of the parameter of a contribution.
+    pub(super) fn parameter(&self, contribution: &Contribution) -> &'static str {
+        let names = self.vehicle.model.parameters().names;
+        names
+            .get(contribution.parameter)
+            .copied()
+            .unwrap_or_default()
+    }
+
     /// Writes the members: number, what became of it, its parameters, its quantities; what it has not stays empty.
     ///
     /// # Errors
@@ -335,15 +338,10 @@ impl<M: GeneratedModel> Outcome<'_, M> {
     /// [`Failure::Request`] if the file cannot be written.
     pub(super) fn csv(&self, path: &Path) -> Result<(), Failure> {
         let varied = || self.slopes.parameters.iter();
-        let parameters = varied().map(|&index| {
-            let name = M::ParametersOf::<f64>::NAMES
-                .get(index)
-                .copied()
-                .unwrap_or_default();
-            format!(
-                "{name} [{}]",
-                self.vehicle.units.label::<M::ParametersOf<f64>>(name)
-            )
+        let labels = self.vehicle.units.labels(self.vehicle.model.parameters());
+        let parameters = varied().filter_map(|&index| {
+            let (name, unit) = labels.iter().nth(index)?;
+            Some(format!("{name} [{unit}]"))
         });
         let quantities = self.nominal.quantities.iter().map(|quantity| {
             let part = match quantity.part {
@@ -368,8 +366,8 @@ impl<M: GeneratedModel> Outcome<'_, M> {
                 Ok(_) => "trim".to_owned(),
                 Err(error) => reason(error),
             };
-            let drawn = self.draws.member(member.number);
-            let parameters = varied().map(|&index| drawn.get(index));
+            let drawn = self.draws.member_values(member.number);
+            let parameters = varied().map(|&index| drawn.get(index).copied());
             let numbers = parameters.chain(member.values.iter().copied());
             let cells = numbers.map(|it| it.map_or_else(String::new, cell));
             let first = [member.number.to_string(), outcome].into_iter();
@@ -387,12 +385,4 @@ fn number(value: f64) -> String {
     } else {
         format!("{:.4}", Shown(value))
     }
-}
-
-/// Name of the parameter of a contribution.
-pub(super) fn parameter<M: GeneratedModel>(contribution: &Contribution) -> &'static str {
-    M::ParametersOf::<f64>::NAMES
-        .get(contribution.parameter)
-        .copied()
-        .unwrap_or_default()
 }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use ahv_analysis::actuator::Actuator;
-use ahv_analysis::monte_carlo::Feedback;
+use ahv_analysis::erased::Feedback;
 use ahv_analysis::trim::SteadyState;
-use ahv_core::{GeneratedModel, Vector};
 use clap::{Args, ValueEnum};
+use nalgebra::DMatrix;
 
 use crate::assignment::Assignments;
 use crate::failure::{Failure, complain};
@@ -65,23 +65,23 @@ impl FeedbackArguments {
     ///
     /// [`Failure::Request`] for a file that is no file of gains for this model, or was designed for another vehicle or
     /// flight.
-    pub(crate) fn read<M: GeneratedModel>(
+    pub(crate) fn read(
         &self,
-        vehicle: &Vehicle<M>,
-        flight: &SteadyState<M::Input>,
-    ) -> Result<Option<Feedback<M>>, Failure> {
+        vehicle: &Vehicle,
+        flight: &SteadyState,
+    ) -> Result<Option<Feedback>, Failure> {
         let Some(path) = &self.feedback else {
             return Ok(None);
         };
         let fault = |what: &str| Failure::Request(format!("--feedback {}: {what}", path.display()));
         let gains = Gains::read(path, vehicle, flight).map_err(|what| fault(&what))?;
         vehicle
-            .moves(&gains.state.vector())
+            .moves(&gains.state.values(vehicle.states.names))
             .map_err(|why| fault(&why))?;
-        let feedback = self.law::<M>(vehicle, &gains)?;
+        let feedback = self.law(vehicle, &gains)?;
         let mut differences = gains.differences(vehicle, flight);
-        if let Some(unsteady) = feedback.unsteady(&vehicle.model) {
-            let unit = vehicle.units.label::<M::State>(unsteady.state);
+        if let Some(unsteady) = vehicle.model.unsteady(&vehicle.parameters, &feedback) {
+            let unit = vehicle.states.unit(unsteady.state);
             differences.push(format!(
                 "a reference that is no equilibrium of the flights: {} changes by {} {unit} a second, in a steady flight by {}",
                 unsteady.state,
@@ -104,43 +104,35 @@ impl FeedbackArguments {
     }
 
     /// The law of gains that fit the model.
-    fn law<M: GeneratedModel>(
-        &self,
-        vehicle: &Vehicle<M>,
-        gains: &Gains,
-    ) -> Result<Feedback<M>, Failure> {
-        let mut rates = M::Input::splat(RATE);
-        Assignments::parse::<M::Input>("--actuator-rate", &self.actuator_rate, vehicle.units)?
-            .apply(&mut rates, &[]);
-        if let Some((name, _)) = rates.find(|rate| rate <= 0.0) {
+    fn law(&self, vehicle: &Vehicle, gains: &Gains) -> Result<Feedback, Failure> {
+        let (states, inputs) = (vehicle.states, vehicle.inputs);
+        let mut rates = vec![RATE; inputs.len()];
+        Assignments::parse("--actuator-rate", &self.actuator_rate, inputs)?.apply(&mut rates);
+        let mut named = inputs.names.iter().zip(&rates);
+        if let Some((name, _)) = named.find(|(_, rate)| **rate <= 0.0) {
             return Err(Failure::Request(format!(
                 "--actuator-rate: the rate of {name} must be above 0"
             )));
         }
-        let mut gain = M::InputOf::splat(M::State::splat(0.0));
-        let mut actuators = M::InputOf::splat(None);
+        let mut gain = DMatrix::zeros(inputs.len(), states.len());
+        let mut actuators = vec![None; inputs.len()];
         for (name, row) in gains.inputs.iter().zip(&gains.gain) {
-            let Some(input) = M::Input::index_of(name) else {
+            let Some(input) = inputs.index_of(name) else {
                 continue;
             };
-            gain.set(
-                input,
-                M::State::from_fn(|state| row.get(state).copied().unwrap_or(0.0)),
-            );
-            let bounds = vehicle.input_bounds.get(input);
-            actuators.set(
-                input,
-                bounds.map(|bounds| Actuator {
-                    bandwidth: self.actuator_bandwidth,
-                    rate: rates.get(input).unwrap_or(RATE),
-                    bounds,
-                }),
-            );
+            for (entry, value) in gain.row_mut(input).iter_mut().zip(row) {
+                *entry = *value;
+            }
+            actuators[input] = Some(Actuator {
+                bandwidth: self.actuator_bandwidth,
+                rate: rates[input],
+                bounds: vehicle.input_bounds[input],
+            });
         }
         Ok(Feedback {
-            state: gains.state.vector(),
-            rate: gains.state_rate.vector(),
-            input: gains.input.vector(),
+            state: gains.state.values(states.names),
+            rate: gains.state_rate.values(states.names),
+            input: gains.input.values(inputs.names),
             gain,
             actuators,
         })

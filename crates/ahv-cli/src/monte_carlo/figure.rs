@@ -1,7 +1,6 @@
 //! The picture of `ahv montecarlo`: for each state a fan of quantiles over time, and its distribution at the end.
 
 use ahv_analysis::monte_carlo::{QUANTILES, StateSpread};
-use ahv_core::{GeneratedModel, Vector};
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
 
 use super::Told;
@@ -12,17 +11,10 @@ use crate::signals::interrupted;
 const COLUMNS: usize = 4;
 
 /// Fans and distributions.
-pub(super) fn draw<M: GeneratedModel>(told: &Told<'_, M>) -> Result<String, PlotError> {
-    let panels = (0..M::State::LEN).flat_map(|index| {
-        let name = M::State::NAMES.get(index).copied().unwrap_or_default();
-        let unit = told
-            .ready
-            .vehicle
-            .units
-            .labels::<M::State>()
-            .get(index)
-            .copied();
-        let (unit, factor) = readable(unit.unwrap_or_default());
+pub(super) fn draw(told: &Told<'_>) -> Result<String, PlotError> {
+    let states = told.ready.vehicle.states.iter().enumerate();
+    let panels = states.flat_map(|(index, (name, unit))| {
+        let (unit, factor) = readable(unit);
         [
             fan(told, index, name, &unit, factor),
             distribution(told, index, name, &unit, factor),
@@ -32,13 +24,7 @@ pub(super) fn draw<M: GeneratedModel>(told: &Told<'_, M>) -> Result<String, Plot
     Figure::new(title, COLUMNS, panels.collect()).svg()
 }
 
-fn fan<M: GeneratedModel>(
-    told: &Told<'_, M>,
-    index: usize,
-    name: &str,
-    unit: &str,
-    factor: f64,
-) -> Panel {
+fn fan(told: &Told<'_>, index: usize, name: &str, unit: &str, factor: f64) -> Panel {
     let states = || {
         let snapshots = told.outcome.snapshots.iter();
         snapshots.filter_map(move |it| Some((it.time, it.states.get(index)?)))
@@ -70,13 +56,7 @@ fn fan<M: GeneratedModel>(
     }
 }
 
-fn distribution<M: GeneratedModel>(
-    told: &Told<'_, M>,
-    index: usize,
-    name: &str,
-    unit: &str,
-    factor: f64,
-) -> Panel {
+fn distribution(told: &Told<'_>, index: usize, name: &str, unit: &str, factor: f64) -> Panel {
     let last = told.outcome.snapshots.last();
     let bins = last
         .and_then(|it| it.states.get(index))

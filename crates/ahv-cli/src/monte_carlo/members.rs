@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use ahv_analysis::monte_carlo::Seen;
-use ahv_core::{GeneratedModel, Vector};
+use ahv_analysis::erased::Seen;
 
 use super::tables::COMPLETE;
 use crate::csv_file::CsvFile;
@@ -18,17 +17,17 @@ const MOST_LISTED: u64 = 1_000_000;
 const INTERVALS: [&str; 2] = ["validity_box", "limits"];
 
 /// The list of the members, which is written while they fly.
-pub(super) struct MemberList<'r, M: GeneratedModel> {
-    ready: &'r Ready<M>,
+pub(super) struct MemberList<'r> {
+    ready: &'r Ready,
     /// Indices of the parameters that are drawn.
     drawn: Vec<usize>,
     /// The file, or why it cannot be written.
     file: Result<CsvFile, Failure>,
 }
 
-impl<'r, M: GeneratedModel> MemberList<'r, M> {
+impl<'r> MemberList<'r> {
     /// Starts the list of `asked` members.
-    pub(super) fn create(ready: &'r Ready<M>, folder: &Path, asked: u64) -> Result<Self, Failure> {
+    pub(super) fn create(ready: &'r Ready, folder: &Path, asked: u64) -> Result<Self, Failure> {
         if asked > MOST_LISTED {
             complain(&format!(
                 "note: members.csv lists members 0 to {}",
@@ -54,18 +53,14 @@ impl<'r, M: GeneratedModel> MemberList<'r, M> {
     }
 
     fn heading(&self) -> Vec<String> {
-        let units = self.ready.vehicle.units;
+        let vehicle = &self.ready.vehicle;
         let intervals = INTERVALS.iter().take(self.ready.experiment.watched.len());
         let left = intervals.flat_map(|it| [format!("left_{it} [s]"), format!("left_{it}_state")]);
-        let states = M::State::NAMES.iter().zip(units.labels::<M::State>());
+        let states = vehicle.states.iter();
         let states = states.map(|(name, unit)| format!("last_{name} [{unit}]"));
-        let parameters = self.drawn.iter().filter_map(|&index| {
-            let name = M::ParametersOf::<f64>::NAMES.get(index)?;
-            Some(format!(
-                "{name} [{}]",
-                units.label::<M::ParametersOf<f64>>(name)
-            ))
-        });
+        let labels = vehicle.units.labels(vehicle.model.parameters());
+        let parameters = self.drawn.iter().filter_map(|&it| labels.iter().nth(it));
+        let parameters = parameters.map(|(name, unit)| format!("{name} [{unit}]"));
         let first = ["member", "outcome", "lost [s]", "lost_state"].map(str::to_owned);
         first
             .into_iter()
@@ -77,7 +72,7 @@ impl<'r, M: GeneratedModel> MemberList<'r, M> {
     }
 
     /// Lists members from number `first` on.
-    pub(super) fn add(&mut self, first: u64, seen: &[Seen<M>]) {
+    pub(super) fn add(&mut self, first: u64, seen: &[Seen]) {
         for (member, seen) in (first..MOST_LISTED).zip(seen) {
             if self.file.is_err() {
                 return;
@@ -87,7 +82,7 @@ impl<'r, M: GeneratedModel> MemberList<'r, M> {
         }
     }
 
-    fn member(&self, member: u64, seen: &Seen<M>) -> Vec<String> {
+    fn member(&self, member: u64, seen: &Seen) -> Vec<String> {
         let time = |steps: u64| cell(self.ready.time(steps));
         let (outcome, lost, lost_state) = match &seen.lost {
             Some(loss) => ("lost", time(loss.step), loss.rule.unwrap_or(loss.state)),
@@ -100,23 +95,18 @@ impl<'r, M: GeneratedModel> MemberList<'r, M> {
             lost_state.to_owned(),
         ];
         for left in &seen.left {
-            let states = (0..M::State::LEN).filter_map(|state| {
-                let steps = left.get(state).flatten()?;
-                Some((steps, *M::State::NAMES.get(state)?))
-            });
+            let states = left.iter().zip(self.ready.vehicle.states.names);
+            let states = states.filter_map(|(steps, &state)| Some(((*steps)?, state)));
             row.extend(match states.min_by_key(|(steps, _)| *steps) {
                 Some((steps, state)) => [time(steps), state.to_owned()],
                 None => [const { String::new() }; 2],
             });
         }
-        row.extend((0..M::State::LEN).filter_map(|state| seen.last.get(state).map(cell)));
+        row.extend(seen.last.iter().copied().map(cell));
         if let Some(draws) = &self.ready.experiment.dispersion {
-            let parameters = draws.member(member);
-            row.extend(
-                self.drawn
-                    .iter()
-                    .filter_map(|&index| parameters.get(index).map(cell)),
-            );
+            let parameters = draws.member_values(member);
+            let drawn = self.drawn.iter().filter_map(|&it| parameters.get(it));
+            row.extend(drawn.copied().map(cell));
         }
         row.push(true.to_string());
         row

@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use ahv_analysis::monte_carlo::{QUANTILES, Snapshot};
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
-use ahv_core::{GeneratedModel, Vector};
 use serde::Serialize;
 
 use super::Told;
@@ -73,14 +72,9 @@ struct JsonQuantile {
     estimate: OpenEstimate,
 }
 
-/// Names of the states, each with its value.
-fn by_state<X: Vector<f64>, V>(values: impl Iterator<Item = V>) -> Pairs<V> {
-    Pairs(X::NAMES.iter().copied().zip(values).collect())
-}
-
-impl<M: GeneratedModel> Told<'_, M> {
+impl Told<'_> {
     pub(super) fn json(&self) -> Json<'_> {
-        let outcome = &self.outcome;
+        let (outcome, names) = (&self.outcome, self.ready.vehicle.states);
         let value = |estimate: &Option<Estimate>| estimate.map(|it| it.value);
         let last = || {
             self.outcome
@@ -110,9 +104,9 @@ impl<M: GeneratedModel> Told<'_, M> {
             member_steps_per_second: self.rate(),
             seconds: outcome.elapsed.as_secs_f64(),
             settings: self.ready.settings(outcome.asked),
-            mean: by_state::<M::State, _>(last().map(|it| value(&it.mean))),
-            std: by_state::<M::State, _>(last().map(|it| it.std?.value)),
-            std_inside_validity_box: by_state::<M::State, _>(last().map(|it| it.std_of_stayed)),
+            mean: names.pairs(last().map(|it| value(&it.mean))),
+            std: names.pairs(last().map(|it| it.std?.value)),
+            std_inside_validity_box: names.pairs(last().map(|it| it.std_of_stayed)),
             digest: &outcome.digest,
             left_validity_box: self.left_any(outcome.snapshots.last(), 0),
             snapshots: outcome
@@ -124,7 +118,7 @@ impl<M: GeneratedModel> Told<'_, M> {
     }
 
     fn snapshot(&self, snapshot: &Snapshot) -> JsonSnapshot {
-        let states = || snapshot.states.iter();
+        let (names, states) = (self.ready.vehicle.states, || snapshot.states.iter());
         let finite = |value: &f64| Some(*value).filter(|value| value.is_finite());
         let quantiles = states().map(|it| {
             let shares = QUANTILES.iter().zip(&it.quantiles);
@@ -134,10 +128,10 @@ impl<M: GeneratedModel> Told<'_, M> {
         JsonSnapshot {
             time: number::time(snapshot.time),
             members: snapshot.members,
-            mean: by_state::<M::State, _>(states().map(|it| it.mean)),
-            std: by_state::<M::State, _>(states().map(|it| it.std)),
-            quantiles: by_state::<M::State, _>(quantiles),
-            quantile_resolution: by_state::<M::State, _>(states().map(|it| it.resolution)),
+            mean: names.pairs(states().map(|it| it.mean)),
+            std: names.pairs(states().map(|it| it.std)),
+            quantiles: names.pairs(quantiles),
+            quantile_resolution: names.pairs(states().map(|it| it.resolution)),
             covariance: snapshot
                 .covariance
                 .iter()
@@ -163,7 +157,8 @@ impl<M: GeneratedModel> Told<'_, M> {
     /// The same state by state.
     pub(super) fn left(&self, snapshot: &Snapshot, set: usize) -> Pairs<Estimate> {
         let counts = snapshot.left.get(set).into_iter().flatten();
-        by_state::<M::State, _>(counts.map(|&it| Estimate::of_share(it, self.outcome.members)))
+        let shares = counts.map(|&it| Estimate::of_share(it, self.outcome.members));
+        self.ready.vehicle.states.pairs(shares)
     }
 
     /// What to say of a few members that left the validity box and make most of a standard deviation, if they do.
@@ -175,8 +170,7 @@ impl<M: GeneratedModel> Told<'_, M> {
         if 2 * left >= last.members {
             return None;
         }
-        let units = self.ready.vehicle.units.labels::<M::State>();
-        let states = M::State::NAMES.iter().zip(units).zip(&last.states);
+        let states = self.ready.vehicle.states.iter().zip(&last.states);
         let swamped = states.filter_map(|((name, unit), state)| {
             let (all, stayed) = (state.std?.value?, state.std_of_stayed?);
             let less = format!(
@@ -215,7 +209,7 @@ impl<M: GeneratedModel> Told<'_, M> {
         let mut text = format!(
             "{}: {}, {}\n{} of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second, threads {}\n\
              at the end, mean and standard deviation with intervals of 95 %, 0.5 % and 99.5 % points with theirs",
-            M::NAME,
+            self.ready.vehicle.name(),
             self.ready.place,
             self.ready.vehicle.described(),
             flights,
@@ -237,11 +231,10 @@ impl<M: GeneratedModel> Told<'_, M> {
             self.rate(),
             self.ready.threads(outcome.asked),
         );
-        let units = self.ready.vehicle.units.labels::<M::State>();
         let last = outcome.snapshots.last();
         let states = last.into_iter().flat_map(|it| &it.states);
         // Writing into a String cannot fail.
-        for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(states) {
+        for ((name, unit), state) in self.ready.vehicle.states.iter().zip(states) {
             let shown = |value: f64| show(value, unit);
             let range = |estimate: Option<OpenEstimate>| match estimate {
                 Some(it) => interval(&it, shown),

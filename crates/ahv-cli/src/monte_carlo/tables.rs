@@ -4,7 +4,6 @@ use std::path::Path;
 
 use ahv_analysis::monte_carlo::QUANTILES;
 use ahv_analysis::statistics::OpenEstimate;
-use ahv_core::{GeneratedModel, Vector};
 
 use super::{Told, figure, trajectories};
 use crate::csv_file::CsvFile;
@@ -21,7 +20,7 @@ fn cells(estimate: &OpenEstimate) -> [String; 3] {
         .map(|number| number.map_or_else(String::new, cell))
 }
 
-impl<M: GeneratedModel> Told<'_, M> {
+impl Told<'_> {
     /// Writes all files of numbers.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
         let json = output::json(&self.json())?;
@@ -57,14 +56,13 @@ impl<M: GeneratedModel> Told<'_, M> {
         }
         heading.push(COMPLETE.to_owned());
         file.row(&heading)?;
-        let units = self.ready.vehicle.units.labels::<M::State>();
         for snapshot in &self.outcome.snapshots {
-            for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(&snapshot.states) {
+            for ((name, unit), state) in self.ready.vehicle.states.iter().zip(&snapshot.states) {
                 let mut row = vec![
                     cell(time(snapshot.time)),
                     snapshot.members.to_string(),
-                    (*name).to_owned(),
-                    (*unit).to_owned(),
+                    name.to_owned(),
+                    unit.to_owned(),
                 ];
                 let moments = [state.mean.into(), state.std.unwrap_or_default()];
                 row.extend(moments.iter().chain(&state.quantiles).flat_map(cells));
@@ -80,14 +78,13 @@ impl<M: GeneratedModel> Told<'_, M> {
         let complete = self.is_complete().to_string();
         let mut file = CsvFile::create(path)?;
         file.row(&["state", "unit", "low", "high", "members", COMPLETE])?;
-        let units = self.ready.vehicle.units.labels::<M::State>();
         let last = self.outcome.snapshots.last();
         let states = last.into_iter().flat_map(|it| &it.states);
-        for ((name, unit), state) in M::State::NAMES.iter().zip(units).zip(states) {
+        for ((name, unit), state) in self.ready.vehicle.states.iter().zip(states) {
             for bin in &state.histogram {
                 let [low, high] = [bin.low, bin.high].map(cell);
                 let count = bin.count.to_string();
-                file.row(&[*name, *unit, &low, &high, &count, &complete])?;
+                file.row(&[name, unit, &low, &high, &count, &complete])?;
             }
         }
         file.finish()

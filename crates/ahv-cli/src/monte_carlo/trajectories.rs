@@ -1,21 +1,17 @@
 //! Whole flights of some members.
 
-use std::path::Path;
-use std::sync::Arc;
+#[cfg(feature = "parquet")]
+mod parquet;
 
-use ahv_core::{GeneratedModel, Vector};
+use std::path::Path;
+
 use clap::ValueEnum;
-use parquet::basic::{Repetition, Type as Physical};
-use parquet::data_type::{DoubleType, Int64Type};
-use parquet::file::properties::WriterProperties;
-use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::Type;
 
 use super::Told;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::labels::Labels;
 use crate::number::{cell, time};
-use crate::output::Output;
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -23,6 +19,7 @@ pub(super) enum Format {
     /// Comma-separated values
     Csv,
     /// Apache Parquet
+    #[cfg(feature = "parquet")]
     Parquet,
 }
 
@@ -56,44 +53,34 @@ pub(super) fn check(arguments: &super::Arguments) -> Result<(), Failure> {
 }
 
 /// Writes the flights that were asked for; none is no file.
-pub(super) fn write<M: GeneratedModel>(told: &Told<'_, M>, folder: &Path) -> Result<(), Failure> {
+pub(super) fn write(told: &Told<'_>, folder: &Path) -> Result<(), Failure> {
     let chosen = &told.arguments.trajectories;
     if chosen.is_empty() {
         return Ok(());
     }
-    let units = told.ready.vehicle.units;
-    let labels = |names: &[&str], units: &[&str]| -> Vec<String> {
-        let named = names.iter().zip(units);
-        named
-            .map(|(name, unit)| format!("{name} [{unit}]"))
-            .collect()
-    };
+    let vehicle = &told.ready.vehicle;
+    let labels = [vehicle.states, vehicle.inputs].into_iter();
+    let labels = std::iter::once(("time", "s")).chain(labels.flat_map(Labels::iter));
+    let names = labels.map(|(name, unit)| format!("{name} [{unit}]"));
+    let names: Vec<String> = names.collect();
     let mut table = Table {
-        names: [
-            vec!["time [s]".to_owned()],
-            labels(M::State::NAMES, units.labels::<M::State>()),
-            labels(M::Input::NAMES, units.labels::<M::Input>()),
-        ]
-        .concat(),
         members: Vec::new(),
-        columns: Vec::new(),
+        columns: vec![Vec::new(); names.len()],
+        names,
     };
-    table.columns = vec![Vec::new(); table.names.len()];
     // Of a part of the members, those that were flown.
     for &member in chosen
         .iter()
         .filter(|member| **member < told.outcome.members)
     {
-        let flight = told.ready.experiment.trajectory(member, 1);
+        let flight = vehicle.model.trajectory(&told.ready.experiment, member);
         let flight = flight.map_err(|error| Failure::Numeric(error.to_string()))?;
         for point in flight {
             // Members are fewer than 10^9.
             table.members.push(member as i64);
-            let states = (0..M::State::LEN).filter_map(|index| point.state.get(index));
-            let inputs = (0..M::Input::LEN).filter_map(|index| point.input.get(index));
             let values = std::iter::once(time(point.time))
-                .chain(states)
-                .chain(inputs);
+                .chain(point.state)
+                .chain(point.input);
             table
                 .columns
                 .iter_mut()
@@ -103,6 +90,7 @@ pub(super) fn write<M: GeneratedModel>(told: &Told<'_, M>, folder: &Path) -> Res
     }
     match told.arguments.trajectory_format {
         Format::Csv => table.csv(&folder.join("trajectories.csv")),
+        #[cfg(feature = "parquet")]
         Format::Parquet => table.parquet(&folder.join("trajectories.parquet")),
     }
 }
@@ -120,51 +108,5 @@ impl Table {
             file.row(&cells)?;
         }
         file.finish()
-    }
-
-    fn parquet(&self, path: &Path) -> Result<(), Failure> {
-        let mut output = Output::create(path)?;
-        self.parquet_to(&mut output).map_err(|error| {
-            Failure::Request(format!("cannot write {}: {error}", path.display()))
-        })?;
-        output.finish()
-    }
-
-    fn parquet_to(&self, output: &mut Output) -> parquet::errors::Result<()> {
-        let field = |name: &str, physical| {
-            Type::primitive_type_builder(name, physical)
-                .with_repetition(Repetition::REQUIRED)
-                .build()
-                .map(Arc::new)
-        };
-        let mut fields = vec![field("member", Physical::INT64)?];
-        for name in &self.names {
-            fields.push(field(name, Physical::DOUBLE)?);
-        }
-        let schema = Type::group_type_builder("trajectories")
-            .with_fields(fields)
-            .build()?;
-        let properties = WriterProperties::builder()
-            .set_created_by("ahv".to_owned())
-            .build();
-        let mut writer = SerializedFileWriter::new(output, Arc::new(schema), Arc::new(properties))?;
-        let mut group = writer.next_row_group()?;
-        if let Some(mut column) = group.next_column()? {
-            column
-                .typed::<Int64Type>()
-                .write_batch(&self.members, None, None)?;
-            column.close()?;
-        }
-        for values in &self.columns {
-            if let Some(mut column) = group.next_column()? {
-                column
-                    .typed::<DoubleType>()
-                    .write_batch(values, None, None)?;
-                column.close()?;
-            }
-        }
-        group.close()?;
-        writer.close()?;
-        Ok(())
     }
 }

@@ -1,7 +1,6 @@
 //! Poles and zeros in the complex plane, whole and near the origin.
 
 use ahv_analysis::poles::frequency;
-use ahv_core::GeneratedModel;
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, Shape};
 use nalgebra::Complex;
 
@@ -14,11 +13,11 @@ const MARGIN: f64 = 1.15;
 const HIDING: f64 = 3.0;
 
 /// The picture of `roots`.
-pub(super) fn figure<M: GeneratedModel>(roots: &Roots<'_, M>) -> Figure {
+pub(super) fn figure(roots: &Roots<'_>) -> Figure {
     let all = panel("All".to_owned(), roots, f64::INFINITY);
     let title = format!(
         "Poles and zeros of {}, set {}, {}",
-        M::NAME,
+        roots.vehicle.name(),
         roots.vehicle.set,
         roots.place
     );
@@ -41,7 +40,7 @@ fn gap(frequencies: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// The roots whose frequency is below `limit`.
-fn panel<M: GeneratedModel>(title: String, roots: &Roots<'_, M>, limit: f64) -> Panel {
+fn panel(title: String, roots: &Roots<'_>, limit: f64) -> Panel {
     let near = |roots: Vec<Complex<f64>>| -> Vec<(f64, f64)> {
         let near = roots.into_iter().filter(|&root| frequency(root) < limit);
         near.map(|root| (root.re, root.im)).collect()

@@ -1,6 +1,5 @@
 //! One simulation, for any model.
 
-use ahv_core::{GeneratedModel, Vector, first_outside};
 use ahv_integrate::{self as integrate, StepError, TimeGrid};
 
 use super::Arguments;
@@ -9,20 +8,19 @@ use super::report::{Departure, Report};
 use crate::assignment::Assignments;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::labels::Labels;
 use crate::number::Shown;
-use crate::output::describe;
 use crate::progress::{Progress, Work};
-use crate::units::Units;
 use crate::vehicle::Vehicle;
 
 /// A vehicle with how it is to fly.
-pub(super) struct Flight<'a, M: GeneratedModel> {
-    pub(super) vehicle: &'a Vehicle<M>,
+pub(super) struct Flight<'a> {
+    pub(super) vehicle: &'a Vehicle,
     /// `None` without noise.
     pub(super) seed: Option<u64>,
 }
 
-impl<M: GeneratedModel> Flight<'_, M> {
+impl Flight<'_> {
     /// Simulates over `grid`; `advance` takes the step of the number and the length in s that it is given.
     ///
     /// # Errors
@@ -32,29 +30,29 @@ impl<M: GeneratedModel> Flight<'_, M> {
         &self,
         arguments: &Arguments,
         grid: &TimeGrid,
-        mut advance: impl FnMut(&mut M::State, &M::Input, u32, f64) -> Result<(), StepError<f64>>,
+        mut advance: impl FnMut(&mut Vec<f64>, &[f64], u32, f64) -> Result<(), StepError<f64>>,
     ) -> Result<(), Failure> {
         let vehicle = self.vehicle;
         let (start, u) = self.start(arguments)?;
-        let mut run = integrate::Progress::new(0.0, start);
+        let mut run = integrate::Progress::new(0.0, start.clone());
         let mut table = CsvFile::create(&arguments.out)?;
-        table.row(&columns::<M::State>(vehicle.units))?;
+        table.row(&columns(vehicle.states))?;
         let progress = Progress::start(Work {
             command: "simulate",
             unit: "steps",
             total: Some(grid.steps().into()),
         });
         let mut departure = None;
-        let mut row = Vec::with_capacity(M::State::LEN + 1);
+        let mut row = Vec::with_capacity(start.len() + 1);
         loop {
-            let (time, x) = (run.time, run.state);
+            let (time, x) = (run.time, &run.state);
             row.clear();
             row.push(time);
-            row.extend((0..M::State::LEN).filter_map(|index| x.get(index)));
+            row.extend(x);
             table.numbers(&row)?;
             if departure.is_none() {
-                departure = first_outside(&x, &vehicle.state_bounds)
-                    .map(|outside| Departure { time, outside });
+                let mut outside = vehicle.states.outside(x, &vehicle.state_bounds);
+                departure = outside.next().map(|outside| Departure { time, outside });
             }
             progress.reach(run.accepted.into());
             let stepped = grid.step(&mut run, |x, step, dt| advance(x, &u, step, dt));
@@ -64,29 +62,30 @@ impl<M: GeneratedModel> Flight<'_, M> {
         }
         drop(progress);
         table.finish()?;
+        let input_outside = vehicle.inputs.outside(&u, &vehicle.input_bounds).next();
         let report = Report {
             vehicle,
             grid,
             seed: self.seed,
             initial_state: start,
             final_state: run.state,
+            input_outside,
             input: u,
             out: &arguments.out,
             departure,
-            input_outside: first_outside(&u, &vehicle.input_bounds),
         };
         report.tell(arguments.json)
     }
 
     /// Initial state and held input: the trim, with what the arguments put in its place.
-    fn start(&self, arguments: &Arguments) -> Result<(M::State, M::Input), Failure> {
-        let units = self.vehicle.units;
-        let initial = Assignments::parse::<M::State>("--initial", &arguments.initial, units)?;
+    fn start(&self, arguments: &Arguments) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+        let states = self.vehicle.states;
+        let initial = Assignments::parse("--initial", &arguments.initial, states)?;
         let (flight, inputs) = arguments.condition.flight_and_inputs(self.vehicle)?;
         let trim = self.vehicle.trim(&flight)?;
         let (mut x, mut u) = (trim.state, trim.input);
-        inputs.apply(&mut u, &[]);
-        initial.apply(&mut x, &[]);
+        inputs.apply(&mut u);
+        initial.apply(&mut x);
         self.vehicle
             .moves(&x)
             .map_err(|why| Failure::Request(format!("--initial: {why}")))?;
@@ -96,24 +95,21 @@ impl<M: GeneratedModel> Flight<'_, M> {
     fn broken(
         &self,
         failure: &integrate::Failure,
-        last_good: &integrate::Progress<M::State>,
+        last_good: &integrate::Progress<Vec<f64>>,
         out: &std::path::Path,
     ) -> Failure {
         Failure::Numeric(format!(
             "{}: {failure}; {} was not written\nthe last good state, at {} s:\n{}",
-            M::NAME,
+            self.vehicle.name(),
             out.display(),
             Shown(last_good.time),
-            describe(&last_good.state, self.vehicle.units)
+            self.vehicle.states.describe(&last_good.state)
         ))
     }
 }
 
-fn columns<X: Vector<f64>>(units: Units) -> Vec<String> {
-    let states = X::NAMES
-        .iter()
-        .zip(units.labels::<X>())
-        .map(|(name, unit)| format!("{name} [{unit}]"));
+fn columns(states: Labels) -> Vec<String> {
+    let states = states.iter().map(|(name, unit)| format!("{name} [{unit}]"));
     std::iter::once("time [s]".to_owned())
         .chain(states)
         .collect()

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use ahv_core::{GeneratedModel, Outside};
+use ahv_core::Outside;
 use ahv_integrate::TimeGrid;
 use serde::Serialize;
 
 use crate::failure::{Failure, complain, print};
 use crate::number::Shown;
-use crate::output::{self, Pairs, describe, describe_outside};
+use crate::output::{self, Pairs, describe_outside};
 use crate::vehicle::{Heading, PointJson, Vehicle};
 
 /// The first departure from the validity box.
@@ -19,13 +19,13 @@ pub(super) struct Departure {
 }
 
 /// A finished simulation.
-pub(super) struct Report<'a, M: GeneratedModel> {
-    pub(super) vehicle: &'a Vehicle<M>,
+pub(super) struct Report<'a> {
+    pub(super) vehicle: &'a Vehicle,
     pub(super) grid: &'a TimeGrid,
     pub(super) seed: Option<u64>,
-    pub(super) initial_state: M::State,
-    pub(super) final_state: M::State,
-    pub(super) input: M::Input,
+    pub(super) initial_state: Vec<f64>,
+    pub(super) final_state: Vec<f64>,
+    pub(super) input: Vec<f64>,
     pub(super) out: &'a Path,
     pub(super) departure: Option<Departure>,
     pub(super) input_outside: Option<Outside>,
@@ -62,7 +62,7 @@ struct JsonInput {
     value: f64,
 }
 
-impl<M: GeneratedModel> Report<'_, M> {
+impl Report<'_> {
     /// Warns of departures from the validity box, then tells the outcome on stdout.
     ///
     /// # Errors
@@ -70,15 +70,13 @@ impl<M: GeneratedModel> Report<'_, M> {
     /// [`Failure::Request`] if stdout cannot be written.
     pub(super) fn tell(&self, json: bool) -> Result<(), Failure> {
         if let Some(outside) = &self.input_outside {
-            let place =
-                describe_outside(outside, self.vehicle.units.label::<M::Input>(outside.name));
+            let place = describe_outside(outside, self.vehicle.inputs.unit(outside.name));
             complain(&format!(
                 "warning: the input {place}; the model is not valid there"
             ));
         }
         if let Some(Departure { time, outside }) = &self.departure {
-            let place =
-                describe_outside(outside, self.vehicle.units.label::<M::State>(outside.name));
+            let place = describe_outside(outside, self.vehicle.states.unit(outside.name));
             complain(&format!(
                 "warning: at {time} s {place}; the model is not valid from there on"
             ));
@@ -94,8 +92,11 @@ impl<M: GeneratedModel> Report<'_, M> {
             t_end: self.grid.end(),
             dt: self.grid.dt(),
             seed: self.seed,
-            initial_state: Pairs::of(&self.initial_state),
-            final_state: Pairs::of(&self.final_state),
+            initial_state: self
+                .vehicle
+                .states
+                .pairs(self.initial_state.iter().copied()),
+            final_state: self.vehicle.states.pairs(self.final_state.iter().copied()),
             out: self.out.display().to_string(),
             left_validity_box: self
                 .departure
@@ -120,11 +121,11 @@ impl<M: GeneratedModel> Report<'_, M> {
         let plural = if steps == 1 { "step" } else { "steps" };
         format!(
             "{}: {steps} {plural} of {dt} s to {t_end} s{seed}, written to {}\n{}\nheld:\n{}\nat the end:\n{}",
-            M::NAME,
+            self.vehicle.name(),
             self.out.display(),
             self.vehicle.described(),
-            describe(&self.input, self.vehicle.units),
-            describe(&self.final_state, self.vehicle.units)
+            self.vehicle.inputs.describe(&self.input),
+            self.vehicle.states.describe(&self.final_state)
         )
     }
 }

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use ahv_analysis::trim::{SteadyState, Trim, TrimError, trim};
-use ahv_core::{Bounds, GeneratedModel, Vector};
+use ahv_analysis::trim::{SteadyState, Trim, TrimError};
+use ahv_core::Bounds;
 use ahv_plot::{Axis, Cells, Colour, Figure, Layer, Mark, Panel, Shape};
 use serde::Serialize;
 
@@ -35,21 +35,21 @@ impl FromStr for Size {
 }
 
 /// A point of the map.
-struct Cell<M: GeneratedModel> {
+struct Cell {
     at: [f64; 2],
-    result: Result<Trim<M::State, M::Input>, TrimError>,
+    result: Result<Trim<Vec<f64>, Vec<f64>>, TrimError>,
 }
 
 /// Trims by rows of the second state, the first running fastest.
-pub(super) struct Map<'a, M: GeneratedModel> {
-    vehicle: &'a Vehicle<M>,
+pub(super) struct Map<'a> {
+    vehicle: &'a Vehicle,
     /// The two given states.
     names: [&'static str; 2],
     /// Their values.
     axes: [Vec<f64>; 2],
     /// What is mapped: what people look at of a trim, but for what there is one of for each mode.
     quantities: Vec<&'static str>,
-    cells: Vec<Cell<M>>,
+    cells: Vec<Cell>,
 }
 
 /// How many points trim, and what blocks the others.
@@ -63,20 +63,24 @@ pub(super) struct Json<'a> {
     blocked: Vec<(String, usize)>,
 }
 
-impl<'a, M: GeneratedModel> Map<'a, M> {
+impl<'a> Map<'a> {
     /// Trims at each point from the cold start of `flight`, in which the two states are not `given` otherwise.
     ///
     /// # Errors
     ///
     /// [`Failure::Request`] for a model of which fewer than two states are given, and for one that is.
     pub(super) fn new(
-        vehicle: &'a Vehicle<M>,
-        flight: &SteadyState<M::Input>,
+        vehicle: &'a Vehicle,
+        flight: &SteadyState,
         Size(size): Size,
         mut given: impl Iterator<Item = &'static str>,
     ) -> Result<Self, Failure> {
-        let [first, second, ..] = M::TRIM.given else {
-            let few = format!("--map: fewer than two states of {} are given", M::NAME);
+        let problem = vehicle.model.trim_problem();
+        let [first, second, ..] = problem.given else {
+            let few = format!(
+                "--map: fewer than two states of {} are given",
+                vehicle.name()
+            );
             return Err(Failure::Request(few));
         };
         let names = [first.name, second.name];
@@ -86,9 +90,9 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
             )));
         }
         let interval = |name| {
-            let index = M::State::index_of(name);
+            let index = vehicle.states.index_of(name);
             let bounds = index.and_then(|index| vehicle.state_bounds.get(index));
-            bounds.unwrap_or(Bounds::new(0.0, 0.0))
+            bounds.copied().unwrap_or(Bounds::new(0.0, 0.0))
         };
         let axes = [0, 1].map(|axis| spaced(interval(names[axis]), size[axis]));
         let [fast, slow] = &axes;
@@ -98,26 +102,23 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
             let flight = pairs.fold(flight.clone(), |flight, (name, at)| flight.with(name, at));
             Cell {
                 at,
-                result: trim(&vehicle.model, &flight),
+                result: vehicle.model.trim(&vehicle.parameters, &flight),
             }
         });
         let single = |name: &&&str| !name.ends_with(|last: char| last.is_ascii_digit());
         Ok(Self {
             vehicle,
             cells: cells.collect(),
-            quantities: M::TRIM.shown.iter().filter(single).copied().collect(),
+            quantities: problem.shown.iter().filter(single).copied().collect(),
             names,
             axes,
         })
     }
 
     /// A quantity of a trim, in the model's unit.
-    fn value(&self, name: &str, trim: &Trim<M::State, M::Input>) -> f64 {
-        let state = M::State::index_of(name).and_then(|index| trim.state.get(index));
-        let input = M::Input::index_of(name).and_then(|index| trim.input.get(index));
-        let outputs = || self.vehicle.outputs(&trim.state, &trim.input);
-        let output = || outputs().get(M::OutputsOf::<f64>::index_of(name)?);
-        state.or(input).or_else(output).unwrap_or(f64::NAN)
+    fn value(&self, name: &str, trim: &Trim<Vec<f64>, Vec<f64>>) -> f64 {
+        let value = self.vehicle.value(name, &trim.state, &trim.input);
+        value.unwrap_or(f64::NAN)
     }
 
     /// Why a point does not trim, in a few words.
@@ -149,7 +150,7 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
         let failed: usize = blocked.iter().map(|it| it.1).sum();
         Json {
             heading: self.vehicle.heading(),
-            units: Pairs::units_of_both::<M::State, M::Input>(self.vehicle.units),
+            units: self.vehicle.point_units(),
             points: self.cells.len(),
             converged: self.cells.len() - failed,
             blocked,
@@ -166,7 +167,7 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
             .collect();
         format!(
             "{}: {converged} of {points} points trim, written to {}\n{}{blocked}",
-            M::NAME,
+            self.vehicle.name(),
             folder.display(),
             self.vehicle.described()
         )
@@ -204,7 +205,7 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
         header
     }
 
-    fn record(&self, cell: &Cell<M>) -> Vec<String> {
+    fn record(&self, cell: &Cell) -> Vec<String> {
         let mut record: Vec<String> = cell.at.map(number::cell).into();
         record.push(cell.result.is_ok().to_string());
         record.extend(self.quantities.iter().map(|name| match &cell.result {
@@ -219,7 +220,7 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
     fn figure(&self) -> Figure {
         let maps = self.quantities.iter().map(|name| {
             let (unit, factor) = readable(self.vehicle.unit(name));
-            let value = |cell: &Cell<M>| {
+            let value = |cell: &Cell| {
                 let trim = cell.result.as_ref().ok()?;
                 Some(self.value(name, trim) * factor)
             };
@@ -236,13 +237,17 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
         });
         let mut panels: Vec<Panel> = maps.collect();
         panels.push(self.panel("Trim, or the bound that blocks it", self.outcomes()));
-        let title = format!("Trims of {}, {}", M::NAME, self.vehicle.described());
+        let title = format!(
+            "Trims of {}, {}",
+            self.vehicle.name(),
+            self.vehicle.described()
+        );
         Figure::new(title, 2, panels)
     }
 
     /// The points that trim, and those that do not by the bound that blocks.
     fn outcomes(&self) -> Vec<Layer> {
-        let points = |wanted: &dyn Fn(&Cell<M>) -> bool| {
+        let points = |wanted: &dyn Fn(&Cell) -> bool| {
             let cells = self.cells.iter().filter(|cell| wanted(cell));
             cells.map(|cell| (cell.at[0], cell.at[1])).collect()
         };
@@ -271,7 +276,7 @@ impl<'a, M: GeneratedModel> Map<'a, M> {
     fn panel(&self, title: &str, layers: Vec<Layer>) -> Panel {
         let axis = |name: &str, places: &[f64]| {
             let edges = edges(places);
-            let unit = self.vehicle.units.label::<M::State>(name);
+            let unit = self.vehicle.states.unit(name);
             let axis = Axis::linear(format!("{name} [{unit}]"));
             match (edges.first(), edges.last()) {
                 (Some(&first), Some(&last)) => axis.within(first, last),

@@ -1,32 +1,33 @@
 //! What a trim at one point tells.
 
 use ahv_analysis::trim::{Nearest, SteadyState, Trim, TrimError};
-use ahv_core::{GeneratedModel, Outside, Vector, first_outside};
+use ahv_core::Outside;
 use serde::Serialize;
 
 use crate::assignment::show;
+use crate::labels::Labels;
 use crate::named::{Named, shown_as};
 use crate::number::Shown;
-use crate::output::{Pairs, describe, describe_outside};
+use crate::output::{Pairs, describe_outside};
 use crate::registry::models;
 use crate::vehicle::{Heading, PointJson, Vehicle};
 
 /// The trim, or the point that comes nearest to one.
-struct Found<M: GeneratedModel> {
-    state: M::State,
-    input: M::Input,
-    residuals: M::State,
+struct Found {
+    state: Vec<f64>,
+    input: Vec<f64>,
+    residuals: Vec<f64>,
     residual_max: f64,
     iterations: usize,
 }
 
 /// A trim that was found or not.
-pub(super) struct Report<'a, M: GeneratedModel> {
-    vehicle: &'a Vehicle<M>,
-    flight: &'a SteadyState<M::Input>,
+pub(super) struct Report<'a> {
+    vehicle: &'a Vehicle,
+    flight: &'a SteadyState,
     error: Option<&'a TrimError>,
     /// `None` where not even a nearest point is known.
-    found: Option<Found<M>>,
+    found: Option<Found>,
 }
 
 /// Angles by the names of their unit; everything else in the units of the model.
@@ -75,11 +76,11 @@ struct JsonOutside {
     max: f64,
 }
 
-impl<'a, M: GeneratedModel> Report<'a, M> {
+impl<'a> Report<'a> {
     pub(super) fn new(
-        vehicle: &'a Vehicle<M>,
-        flight: &'a SteadyState<M::Input>,
-        result: &'a Result<Trim<M::State, M::Input>, TrimError>,
+        vehicle: &'a Vehicle,
+        flight: &'a SteadyState,
+        result: &'a Result<Trim<Vec<f64>, Vec<f64>>, TrimError>,
     ) -> Self {
         let (found, error) = match result {
             Ok(trim) => (Some(Found::trimmed(trim)), None),
@@ -96,8 +97,8 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
     /// What lies outside the validity box.
     fn outside(&self) -> Option<Outside> {
         let found = self.found.as_ref()?;
-        first_outside(&found.state, &self.vehicle.state_bounds)
-            .or_else(|| first_outside(&found.input, &self.vehicle.input_bounds))
+        let outside = self.vehicle.outside(&found.state, &found.input);
+        outside.into_iter().next()
     }
 
     pub(super) fn json(&self) -> Json<'_> {
@@ -107,7 +108,7 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
         let bounds = bounds.unwrap_or_default();
         Json {
             heading: vehicle.heading(),
-            condition: Named::given::<M>(self.flight),
+            condition: Named::given(vehicle.model.states(), self.flight),
             converged: self.error.is_none(),
             reason: self.error.map(|error| vehicle.no_trim(error)),
             blocking_bound: bounds.first().cloned(),
@@ -129,24 +130,20 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
                 },
             ),
             point: found.map(|it| vehicle.point(&it.state, &it.input)),
-            residuals: found.map(|it| Pairs::of(&it.residuals)),
+            residuals: found.map(|it| vehicle.states.pairs(it.residuals.iter().copied())),
         }
     }
 
     /// A state, an input or another quantity of what was found.
     fn value(&self, name: &str) -> Option<f64> {
         let found = self.found.as_ref()?;
-        let state = M::State::index_of(name).and_then(|index| found.state.get(index));
-        let input = M::Input::index_of(name).and_then(|index| found.input.get(index));
-        let outputs = || self.vehicle.outputs(&found.state, &found.input);
-        let output = || outputs().get(M::OutputsOf::<f64>::index_of(name)?);
-        state.or(input).or_else(output)
+        self.vehicle.value(name, &found.state, &found.input)
     }
 
     /// What people look at, for a program: names that differ in their number alone, as those of modes, are one list.
     fn shown(&self) -> Named<ShownValue> {
         let mut shown: Vec<(String, ShownValue)> = Vec::new();
-        for name in M::TRIM.shown {
+        for name in self.vehicle.model.trim_problem().shown {
             let value = self.value(name);
             let Some(kind) = kind(name) else {
                 let (name, factor) = shown_as(name, 1.0, self.vehicle.unit(name));
@@ -162,7 +159,7 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
             }
         }
         // What other models have several of, this one has none of.
-        let others = models().iter().flat_map(|model| model.trim.shown);
+        let others = models().flat_map(|model| model.trim_problem().shown);
         for kind in others.filter_map(|name| kind(name)) {
             if shown.iter().all(|(known, _)| known != kind) {
                 shown.push((kind.to_owned(), ShownValue::Several(Vec::new())));
@@ -172,7 +169,7 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
     }
 
     pub(super) fn text(&self) -> String {
-        let units = self.vehicle.units;
+        let vehicle = self.vehicle;
         let what = if self.error.is_none() {
             "trim"
         } else {
@@ -180,7 +177,7 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
         };
         let head = format!(
             "{}: {what}, {}\n{}",
-            M::NAME,
+            vehicle.name(),
             self.vehicle.at(self.flight),
             self.vehicle.described()
         );
@@ -193,10 +190,8 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
             "at the nearest point:\n"
         };
         // States and inputs stand there anyway.
-        let others = M::TRIM
-            .shown
-            .iter()
-            .filter(|name| M::OutputsOf::<f64>::index_of(name).is_some());
+        let shown = vehicle.model.trim_problem().shown.iter();
+        let others = shown.filter(|name| vehicle.outputs.index_of(name).is_some());
         let others: String = others
             .filter_map(|name| Some((name, self.value(name)?)))
             .map(|(name, value)| format!("\n  {name:<12} {}", show(value, self.vehicle.unit(name))))
@@ -207,20 +202,13 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
         };
         let place = match self.outside() {
             None => "inside the validity box".to_owned(),
-            Some(outside) => {
-                let unit = units.label::<M::State>(outside.name);
-                let unit = match M::Input::index_of(outside.name) {
-                    Some(_) => units.label::<M::Input>(outside.name),
-                    None => unit,
-                };
-                describe_outside(&outside, unit)
-            }
+            Some(outside) => describe_outside(&outside, vehicle.unit(outside.name)),
         };
         format!(
             "{head}\n{nearest}state:\n{}\ninput:\n{}{others}\nresiduals, per s:\n{}\nlargest {:.3e}, after {} iterations\n{place}",
-            describe(&found.state, units),
-            describe(&found.input, units),
-            residuals(&found.residuals, units.labels::<M::State>()),
+            vehicle.states.describe(&found.state),
+            vehicle.inputs.describe(&found.input),
+            residuals(vehicle.states, &found.residuals),
             Shown(found.residual_max),
             found.iterations,
         )
@@ -228,34 +216,32 @@ impl<'a, M: GeneratedModel> Report<'a, M> {
 }
 
 /// In the units of the model, for they are too small for decimals.
-fn residuals<X: Vector<f64>>(residuals: &X, units: &[&str]) -> String {
-    let rows = Pairs::of(residuals).0.into_iter().zip(units);
-    let rows = rows.map(|((name, value), unit)| match *unit {
+fn residuals(states: Labels, residuals: &[f64]) -> String {
+    let rows = states.iter().zip(residuals);
+    let rows = rows.map(|((name, unit), value)| match unit {
         "1" => format!("  {name:<12} {:.3e}", Shown(value + 0.0)),
         unit => format!("  {name:<12} {:.3e} {unit}", Shown(value + 0.0)),
     });
     rows.collect::<Vec<_>>().join("\n")
 }
 
-impl<M: GeneratedModel> Found<M> {
-    fn trimmed(trim: &Trim<M::State, M::Input>) -> Self {
+impl Found {
+    fn trimmed(trim: &Trim<Vec<f64>, Vec<f64>>) -> Self {
         Self {
-            state: trim.state,
-            input: trim.input,
-            residuals: trim.residuals,
+            state: trim.state.clone(),
+            input: trim.input.clone(),
+            residuals: trim.residuals.clone(),
             residual_max: trim.residual_max,
             iterations: trim.iterations,
         }
     }
 
     fn nearest(nearest: &Nearest) -> Self {
-        fn vector<V: Vector<f64>>(components: &[(&str, f64)]) -> V {
-            V::from_fn(|index| components.get(index).map_or(0.0, |it| it.1))
-        }
+        let values = |pairs: &[(&str, f64)]| pairs.iter().map(|it| it.1).collect();
         Self {
-            state: vector(&nearest.state),
-            input: vector(&nearest.input),
-            residuals: vector(&nearest.residuals),
+            state: values(&nearest.state),
+            input: values(&nearest.input),
+            residuals: values(&nearest.residuals),
             residual_max: nearest.residual_max,
             iterations: nearest.iterations,
         }

@@ -208,7 +208,7 @@ impl Trial {
     }
 
     /// Level flight where the manoeuvre starts.
-    fn level<M: GeneratedModel>(&self) -> SteadyState<M::Input> {
+    fn level<M: GeneratedModel>(&self) -> SteadyState {
         SteadyState::new(&M::TRIM)
             .with("velocity", self.manoeuvre.velocity.from)
             .with("altitude", self.manoeuvre.altitude.from)

@@ -1,0 +1,262 @@
+//! The interface, for each generated model.
+
+use std::marker::PhantomData;
+
+use ahv_core::{Bounds, GeneratedModel, ModeOfMotion, Table, TrimProblem, Vector};
+use nalgebra::DMatrix;
+
+use super::flights::{Alone, Experiment, Feedback, Point, Seen, Stepping};
+use super::{AnyModel, Components, ParameterValues, values, vector};
+use crate::covariance::{CovarianceError, Flight, Regulation, Spreading};
+use crate::disperse::{self, Draws, Member, Nominal, Slopes, SolutionError};
+use crate::linearize::{LinearSystem, LinearizeError, with_outputs};
+use crate::monte_carlo::{
+    Control, MonteCarloError, Outcome, RareEstimate, RareEvent, Scheme, Unsteady,
+};
+use crate::trim::{SteadyState, Trim, TrimError, trim};
+
+/// The model `M` behind the interface.
+pub(super) struct Erased<M>(PhantomData<fn() -> M>);
+
+impl<M: GeneratedModel> Erased<M> {
+    pub(super) const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+fn model<M: GeneratedModel>(p: &[f64]) -> M {
+    M::with_parameters(&vector(p))
+}
+
+/// A matrix of a vector of rows.
+fn matrix<Row: Vector<f64>, Rows: Vector<Row>>(rows: &Rows) -> DMatrix<f64> {
+    DMatrix::from_fn(Rows::LEN, Row::LEN, |row, column| {
+        let row: Option<Row> = rows.get(row);
+        row.and_then(|row| row.get(column)).unwrap_or(0.0)
+    })
+}
+
+fn typed<X: Vector<f64>, U: Vector<f64>>(flight: &Flight<Vec<f64>, Vec<f64>>) -> Flight<X, U> {
+    let feedback = flight.feedback.as_ref().map(|it| Regulation {
+        state: vector(&it.state),
+        rate: vector(&it.rate),
+        input: vector(&it.input),
+        gain: it.gain.clone(),
+        bandwidth: vector(&it.bandwidth),
+    });
+    Flight {
+        start: vector(&flight.start),
+        input: vector(&flight.input),
+        initial: flight.initial.clone(),
+        feedback,
+        dt: flight.dt,
+    }
+}
+
+impl<M: GeneratedModel> AnyModel for Erased<M> {
+    fn name(&self) -> &'static str {
+        M::NAME
+    }
+
+    fn title(&self) -> &'static str {
+        M::TITLE
+    }
+
+    fn note(&self) -> Option<&'static str> {
+        M::NOTE
+    }
+
+    fn table(&self) -> &'static Table {
+        M::TABLE
+    }
+
+    fn sets(&self) -> Vec<ParameterValues> {
+        let sets = M::SETS.iter().map(|set| ParameterValues {
+            name: set.name,
+            parameters: values(&set.parameters),
+            uncertainty: values(&set.uncertainty()),
+        });
+        sets.collect()
+    }
+
+    fn state_bounds(&self) -> Vec<Bounds> {
+        values(&M::STATE_BOUNDS)
+    }
+
+    fn input_bounds(&self) -> Vec<Bounds> {
+        values(&M::INPUT_BOUNDS)
+    }
+
+    fn trim_problem(&self) -> TrimProblem {
+        M::TRIM
+    }
+
+    fn modes(&self) -> &'static [ModeOfMotion] {
+        M::MODES
+    }
+
+    fn default_inputs(&self) -> &'static [&'static str] {
+        M::DEFAULT_INPUTS
+    }
+
+    fn default_outputs(&self) -> &'static [&'static str] {
+        M::DEFAULT_OUTPUTS
+    }
+
+    fn deviations(&self) -> &'static [(&'static str, f64)] {
+        M::DEVIATIONS
+    }
+
+    fn parameters(&self) -> Components {
+        Components::of::<f64, M::ParametersOf<f64>>()
+    }
+
+    fn states(&self) -> Components {
+        Components::of::<f64, M::State>()
+    }
+
+    fn inputs(&self) -> Components {
+        Components::of::<f64, M::Input>()
+    }
+
+    fn outputs(&self) -> Components {
+        Components::of::<f64, M::OutputsOf<f64>>()
+    }
+
+    fn channels(&self) -> usize {
+        <M::Noise as Vector<f64>>::LEN
+    }
+
+    fn coloured_states(&self) -> usize {
+        M::coloured_states()
+    }
+
+    fn is_same(&self, p: &[f64], q: &[f64]) -> bool {
+        model::<M>(p) == model::<M>(q)
+    }
+
+    fn drift(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64> {
+        values(&model::<M>(p).drift(&vector(x), &vector(u)))
+    }
+
+    fn jacobians(&self, p: &[f64], x: &[f64], u: &[f64]) -> [DMatrix<f64>; 2] {
+        let (by_state, by_input) = model::<M>(p).jacobians(&vector(x), &vector(u));
+        [
+            matrix::<M::State, _>(&by_state),
+            matrix::<M::Input, _>(&by_input),
+        ]
+    }
+
+    fn output_values(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64> {
+        let model = M::generic(&vector::<M::ParametersOf<f64>>(p));
+        values(&M::outputs(&model, &vector(x), &vector(u)))
+    }
+
+    fn trim(&self, p: &[f64], steady: &SteadyState) -> Result<Trim<Vec<f64>, Vec<f64>>, TrimError> {
+        Ok(trim(&model::<M>(p), steady)?.erased())
+    }
+
+    fn linearize(
+        &self,
+        p: &[f64],
+        (x, u): (&[f64], &[f64]),
+        inputs: &[String],
+        outputs: &[String],
+    ) -> Result<LinearSystem, LinearizeError> {
+        with_outputs::<M>(&vector(p), &vector(x), &vector(u), inputs, outputs)
+    }
+
+    fn covariance(
+        &self,
+        p: &[f64],
+        flight: &Flight<Vec<f64>, Vec<f64>>,
+        times: &[f64],
+    ) -> Result<Vec<Spreading<Vec<f64>>>, CovarianceError> {
+        let spread = typed::<M::State, M::Input>(flight).covariance(&model::<M>(p), times)?;
+        let spread = spread.into_iter().map(|it| Spreading {
+            time: it.time,
+            state: values(&it.state),
+            covariance: it.covariance,
+        });
+        Ok(spread.collect())
+    }
+
+    fn stationary(
+        &self,
+        p: &[f64],
+        flight: &Flight<Vec<f64>, Vec<f64>>,
+    ) -> Result<DMatrix<f64>, CovarianceError> {
+        typed(flight).stationary(&model::<M>(p))
+    }
+
+    fn nominal(&self, p: &[f64], steady: SteadyState) -> Result<Nominal, SolutionError> {
+        disperse::nominal::<M>(&vector(p), steady)
+    }
+
+    fn disperse(
+        &self,
+        draws: &Draws,
+        nominal: &Nominal,
+        members: u64,
+        control: &Control,
+    ) -> Vec<Member> {
+        disperse::disperse::<M>(draws, nominal, members, control)
+    }
+
+    fn slopes(&self, draws: &Draws, nominal: &Nominal) -> Result<Slopes, SolutionError> {
+        disperse::slopes::<M>(draws, nominal)
+    }
+
+    fn default_scheme(&self, p: &[f64]) -> Scheme {
+        Scheme::default_for::<M>(&vector(p))
+    }
+
+    fn unsteady(&self, p: &[f64], feedback: &Feedback) -> Option<Unsteady> {
+        feedback.typed::<M>().unsteady(&model::<M>(p))
+    }
+
+    fn flight(&self, p: &[f64]) -> Box<dyn Stepping + '_> {
+        Box::new(Alone(model::<M>(p)))
+    }
+
+    fn run_and_list(
+        &self,
+        experiment: &Experiment,
+        members: u64,
+        threads: usize,
+        control: &Control,
+        list: &mut dyn FnMut(u64, &[Seen]),
+    ) -> Result<Outcome, MonteCarloError> {
+        let experiment = experiment.typed::<M>();
+        experiment.run_and_list(members, threads, control, |first, seen| {
+            let seen: Vec<Seen> = seen.iter().map(Seen::of).collect();
+            list(first, &seen);
+        })
+    }
+
+    fn trajectory(
+        &self,
+        experiment: &Experiment,
+        member: u64,
+    ) -> Result<Vec<Point>, MonteCarloError> {
+        let points = experiment.typed::<M>().trajectory(member, 1)?;
+        let points = points.iter().map(|point| Point {
+            time: point.time,
+            state: values(&point.state),
+            input: values(&point.input),
+        });
+        Ok(points.collect())
+    }
+
+    fn first_passage(
+        &self,
+        experiment: &Experiment,
+        event: &RareEvent,
+        threads: usize,
+        control: &Control,
+    ) -> Result<RareEstimate, MonteCarloError> {
+        experiment
+            .typed::<M>()
+            .first_passage(event, threads, control)
+    }
+}
