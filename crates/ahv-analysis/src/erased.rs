@@ -82,6 +82,9 @@ pub struct ParameterValues {
     pub uncertainty: Vec<f64>,
 }
 
+/// Is given what was seen of members in their order, many at a time, after the number of the first.
+pub type List<'l> = &'l mut dyn FnMut(u64, &[Seen]);
+
 /// A model, whichever it is; p, x and u stand for parameters, state and input in the order of their names.
 pub trait AnyModel: Send + Sync {
     /// Its name: that of its module, and on command lines.
@@ -197,7 +200,7 @@ pub trait AnyModel: Send + Sync {
     fn unsteady(&self, p: &[f64], feedback: &Feedback) -> Option<Unsteady>;
     /// A step of a single flight after another.
     fn flight(&self, p: &[f64]) -> Box<dyn Stepping + '_>;
-    /// As [`crate::monte_carlo::Experiment::run_and_list`].
+    /// As [`crate::monte_carlo::Experiment::run_and_list`]; without a list as [`crate::monte_carlo::Experiment::run`].
     ///
     /// # Errors
     ///
@@ -208,7 +211,7 @@ pub trait AnyModel: Send + Sync {
         members: u64,
         threads: usize,
         control: &Control,
-        list: &mut dyn FnMut(u64, &[Seen]),
+        list: Option<List<'_>>,
     ) -> Result<Outcome, MonteCarloError>;
     /// As [`crate::monte_carlo::Experiment::trajectory`], with every step.
     ///

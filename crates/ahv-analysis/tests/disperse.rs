@@ -264,7 +264,10 @@ fn members_do_not_depend_on_each_other() {
         vec![],
         12,
     );
-    assert_ne!(other.expect("sound").member_values(1), draws.member_values(1));
+    assert_ne!(
+        other.expect("sound").member_values(1),
+        draws.member_values(1)
+    );
 }
 
 /// 40 % of uncertainty: what fails says why, and counts.

@@ -225,7 +225,7 @@ fn sample(
     let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let outcome = vehicle
         .model
-        .run_and_list(experiment, members, threads, control, &mut |_, _| ())
+        .run_and_list(experiment, members, threads, control, None)
         .map_err(|error| Failure::Numeric(format!("{}: {error}", vehicle.name())))?;
     if outcome.members < members.min(FEWEST) {
         return Err(Failure::Interrupted(format!(

@@ -8,6 +8,7 @@ mod trajectories;
 
 use std::path::PathBuf;
 
+use ahv_analysis::erased::{List, Seen};
 use ahv_analysis::monte_carlo::Outcome;
 use ahv_core::Bounds;
 use clap::Args;
@@ -108,17 +109,11 @@ impl Arguments {
         let threads = ready.threads(self.members);
         let outcome = watched(progress, |control| {
             let (model, experiment) = (ready.vehicle.model, &ready.experiment);
-            model.run_and_list(
-                experiment,
-                self.members,
-                threads,
-                control,
-                &mut |first, seen| {
-                    if let Some(list) = &mut list {
-                        list.add(first, seen);
-                    }
-                },
-            )
+            let mut list = list
+                .as_mut()
+                .map(|list| |first, seen: &[Seen]| list.add(first, seen));
+            let list = list.as_mut().map(|list| list as List<'_>);
+            model.run_and_list(experiment, self.members, threads, control, list)
         })?;
         let complete = outcome.members == outcome.asked;
         let listed = list.map_or(Ok(()), |list| list.finish(complete));

@@ -30,7 +30,7 @@ pub(crate) fn printable(text: &str) -> String {
 }
 
 /// The first name that stands twice.
-pub(crate) fn twice<'a>(names: &'a [impl AsRef<str>]) -> Option<&'a str> {
+pub(crate) fn twice(names: &[impl AsRef<str>]) -> Option<&str> {
     let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
     let mut all = names.iter().enumerate();
     all.find_map(|(index, name)| names[..index].contains(name).then_some(*name))

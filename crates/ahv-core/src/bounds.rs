@@ -41,18 +41,7 @@ where
     X: Vector<R>,
     B: Vector<Bounds>,
 {
-    all_outside(x, bounds).next()
-}
-
-/// The components of `x` outside `bounds`, in the order of the components.
-pub fn all_outside<R, X, B>(x: &X, bounds: &B) -> impl Iterator<Item = Outside>
-where
-    R: Real,
-    X: Vector<R>,
-    B: Vector<Bounds>,
-{
-    let components = X::NAMES.iter().enumerate();
-    components.filter_map(|(index, &name)| {
+    X::NAMES.iter().enumerate().find_map(|(index, &name)| {
         let value = x.get(index)?.to_f64();
         let bounds = bounds.get(index)?;
         (!bounds.contains(value)).then_some(Outside {

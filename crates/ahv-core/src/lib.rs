@@ -40,7 +40,7 @@ mod straight;
 mod table;
 mod vector;
 
-pub use bounds::{Bounds, Outside, all_outside, first_outside};
+pub use bounds::{Bounds, Outside, first_outside};
 #[cfg(feature = "std")]
 pub use fused::{Fused, MulAdd};
 pub use generated::{

@@ -6,7 +6,7 @@ use ahv_core::{Bounds, GeneratedModel, ModeOfMotion, Table, TrimProblem, Vector}
 use nalgebra::DMatrix;
 
 use super::flights::{Alone, Experiment, Feedback, Point, Seen, Stepping};
-use super::{AnyModel, Components, ParameterValues, values, vector};
+use super::{AnyModel, Components, List, ParameterValues, values, vector};
 use crate::covariance::{CovarianceError, Flight, Regulation, Spreading};
 use crate::disperse::{self, Draws, Member, Nominal, Slopes, SolutionError};
 use crate::linearize::{LinearSystem, LinearizeError, with_outputs};
@@ -225,12 +225,14 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
         members: u64,
         threads: usize,
         control: &Control,
-        list: &mut dyn FnMut(u64, &[Seen]),
+        mut list: Option<List<'_>>,
     ) -> Result<Outcome, MonteCarloError> {
         let experiment = experiment.typed::<M>();
         experiment.run_and_list(members, threads, control, |first, seen| {
-            let seen: Vec<Seen> = seen.iter().map(Seen::of).collect();
-            list(first, &seen);
+            if let Some(list) = &mut list {
+                let seen: Vec<Seen> = seen.iter().map(Seen::of).collect();
+                list(first, &seen);
+            }
         })
     }
 
