@@ -1,8 +1,8 @@
 //! Steppers for models that implement the traits of `ahv-core`.
 //!
 //! * [`Euler`], [`Heun`], [`Rk4`]: deterministic models, fixed step, orders 1, 2, 4.
-//! * [`DormandPrince54`], [`Tsit5`]: explicit pairs of orders 5 and 4; [`Rodas4`]: L-stable pair of orders 4 and 3 for
-//!   stiff models. [`Adaptive`] runs them with control of the step size, dense output and events, [`Fixed`] with a
+//! * [`DormandPrince54`], [`Tsit5`]: explicit pairs of orders 5 and 4; [`DormandPrince853`]: explicit, of order 8;
+//!   [`Rodas4`]: L-stable pair of orders 4 and 3 for stiff models. [`Adaptive`] runs them with control of the step size, dense output and events, [`Fixed`] with a
 //!   fixed step. A [`TimeGrid`] numbers fixed steps and tells the time of a failure.
 //! * [`Exponential`]: linear flexible modes exactly, the rest with order 4.
 //! * [`Constant`], [`Held`], [`Interpolated`], [`Feedback`], [`Saturated`]: what drives a run.
@@ -34,6 +34,7 @@ mod brownian;
 mod channels;
 mod controller;
 mod dense;
+mod dormand_prince_853;
 mod embedded;
 mod error;
 mod euler_maruyama;
@@ -59,6 +60,7 @@ pub use adaptive::{Adaptive, Ending, Observer, Problem, Progress};
 pub use brownian::{BrownianPath, NormalSource, WienerIntegrals, bisect};
 pub use channels::{AdditiveChannels, CommutativeChannels, NoiseError};
 pub use dense::Dense;
+pub use dormand_prince_853::DormandPrince853;
 pub use embedded::{DormandPrince54, EmbeddedPair, Tableau, Tsit5};
 pub use error::StepError;
 pub use euler_maruyama::ItoEulerMaruyama;
