@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use ahv_core::{DifferentiableModel, Model, Pattern, Vector as _};
 use ahv_integrate::{
-    Adaptive, Constant, DormandPrince54, Euler, Exponential, Fixed, FlexibleMode, Heun, Problem,
-    Progress, Rk4, Rodas4, Tsit5,
+    Adaptive, Constant, DormandPrince54, DormandPrince853, Euler, Exponential, Fixed, FlexibleMode,
+    Heun, Problem, Progress, Rk4, Rodas4, Tsit5,
 };
 use ahv_models::dcom::{self, Input, InputJacobian, Parameters, State, StateJacobian};
 
@@ -96,6 +96,7 @@ fixed! {
     FixedRk4(dt, flight): Rk4::new(dt);
     FixedTsit5(dt, flight): Fixed::new(Tsit5, dt);
     FixedDormandPrince54(dt, flight): Fixed::new(DormandPrince54, dt);
+    FixedDormandPrince853(dt, flight): Fixed::new(DormandPrince853, dt);
     FixedRodas4(dt, flight): Fixed::new(Rodas4, dt);
     FixedExponential(dt, flight): Exponential::new(dt, modes(&flight.parameters)?);
 }
@@ -127,6 +128,7 @@ macro_rules! adaptive {
 adaptive! {
     AdaptiveTsit5: Tsit5;
     AdaptiveDormandPrince54: DormandPrince54;
+    AdaptiveDormandPrince853: DormandPrince853;
     AdaptiveRodas4: Rodas4;
 }
 
@@ -157,6 +159,12 @@ pub(crate) fn solvers(flights: &Rc<Flights>) -> Vec<Solver> {
             FixedDormandPrince54,
             flights,
         ),
+        solver(
+            "ahv `Fixed<DormandPrince853>`",
+            steps(3, 14),
+            FixedDormandPrince853,
+            flights,
+        ),
         solver("ahv `Fixed<Rodas4>`", steps(3, 14), FixedRodas4, flights),
         solver("ahv `Exponential`", steps(3, 14), FixedExponential, flights),
         solver(REFERENCE, tolerances(), AdaptiveTsit5 { scales }, flights),
@@ -164,6 +172,12 @@ pub(crate) fn solvers(flights: &Rc<Flights>) -> Vec<Solver> {
             "ahv `Adaptive<DormandPrince54>`",
             tolerances(),
             AdaptiveDormandPrince54 { scales },
+            flights,
+        ),
+        solver(
+            "ahv `Adaptive<DormandPrince853>`",
+            tolerances(),
+            AdaptiveDormandPrince853 { scales },
             flights,
         ),
         solver(

@@ -2,10 +2,10 @@
 
 use ahv_core::Vector;
 use ahv_integrate::{
-    AdditiveChannels, CommutativeChannels, DormandPrince54, Euler, Exponential, Fixed, Heun,
-    ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, ItoStrangSplitting, KeyedNormals,
-    LinearTransition, NormalSource as _, Rk4, Rodas4, StratonovichHeun, Tsit5, WeakIncrements,
-    WienerIntegrals,
+    AdditiveChannels, CommutativeChannels, DormandPrince54, DormandPrince853, Euler, Exponential,
+    Fixed, Heun, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, ItoStrangSplitting,
+    KeyedNormals, LinearTransition, NormalSource as _, Rk4, Rodas4, StratonovichHeun, Tsit5,
+    WeakIncrements, WienerIntegrals,
 };
 use ahv_models::{dcom, sdcom, sdcom_gust};
 
@@ -98,6 +98,9 @@ macro_rules! deterministic {
         });
         $group.add("`Fixed<DormandPrince54>`", "", $x, move |x, _| {
             Fixed::new(DormandPrince54, DT).step(&$model, x, &$u)
+        });
+        $group.add("`Fixed<DormandPrince853>`", "", $x, move |x, _| {
+            Fixed::new(DormandPrince853, DT).step(&$model, x, &$u)
         });
         $group.add("`Fixed<Rodas4>`", "", $x, move |x, _| {
             Fixed::new(Rodas4, DT).step(&$model, x, &$u)

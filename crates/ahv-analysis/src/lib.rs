@@ -9,6 +9,23 @@
 //! * [`lqr`]: the linear-quadratic regulator of a linear system; [`actuator`]: lags and limits of what moves the inputs.
 //! * [`monte_carlo`]: many flights with noise and dispersions, as fast as the machine goes; [`ordered`]: such work in parts.
 //! * [`statistics`]: estimates with their confidence.
+//!
+//! ```
+//! use ahv_analysis::{linearize::linearize, poles::poles, trim::{SteadyState, trim}};
+//! use ahv_core::{GeneratedModel, Vector};
+//! use ahv_models::dcom::{self, Model};
+//!
+//! // Level flight at the model's own velocity and altitude, its poles, and the mode of the slowest one.
+//! let model = Model::new(&dcom::NOMINAL);
+//! let flight = SteadyState::new(&Model::<f64>::TRIM).within(&dcom::INPUT_BOUNDS);
+//! let level = trim(&model, &flight)?;
+//! let states = dcom::State::<f64>::NAMES;
+//! let system = linearize(&model, &level.state, &level.input, &["delta_e"], &states)?;
+//! let poles = poles(&system, Model::<f64>::MODES)?;
+//! assert_eq!(poles.len(), 11);
+//! assert!(poles.iter().any(|pole| pole.mode == Some("phugoid")));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 pub mod actuator;

@@ -26,7 +26,7 @@ pub use experiment::{Control, Experiment, Seen};
 pub use feedback::{Feedback, Unsteady};
 pub use lanes::{LANES, Packed};
 pub use outcome::{Outcome, Point, Snapshot, StateSpread};
-pub use propagator::Propagator;
+pub use propagator::{Propagator, generic_point};
 pub use rare::{FEWEST_REPETITIONS, Level, RareError, RareEstimate, RareEvent};
 pub use scheme::Scheme;
 

@@ -13,7 +13,8 @@ use ahv_analysis::statistics::{Estimate, OpenEstimate};
 use ahv_analysis::trim::trim;
 use ahv_core::{Bounds, ColouredNoise, GeneratedModel, Vector};
 use ahv_integrate::{
-    ItoEulerMaruyama, ItoHeun, ItoStrangSplitting, NoiseError, NormalStream, WienerSource,
+    ItoDri1, ItoEulerMaruyama, ItoHeun, ItoStrangSplitting, NoiseError, NormalStream,
+    WeakIncrements, WienerSource,
 };
 use ahv_models::{com, dcom, flexible_mode, sdcom, sdcom_gust};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
@@ -121,6 +122,27 @@ fn a_member_has_the_bits_that_its_stepper_gives_it_alone() {
                 .expect("finite");
         });
         assert_eq!(splitting[index], expected, "splitting, member {member}");
+    }
+}
+
+/// It takes two numbers a channel. Without the second ones, of which only the sign counts, its iterated integrals have a mean.
+#[test]
+fn dri1_has_both_kinds_of_its_numbers() {
+    let (dt, steps, members) = (1e-2, 40, [2, 7]);
+    let flown = last(&experiment(Scheme::Dri1, dt, vec![steps]), &members);
+    let model = sdcom::Model::new(&sdcom::NOMINAL);
+    for (found, member) in flown.into_iter().zip(members) {
+        let mut streams: Vec<NormalStream> = (0..2 * CHANNELS as u64)
+            .map(|channel| NormalStream::new(SEED, member, channel))
+            .collect();
+        let mut x = STATE;
+        for step in 0..steps {
+            let weak = WeakIncrements::from_normals(dt, |index| streams[index].normal(step));
+            ItoDri1::new(dt)
+                .step(&model, &mut x, &INPUT, &weak)
+                .expect("finite");
+        }
+        assert_eq!(found, x, "member {member}");
     }
 }
 

@@ -2,6 +2,21 @@
 //!
 //! [`emit()`] is a function from tables (their values) and IR (their structure) to a [`Tree`] of files. Writing that
 //! tree and comparing it with the one on disk are the business of the caller.
+//!
+//! ```
+//! use std::fs::read_to_string;
+//! use ahv_codegen::{AUDIT, Options, Table, emit};
+//!
+//! let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+//! let table = Table::parse("com.toml", &read_to_string(format!("{root}/generator/tables/com.toml"))?)?;
+//! let ir = |name: &str| Ok::<_, std::io::Error>((
+//!     name.to_owned(),
+//!     read_to_string(format!("{root}/generated/ir/{name}.json"))?,
+//! ));
+//! let tree = emit(&[table], &[ir("com")?, ir(AUDIT)?].into(), &Options::default())?;
+//! assert!(tree["src/com/drift.rs"].contains("pub fn drift"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 mod body;

@@ -16,6 +16,43 @@
 //! * [`Shown`]: a number in a text for people.
 //!
 //! No heap and no panic: an index out of range is an [`Option`], never an abort.
+//!
+//! ```
+//! use ahv_core::{Model, Vector, impl_vector};
+//!
+//! #[derive(Clone, Copy, Debug, PartialEq)]
+//! struct State<T> {
+//!     angle: T,
+//!     rate: T,
+//! }
+//!
+//! #[derive(Clone, Copy, Debug, PartialEq)]
+//! struct Input<T> {
+//!     torque: T,
+//! }
+//!
+//! impl_vector!(State { angle: ["rad", "rad", 1.0], rate: ["rad/s", "rad/s", 1.0] });
+//! impl_vector!(Input { torque: ["1/s^2", "1/s^2", 1.0] });
+//!
+//! /// A satellite about one axis.
+//! struct Satellite;
+//!
+//! impl Model for Satellite {
+//!     type Scalar = f64;
+//!     type State = State<f64>;
+//!     type Input = Input<f64>;
+//!
+//!     fn drift(&self, x: &State<f64>, u: &Input<f64>) -> State<f64> {
+//!         State { angle: x.rate, rate: u.torque }
+//!     }
+//! }
+//!
+//! let x = State { angle: 0.1, rate: 0.5 };
+//! let slope = Satellite.drift(&x, &Input { torque: 2.0 });
+//! assert_eq!(slope, State { angle: 0.5, rate: 2.0 });
+//! assert_eq!(slope.find(|component| component > 1.0), Some(("rate", 2.0)));
+//! assert_eq!(State::<f64>::UNITS, ["rad", "rad/s"]);
+//! ```
 #![no_std]
 #![forbid(unsafe_code)]
 

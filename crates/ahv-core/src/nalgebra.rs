@@ -6,20 +6,20 @@
 #[macro_export]
 macro_rules! impl_nalgebra {
     ($name:ident) => {
-        impl<T: ::nalgebra::Scalar> From<$name<T>>
-            for ::nalgebra::SVector<T, { $name::<()>::LEN }>
+        impl<__T: ::nalgebra::Scalar> From<$name<__T>>
+            for ::nalgebra::SVector<__T, { $name::<()>::LEN }>
         {
             #[inline]
-            fn from(vector: $name<T>) -> Self {
+            fn from(vector: $name<__T>) -> Self {
                 Self::from(vector.to_array())
             }
         }
 
-        impl<T: ::nalgebra::Scalar> From<::nalgebra::SVector<T, { $name::<()>::LEN }>>
-            for $name<T>
+        impl<__T: ::nalgebra::Scalar> From<::nalgebra::SVector<__T, { $name::<()>::LEN }>>
+            for $name<__T>
         {
             #[inline]
-            fn from(vector: ::nalgebra::SVector<T, { $name::<()>::LEN }>) -> Self {
+            fn from(vector: ::nalgebra::SVector<__T, { $name::<()>::LEN }>) -> Self {
                 Self::from_array(vector.into())
             }
         }
@@ -32,27 +32,27 @@ macro_rules! impl_nalgebra {
 #[macro_export]
 macro_rules! impl_nalgebra_matrix {
     ($row:ident, $column:ident) => {
-        impl<T: ::nalgebra::Scalar> From<$row<$column<T>>>
-            for ::nalgebra::SMatrix<T, { $row::<()>::LEN }, { $column::<()>::LEN }>
+        impl<__T: ::nalgebra::Scalar> From<$row<$column<__T>>>
+            for ::nalgebra::SMatrix<__T, { $row::<()>::LEN }, { $column::<()>::LEN }>
         {
             #[inline]
-            fn from(matrix: $row<$column<T>>) -> Self {
+            fn from(matrix: $row<$column<__T>>) -> Self {
                 // nalgebra stores columns; an array of rows is therefore the transpose.
-                let rows: [[T; $column::<()>::LEN]; $row::<()>::LEN] = matrix.to_matrix();
-                ::nalgebra::SMatrix::<T, { $column::<()>::LEN }, { $row::<()>::LEN }>::from(rows)
+                let rows: [[__T; $column::<()>::LEN]; $row::<()>::LEN] = matrix.to_matrix();
+                ::nalgebra::SMatrix::<__T, { $column::<()>::LEN }, { $row::<()>::LEN }>::from(rows)
                     .transpose()
             }
         }
 
-        impl<T: ::nalgebra::Scalar>
-            From<::nalgebra::SMatrix<T, { $row::<()>::LEN }, { $column::<()>::LEN }>>
-            for $row<$column<T>>
+        impl<__T: ::nalgebra::Scalar>
+            From<::nalgebra::SMatrix<__T, { $row::<()>::LEN }, { $column::<()>::LEN }>>
+            for $row<$column<__T>>
         {
             #[inline]
             fn from(
-                matrix: ::nalgebra::SMatrix<T, { $row::<()>::LEN }, { $column::<()>::LEN }>,
+                matrix: ::nalgebra::SMatrix<__T, { $row::<()>::LEN }, { $column::<()>::LEN }>,
             ) -> Self {
-                let rows: [[T; $column::<()>::LEN]; $row::<()>::LEN] = matrix.transpose().into();
+                let rows: [[__T; $column::<()>::LEN]; $row::<()>::LEN] = matrix.transpose().into();
                 Self::from_matrix(rows)
             }
         }

@@ -75,36 +75,41 @@ impl<T: Copy> Vector<T> for NoNoise<T> {
 #[macro_export]
 macro_rules! impl_no_noise {
     ($model:ident, $state:ident, $input:ident) => {
-        impl<R: $crate::Real> $crate::StochasticModel for $model<R> {
-            type Noise = $crate::NoNoise<R>;
+        impl<__R: $crate::Real> $crate::StochasticModel for $model<__R> {
+            type Noise = $crate::NoNoise<__R>;
 
             #[inline(always)]
-            fn noise_increment(&self, _: &$state<R>, _: &$input<R>, _: &Self::Noise) -> $state<R> {
-                $crate::Vector::splat(R::ZERO)
+            fn noise_increment(
+                &self,
+                _: &$state<__R>,
+                _: &$input<__R>,
+                _: &Self::Noise,
+            ) -> $state<__R> {
+                $crate::Vector::splat(__R::ZERO)
             }
         }
 
-        impl<R: $crate::Real> $crate::ItoCorrected for $model<R> {
+        impl<__R: $crate::Real> $crate::ItoCorrected for $model<__R> {
             #[inline(always)]
-            fn ito_correction(&self, _: &$state<R>, _: &$input<R>) -> $state<R> {
-                $crate::Vector::splat(R::ZERO)
+            fn ito_correction(&self, _: &$state<__R>, _: &$input<__R>) -> $state<__R> {
+                $crate::Vector::splat(__R::ZERO)
             }
         }
 
-        impl<R: $crate::Real> $crate::DifferentiableNoise for $model<R> {
+        impl<__R: $crate::Real> $crate::DifferentiableNoise for $model<__R> {
             #[inline(always)]
             fn iterated_increment(
                 &self,
-                _: &$state<R>,
-                _: &$input<R>,
-                _: impl FnMut(usize, usize) -> R,
-            ) -> $state<R> {
-                $crate::Vector::splat(R::ZERO)
+                _: &$state<__R>,
+                _: &$input<__R>,
+                _: impl FnMut(usize, usize) -> __R,
+            ) -> $state<__R> {
+                $crate::Vector::splat(__R::ZERO)
             }
         }
 
-        impl<R: $crate::Real> $crate::AdditiveNoise for $model<R> {}
+        impl<__R: $crate::Real> $crate::AdditiveNoise for $model<__R> {}
 
-        impl<R: $crate::Real> $crate::CommutativeNoise for $model<R> {}
+        impl<__R: $crate::Real> $crate::CommutativeNoise for $model<__R> {}
     };
 }

@@ -49,6 +49,8 @@ pub trait Vector<T>: Copy {
 /// The struct is `Copy` where `T` is. It also gets inherent `LEN`, `NAMES`, `UNITS`, `to_array(self) -> [T; LEN]` and
 /// `from_array([T; LEN]) -> Self`.
 ///
+/// The struct and its parameter may have any name: those of the macro begin with two underscores.
+///
 /// ```
 /// #[derive(Clone, Copy, Debug, PartialEq)]
 /// pub struct Pair<T> {
@@ -70,7 +72,7 @@ pub trait Vector<T>: Copy {
 #[macro_export]
 macro_rules! impl_vector {
     ($name:ident { $($field:ident: [$unit:literal, $si_unit:literal, $si_factor:literal]),+ $(,)? }) => {
-        impl<T> $name<T> {
+        impl<__T> $name<__T> {
             /// Number of components.
             pub const LEN: usize = [$($unit),+].len();
             /// Names of the components.
@@ -80,19 +82,19 @@ macro_rules! impl_vector {
 
             /// The components in order.
             #[inline(always)]
-            #[allow(clippy::wrong_self_convention, reason = "T is Copy wherever a vector is used")]
-            pub fn to_array(self) -> [T; $name::<()>::LEN] {
+            #[allow(clippy::wrong_self_convention, reason = "a component is Copy wherever a vector is used")]
+            pub fn to_array(self) -> [__T; $name::<()>::LEN] {
                 [$(self.$field),+]
             }
 
             /// A vector from its components in order.
             #[inline(always)]
-            pub fn from_array([$($field),+]: [T; $name::<()>::LEN]) -> Self {
+            pub fn from_array([$($field),+]: [__T; $name::<()>::LEN]) -> Self {
                 Self { $($field),+ }
             }
         }
 
-        impl<T: Copy> $crate::Vector<T> for $name<T> {
+        impl<__T: Copy> $crate::Vector<__T> for $name<__T> {
             const LEN: usize = $name::<()>::LEN;
             const NAMES: &'static [&'static str] = &$name::<()>::NAMES;
             const UNITS: &'static [&'static str] = &$name::<()>::UNITS;
@@ -100,12 +102,12 @@ macro_rules! impl_vector {
             const SI_FACTORS: &'static [f64] = &[$($si_factor),+];
 
             #[inline(always)]
-            fn splat(value: T) -> Self {
+            fn splat(value: __T) -> Self {
                 Self::from_array([value; $name::<()>::LEN])
             }
 
             #[inline(always)]
-            fn from_fn(mut component: impl FnMut(usize) -> T) -> Self {
+            fn from_fn(mut component: impl FnMut(usize) -> __T) -> Self {
                 // No array: through one the compiler does not see single numbers.
                 let mut index = 0;
                 let mut next = || {
@@ -117,12 +119,12 @@ macro_rules! impl_vector {
             }
 
             #[inline(always)]
-            fn get(&self, index: usize) -> Option<T> {
+            fn get(&self, index: usize) -> Option<__T> {
                 (*self).to_array().get(index).copied()
             }
 
             #[inline(always)]
-            fn set(&mut self, index: usize, value: T) -> Option<()> {
+            fn set(&mut self, index: usize, value: __T) -> Option<()> {
                 let mut components = (*self).to_array();
                 *components.get_mut(index)? = value;
                 *self = Self::from_array(components);
@@ -130,78 +132,78 @@ macro_rules! impl_vector {
             }
 
             #[inline(always)]
-            fn map(self, f: impl FnMut(T) -> T) -> Self {
+            fn map(self, f: impl FnMut(__T) -> __T) -> Self {
                 self.map_into(f)
             }
 
             #[inline(always)]
-            fn zip_with(self, other: Self, mut f: impl FnMut(T, T) -> T) -> Self {
+            fn zip_with(self, other: Self, mut f: impl FnMut(__T, __T) -> __T) -> Self {
                 Self { $($field: f(self.$field, other.$field)),+ }
             }
 
             #[inline(always)]
-            fn find(&self, mut test: impl FnMut(T) -> bool) -> Option<(&'static str, T)> {
-                $name::<T>::NAMES
+            fn find(&self, mut test: impl FnMut(__T) -> bool) -> Option<(&'static str, __T)> {
+                $name::<__T>::NAMES
                     .into_iter()
                     .zip((*self).to_array())
                     .find(|&(_, component)| test(component))
             }
         }
 
-        impl<T> $name<T> {
+        impl<__T> $name<__T> {
             /// Applies `f` to each component; the type of the components may change.
             #[inline(always)]
-            pub fn map_into<U>(self, mut f: impl FnMut(T) -> U) -> $name<U> {
+            pub fn map_into<__U>(self, mut f: impl FnMut(__T) -> __U) -> $name<__U> {
                 $name { $($field: f(self.$field)),+ }
             }
 
             /// As [`Self::map_into`], by reference: large components are not copied.
             #[inline(always)]
-            pub fn map_ref<U>(&self, mut f: impl FnMut(&T) -> U) -> $name<U> {
+            pub fn map_ref<__U>(&self, mut f: impl FnMut(&__T) -> __U) -> $name<__U> {
                 $name { $($field: f(&self.$field)),+ }
             }
 
             /// Tells `f` of each component and the one of `other` in its place.
             #[inline(always)]
-            pub fn zip_ref<U>(&self, other: &$name<U>, mut f: impl FnMut(&T, &U)) {
+            pub fn zip_ref<__U>(&self, other: &$name<__U>, mut f: impl FnMut(&__T, &__U)) {
                 $(f(&self.$field, &other.$field);)+
             }
 
             /// Applies `f` to each component and the one of `other` in its place.
             #[inline(always)]
-            pub fn update<U>(&mut self, other: $name<U>, mut f: impl FnMut(&mut T, U)) {
+            pub fn update<__U>(&mut self, other: $name<__U>, mut f: impl FnMut(&mut __T, __U)) {
                 $(f(&mut self.$field, other.$field);)+
             }
 
             /// Rows of a vector of vectors, such as a Jacobian.
             #[inline(always)]
-            pub fn to_matrix<E, const COLUMNS: usize>(self) -> [[E; COLUMNS]; $name::<()>::LEN]
+            pub fn to_matrix<__E, const __COLUMNS: usize>(self) -> [[__E; __COLUMNS]; $name::<()>::LEN]
             where
-                T: Into<[E; COLUMNS]>,
+                __T: Into<[__E; __COLUMNS]>,
             {
                 self.to_array().map(Into::into)
             }
 
             /// The vector of vectors with these rows.
             #[inline(always)]
-            pub fn from_matrix<E, const COLUMNS: usize>(rows: [[E; COLUMNS]; $name::<()>::LEN]) -> Self
+            pub fn from_matrix<__E, const __COLUMNS: usize>(rows: [[__E; __COLUMNS]; $name::<()>::LEN]) -> Self
             where
-                T: From<[E; COLUMNS]>,
+                __T: From<[__E; __COLUMNS]>,
             {
-                Self::from_array(rows.map(T::from))
+                Self::from_array(rows.map(__T::from))
             }
         }
 
-        impl<T> From<[T; $name::<()>::LEN]> for $name<T> {
+        impl<__T> From<[__T; $name::<()>::LEN]> for $name<__T> {
             #[inline(always)]
-            fn from(components: [T; $name::<()>::LEN]) -> Self {
+            fn from(components: [__T; $name::<()>::LEN]) -> Self {
                 Self::from_array(components)
             }
         }
 
-        impl<T> From<$name<T>> for [T; $name::<()>::LEN] {
+        impl<__T> From<$name<__T>> for [__T; $name::<()>::LEN] {
             #[inline(always)]
-            fn from(vector: $name<T>) -> Self {
+            fn from(vector: $name<__T>) -> Self {
                 vector.to_array()
             }
         }

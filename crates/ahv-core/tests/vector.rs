@@ -163,3 +163,35 @@ fn a_pattern_puts_values_into_their_places() {
     expected[0][0][1] = 7.0;
     assert_eq!(of_matrices(array.symmetric(&values)), expected);
 }
+
+/// Structs and parameters with the names that a macro would give its own parameters.
+mod names {
+    macro_rules! named {
+        ($($module:ident: $name:ident<$parameter:ident>;)+) => {$(
+            mod $module {
+                #[derive(Clone, Copy, Debug, PartialEq)]
+                struct $name<$parameter> {
+                    f: $parameter,
+                    other: $parameter,
+                }
+                ahv_core::impl_vector! { $name { f: ["1", "1", 1.0], other: ["1", "1", 1.0] } }
+                ahv_core::impl_nalgebra!($name);
+                ahv_core::impl_nalgebra_matrix!($name, $name);
+
+                #[test]
+                fn it_is_a_vector() {
+                    let x = $name { f: 1.0, other: 2.0 };
+                    let rows = x.map_into(|f| $name { f, other: -f }).to_matrix();
+                    assert_eq!(rows, [[1.0, -1.0], [2.0, -2.0]]);
+                }
+            }
+        )+};
+    }
+    named! {
+        t: T<U>;
+        u: U<T>;
+        e: E<T>;
+        r: R<U>;
+        columns: COLUMNS<U>;
+    }
+}

@@ -2,6 +2,20 @@
 //!
 //! `ahv generate` and `cargo xtask generate` are both [`run`]. This crate never depends on the
 //! generated package, so that it also mends a tree that does not compile.
+//!
+//! ```no_run
+//! use clap::Parser;
+//!
+//! #[derive(Parser)]
+//! struct Line {
+//!     #[command(flatten)]
+//!     generate: ahv_generate::Args,
+//! }
+//!
+//! // Whether the tree on disk is what the tables give: 0 if so, 1 if not.
+//! let line = Line::parse_from(["generate", "--check"]);
+//! std::process::exit(ahv_generate::run(&line.generate).into());
+//! ```
 #![forbid(unsafe_code)]
 
 mod args;

@@ -2,7 +2,7 @@
 
 use ahv_core::{Model, Outside, Vector};
 
-use crate::controller::{Controller, error_norm, first_step};
+use crate::controller::{Controller, error_norm, farthest, first_step, units};
 use crate::events::{check_start, search};
 use crate::method::non_finite;
 use crate::{
@@ -195,7 +195,7 @@ impl<S, X> Adaptive<S, X> {
                 slope,
             };
             let (step, reaches) = run.length(until);
-            let attempt = self
+            let mut attempt = self
                 .method
                 .attempt(problem.model, problem.input, &start, step);
             if !run.judge(&attempt, reaches)? {
@@ -203,7 +203,7 @@ impl<S, X> Adaptive<S, X> {
                 continue;
             }
             let arrival = if reaches { until } else { time + step };
-            if let Some(event) = run.advance(&attempt, arrival, observer)? {
+            if let Some(event) = run.advance(&mut attempt, arrival, observer)? {
                 return Ok(Ending::Event(event));
             }
             // A break may change the input, and the slope with it.
@@ -319,12 +319,16 @@ where
     }
 
     /// Whether the step meets the tolerances; sets the length of the next one.
-    fn judge(&mut self, attempt: &Attempt<X>, reaches: bool) -> Result<bool, Failure> {
+    fn judge(&mut self, attempt: &Attempt<X, S::Stages>, reaches: bool) -> Result<bool, Failure> {
         let Adaptive {
-            relative, absolute, ..
+            method,
+            relative,
+            absolute,
+            ..
         } = self.settings;
         let ends = [&attempt.state, &attempt.next];
-        let (norm, worst) = error_norm::<M::Scalar, _>(&attempt.error, ends, *relative, absolute);
+        let units = units::<M::Scalar, _>(ends, *relative, absolute);
+        let norm = method.error_size(attempt, |error| error_norm::<M::Scalar, _>(error, &units));
         let bad = non_finite::<M::Scalar, _>(&attempt.next).or_else(|| {
             let slope = attempt.last_slope.as_ref()?;
             non_finite::<M::Scalar, _>(slope)
@@ -348,7 +352,7 @@ where
         Err(match bad {
             Some((name, value)) => Failure::NonFinite { time, name, value },
             None => {
-                let index = worst.unwrap_or(0);
+                let index = farthest::<M::Scalar, _>(&attempt.error, &units).unwrap_or(0);
                 Failure::StepUnderflow {
                     time,
                     step,
@@ -362,7 +366,7 @@ where
     /// Moves to the end of a good step, or to the event that ends the run.
     fn advance<O: Observer<X>>(
         &mut self,
-        attempt: &Attempt<X>,
+        attempt: &mut Attempt<X, S::Stages>,
         arrival: f64,
         observer: &mut O,
     ) -> Result<Option<Located<X>>, Failure> {
@@ -370,7 +374,9 @@ where
         let (mut time, mut state) = (arrival, attempt.next);
         let mut ending = None;
         if O::DENSE || !events.is_empty() {
-            let mut dense = self.settings.method.dense(attempt).until(arrival);
+            let Problem { model, input, .. } = self.problem;
+            let dense = self.settings.method.dense(*model, *input, attempt);
+            let mut dense = dense.until(arrival);
             ending = search(events, &dense, &state, |event| observer.event(event))?;
             if let Some(event) = &ending {
                 (time, state) = (event.time, event.state);

@@ -88,10 +88,31 @@ fn name<M: StochasticModel>(index: usize) -> &'static str {
     M::Noise::NAMES.get(index).copied().unwrap_or("")
 }
 
-/// 1 for each channel that `active` says is on, 0 for the others.
-fn mask<M: StochasticModel>(mut active: impl FnMut(&'static str) -> bool) -> M::Noise {
+/// The channels for whose name `active` is true, one a bit; 64 channels at most, or it does not compile.
+fn numbers<M: StochasticModel>(mut active: impl FnMut(&'static str) -> bool) -> u64 {
+    const { assert!(M::Noise::LEN <= 64, "at most 64 channels") };
+    (0..M::Noise::LEN)
+        .filter(|&index| active(name::<M>(index)))
+        .fold(0, |on, index| on | bit(index))
+}
+
+/// The bit of channel `index`, which is below 64.
+#[inline(always)]
+pub(crate) fn bit(index: usize) -> u64 {
+    1_u64.wrapping_shl(index as u32)
+}
+
+/// Whether channel `index` is one of `on`.
+#[inline(always)]
+fn is_on(on: u64, index: usize) -> bool {
+    on & bit(index) != 0
+}
+
+/// 1 for each channel of `on`, 0 for the others.
+#[inline(always)]
+fn mask<M: StochasticModel>(on: u64) -> M::Noise {
     M::Noise::from_fn(|index| {
-        if active(name::<M>(index)) {
+        if is_on(on, index) {
             M::Scalar::ONE
         } else {
             M::Scalar::ZERO
@@ -116,20 +137,19 @@ impl<'m, M: StochasticModel> AdditiveChannels<'m, M> {
     /// # Errors
     ///
     /// [`NoiseError::NotAdditive`] if the column of such a channel may depend on the state.
-    pub fn new(
-        model: &'m M,
-        mut active: impl FnMut(&'static str) -> bool,
-    ) -> Result<Self, NoiseError> {
+    pub fn new(model: &'m M, active: impl FnMut(&'static str) -> bool) -> Result<Self, NoiseError> {
+        Self::numbered(model, numbers::<M>(active))
+    }
+
+    /// The same for the channels `on`, one a bit.
+    pub(crate) fn numbered(model: &'m M, on: u64) -> Result<Self, NoiseError> {
         for index in 0..M::Noise::LEN {
             let (channel, class) = (name::<M>(index), M::noise_class(index));
-            if active(channel) && class != NoiseClass::Constant {
+            if is_on(on, index) && class != NoiseClass::Constant {
                 return Err(NoiseError::NotAdditive { channel, class });
             }
         }
-        Ok(Self {
-            model,
-            mask: mask::<M>(active),
-        })
+        Ok(Self::masked(model, on))
     }
 }
 
@@ -146,27 +166,37 @@ impl<'m, M: DifferentiableNoise> CommutativeChannels<'m, M> {
     /// # Errors
     ///
     /// [`NoiseError::NotCommuting`] if the columns of two such channels do not commute.
-    pub fn new(
-        model: &'m M,
-        mut active: impl FnMut(&'static str) -> bool,
-    ) -> Result<Self, NoiseError> {
+    pub fn new(model: &'m M, active: impl FnMut(&'static str) -> bool) -> Result<Self, NoiseError> {
+        Self::numbered(model, numbers::<M>(active))
+    }
+
+    /// The same for the channels `on`, one a bit.
+    pub(crate) fn numbered(model: &'m M, on: u64) -> Result<Self, NoiseError> {
         // A column commutes with itself.
         let pairs = (0..M::Noise::LEN).flat_map(|j| (0..j).map(move |k| (k, j)));
         for (k, j) in pairs {
             let (first, second) = (name::<M>(k), name::<M>(j));
-            if active(first) && active(second) && !M::noise_commutes(k, j) {
+            if is_on(on, k) && is_on(on, j) && !M::noise_commutes(k, j) {
                 return Err(NoiseError::NotCommuting { first, second });
             }
         }
-        Ok(Self {
-            model,
-            mask: mask::<M>(active),
-        })
+        Ok(Self::masked(model, on))
     }
 }
 
 macro_rules! masked {
     ($name:ident, $bound:ident) => {
+        impl<'m, M: $bound> $name<'m, M> {
+            /// `model` with the channels `on`, one a bit, which are known to be admitted.
+            #[inline(always)]
+            pub(crate) fn masked(model: &'m M, on: u64) -> Self {
+                Self {
+                    model,
+                    mask: mask::<M>(on),
+                }
+            }
+        }
+
         impl<M: $bound> Model for $name<'_, M> {
             type Scalar = M::Scalar;
             type State = M::State;

@@ -58,31 +58,55 @@ impl Controller {
     }
 }
 
-/// Root mean square of the error in units of the tolerances, and the component that is farthest out, of equal ones the
-/// first.
-///
-/// The unit of a component is `absolute` + `relative` times its greater value at the two ends.
-pub(crate) fn error_norm<R, X>(
-    error: &X,
-    ends: [&X; 2],
-    relative: f64,
-    absolute: &X,
-) -> (f64, Option<usize>)
+/// What a component's error is measured in: `absolute` + `relative` times its greater value at the two ends.
+#[inline]
+pub(crate) fn units<R, X>(ends: [&X; 2], relative: f64, absolute: &X) -> X
 where
     R: Real + Into<f64>,
     X: Vector<R>,
 {
-    let (mut sum, mut worst, mut farthest) = (0.0, None, 0.0);
-    for index in 0..X::LEN {
-        let at = |x: &X| x.get(index).map_or(f64::NAN, Into::into);
-        let [first, last] = ends.map(|x| at(x).abs());
-        let part = at(error) / (at(absolute) + relative * first.max(last));
+    let relative = R::from_f64(relative);
+    let [first, last] = ends;
+    first
+        .zip_with(*last, |a, b| {
+            let (a, b) = (a.abs(), b.abs());
+            if a.into() > b.into() { a } else { b }
+        })
+        .zip_with(*absolute, |greater, absolute| absolute + relative * greater)
+}
+
+/// Root mean square of the error in `units`.
+#[inline]
+pub(crate) fn error_norm<R, X>(error: &X, units: &X) -> f64
+where
+    R: Real + Into<f64>,
+    X: Vector<R>,
+{
+    let mut sum = 0.0;
+    error.zip_with(*units, |error, unit| {
+        let part: f64 = (error / unit).into();
         sum += part * part;
-        if worst.is_none() || part.abs() > farthest {
-            (worst, farthest) = (Some(index), part.abs());
+        error
+    });
+    Real::sqrt(sum / X::LEN as f64)
+}
+
+/// The component whose error in `units` is greatest, of equal ones the first.
+#[cold]
+pub(crate) fn farthest<R, X>(error: &X, units: &X) -> Option<usize>
+where
+    R: Real + Into<f64>,
+    X: Vector<R>,
+{
+    let (mut worst, mut greatest) = (None, 0.0);
+    for index in 0..X::LEN {
+        let part = error.get(index).zip(units.get(index));
+        let part: f64 = part.map_or(f64::NAN, |(error, unit)| (error / unit).abs().into());
+        if worst.is_none() || part > greatest {
+            (worst, greatest) = (Some(index), part);
         }
     }
-    (Real::sqrt(sum / X::LEN as f64), worst)
+    worst
 }
 
 /// A first step, by Hairer, Nørsett and Wanner's rule: an explicit Euler step shows how fast the slope changes.
@@ -101,7 +125,8 @@ where
     I: InputSource<M>,
 {
     let x = start.state;
-    let norm = |v: &M::State| error_norm::<M::Scalar, _>(v, [&x, &x], relative, absolute).0;
+    let units = units::<M::Scalar, _>([&x, &x], relative, absolute);
+    let norm = |v: &M::State| error_norm::<M::Scalar, _>(v, &units);
     let (size, speed) = (norm(&x), norm(slope));
     let quotient = 0.01 * size / speed;
     // A norm that overflows leaves no quotient.

@@ -1,27 +1,41 @@
 //! The state between the ends of a step.
 
+use core::array::from_fn;
+
 use ahv_core::{Real, Vector};
 
-/// The state over one step as a polynomial in time.
+/// Most coefficients of a polynomial: of degree 7.
+const MOST_COEFFICIENTS: usize = 8;
+
+/// The state over one step as a polynomial in time, of degree 7 at most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dense<X> {
     start: f64,
     step: f64,
     end: f64,
-    coefficients: [X; 5],
+    /// The first `count` are the polynomial's.
+    coefficients: [X; MOST_COEFFICIENTS],
+    count: usize,
 }
 
-impl<X> Dense<X> {
-    /// The polynomial Σ `coefficients[i]` θⁱ with θ = (time − `start`)/`step`.
-    pub const fn new(start: f64, step: f64, coefficients: [X; 5]) -> Self {
+impl<X: Copy> Dense<X> {
+    /// The polynomial Σ `coefficients[i]` θⁱ with θ = (time − `start`)/`step`; 1 to 8 coefficients, or it does not compile.
+    #[inline]
+    pub fn new<const N: usize>(start: f64, step: f64, coefficients: [X; N]) -> Self {
+        const { assert!(N > 0 && N <= MOST_COEFFICIENTS, "1 to 8 coefficients") };
+        let mut places = coefficients.into_iter();
+        let last = coefficients[N - 1];
         Self {
             start,
             step,
             end: start + step,
-            coefficients,
+            coefficients: from_fn(|_| places.next().unwrap_or(last)),
+            count: N,
         }
     }
+}
 
+impl<X> Dense<X> {
     /// Where the step begins, in s.
     pub const fn start(&self) -> f64 {
         self.start
@@ -48,6 +62,7 @@ impl<X> Dense<X> {
         let part = R::from_f64((time - self.start) / self.step);
         self.coefficients
             .iter()
+            .take(self.count)
             .rev()
             .fold(X::splat(R::ZERO), |sum, &coefficient| {
                 coefficient.zip_with(sum, |c, s| c + part * s)

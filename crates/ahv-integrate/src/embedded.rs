@@ -3,8 +3,10 @@
 use ahv_core::{Model, Real, Vector};
 
 use crate::dense::{add_scaled, weighted};
-use crate::method::STAGES;
 use crate::{Attempt, Dense, InputSource, Method, Start};
+
+/// Number of stages.
+const STAGES: usize = 7;
 
 /// Coefficients of an explicit pair of seven stages whose last stage is the first of the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -203,6 +205,8 @@ impl EmbeddedPair for Tsit5 {
 impl<P: EmbeddedPair, M: Model> Method<M> for P {
     const ERROR_ORDER: u8 = 5;
 
+    type Stages = [M::State; STAGES];
+
     #[inline]
     fn attempt<I: InputSource<M>>(
         &self,
@@ -210,7 +214,7 @@ impl<P: EmbeddedPair, M: Model> Method<M> for P {
         input: &I,
         start: &Start<M::State>,
         step: f64,
-    ) -> Attempt<M::State> {
+    ) -> Attempt<M::State, Self::Stages> {
         let tableau = const { &P::TABLEAU };
         let h = M::Scalar::from_f64(step);
         let x = start.state;
@@ -239,7 +243,12 @@ impl<P: EmbeddedPair, M: Model> Method<M> for P {
     }
 
     #[inline]
-    fn dense(&self, attempt: &Attempt<M::State>) -> Dense<M::State> {
+    fn dense<I: InputSource<M>>(
+        &self,
+        _: &M,
+        _: &I,
+        attempt: &mut Attempt<M::State, Self::Stages>,
+    ) -> Dense<M::State> {
         let tableau = const { &P::TABLEAU };
         let h = M::Scalar::from_f64(attempt.step);
         let mut coefficients = [M::State::splat(M::Scalar::ZERO); 5];

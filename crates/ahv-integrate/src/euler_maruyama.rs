@@ -12,7 +12,7 @@ use crate::error::{accept, step_size};
 /// (Kloeden and Platen 1992, section 10.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoEulerMaruyama {
-    dt: f64,
+    pub(crate) dt: f64,
 }
 
 impl ItoEulerMaruyama {

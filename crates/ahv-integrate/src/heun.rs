@@ -14,7 +14,7 @@ use crate::error::{accept, step_size};
 /// without noise (Rümelin 1982; Kloeden and Platen 1992).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StratonovichHeun {
-    dt: f64,
+    pub(crate) dt: f64,
 }
 
 impl StratonovichHeun {
@@ -51,7 +51,7 @@ impl StratonovichHeun {
 /// without noise (Rümelin 1982; Kloeden and Platen 1992).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoHeun {
-    dt: f64,
+    pub(crate) dt: f64,
 }
 
 impl ItoHeun {

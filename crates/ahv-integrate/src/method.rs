@@ -5,9 +5,6 @@ use ahv_core::{Model, Real, Vector};
 use crate::error::{accept, step_size};
 use crate::{Constant, Dense, InputSource, StepError};
 
-/// Greatest number of stages.
-pub(crate) const STAGES: usize = 7;
-
 /// Where a step starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start<X> {
@@ -19,9 +16,9 @@ pub struct Start<X> {
     pub slope: Option<X>,
 }
 
-/// A step that is yet to be judged.
+/// A step of a method that keeps `S` for its dense output; the step is not accepted yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Attempt<X> {
+pub struct Attempt<X, S> {
     /// Time in s at its start.
     pub time: f64,
     /// Its length in s.
@@ -36,14 +33,19 @@ pub struct Attempt<X> {
     pub last_slope: Option<X>,
     /// Estimate of the local error.
     pub error: X,
-    /// What the dense output is made of.
-    pub(crate) stages: [X; STAGES],
+    /// What the method keeps for its dense output.
+    pub stages: S,
 }
 
 /// A one-step method with an estimate of its error, for models of type `M`.
+///
+/// [`Adaptive`](crate::Adaptive) and [`Fixed`] run any implementation; the example `own_method` has one.
 pub trait Method<M: Model> {
     /// The power of the step size with which the error estimate falls.
     const ERROR_ORDER: u8;
+
+    /// What the method keeps of a step for its dense output: usually the slopes of its stages.
+    type Stages;
 
     /// A step of size `step`, in s. Whether it is good is for the caller to say; it may be infinite or NaN.
     fn attempt<I: InputSource<M>>(
@@ -52,10 +54,29 @@ pub trait Method<M: Model> {
         input: &I,
         start: &Start<M::State>,
         step: f64,
-    ) -> Attempt<M::State>;
+    ) -> Attempt<M::State, Self::Stages>;
+
+    /// The size of the error estimate; a step is accepted if it is at most 1. `norm` is the size of a vector in units of
+    /// the tolerances. By default that of [`Attempt::error`]; a method with two estimates combines their sizes here.
+    #[inline]
+    fn error_size(
+        &self,
+        attempt: &Attempt<M::State, Self::Stages>,
+        norm: impl Fn(&M::State) -> f64,
+    ) -> f64 {
+        norm(&attempt.error)
+    }
 
     /// The state over the step.
-    fn dense(&self, attempt: &Attempt<M::State>) -> Dense<M::State>;
+    ///
+    /// The method may compute further stages, and store the drift at the end of the step in
+    /// [`Attempt::last_slope`], where the next step starts.
+    fn dense<I: InputSource<M>>(
+        &self,
+        model: &M,
+        input: &I,
+        attempt: &mut Attempt<M::State, Self::Stages>,
+    ) -> Dense<M::State>;
 }
 
 /// A method with a fixed step and a held input; its error estimate goes unused.

@@ -22,7 +22,7 @@ use crate::vector::component;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoMilstein {
-    dt: f64,
+    pub(crate) dt: f64,
 }
 
 impl ItoMilstein {

@@ -4,18 +4,19 @@ use ahv_core::{DifferentiableModel, Real, Vector};
 
 use crate::dense::{add_scaled, weighted};
 use crate::linear::{Elimination, Factors};
-use crate::method::STAGES;
 use crate::{Attempt, Dense, InputSource, Method, Start};
 
+/// Number of stages.
+const STAGES: usize = 6;
 /// Diagonal of the method.
 const GAMMA: f64 = 0.25;
 /// Times of the stages, in steps.
-const C: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
+const C: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
 /// Weights of ∂f/∂t in the stages.
-const D: [f64; 6] = [0.25, -0.1043, 0.1035, -0.0362, 0.0, 0.0];
+const D: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.0362, 0.0, 0.0];
 /// Weights of the stages' solutions in the states of later stages.
-const A: [[f64; 6]; 6] = [
-    [0.0; 6],
+const A: [[f64; STAGES]; STAGES] = [
+    [0.0; STAGES],
     [1.544, 0.0, 0.0, 0.0, 0.0, 0.0],
     [0.9466785280815826, 0.2557011698983284, 0.0, 0.0, 0.0, 0.0],
     [
@@ -44,8 +45,8 @@ const A: [[f64; 6]; 6] = [
     ],
 ];
 /// Weights of the stages' solutions, over the step, on the right-hand sides of later stages.
-const B: [[f64; 6]; 6] = [
-    [0.0; 6],
+const B: [[f64; STAGES]; STAGES] = [
+    [0.0; STAGES],
     [-5.6688, 0.0, 0.0, 0.0, 0.0, 0.0],
     [-2.430093356833875, -0.2063599157091915, 0.0, 0.0, 0.0, 0.0],
     [
@@ -74,7 +75,7 @@ const B: [[f64; 6]; 6] = [
     ],
 ];
 /// Weights of the stages' solutions in the two correction terms of the dense output.
-const DENSE: [[f64; 6]; 2] = [
+const DENSE: [[f64; STAGES]; 2] = [
     [
         10.12623508344586,
         -7.487995877610167,
@@ -113,13 +114,13 @@ pub struct RosenbrockTableau {
     /// The diagonal, γ.
     pub gamma: f64,
     /// Times of the stages, in steps.
-    pub c: [f64; 6],
+    pub c: [f64; STAGES],
     /// Weights of ∂f/∂t in the stages.
-    pub d: [f64; 6],
+    pub d: [f64; STAGES],
     /// Weights of the stages' solutions in the states of later stages.
-    pub a: [[f64; 6]; 6],
+    pub a: [[f64; STAGES]; STAGES],
     /// Weights of the stages' solutions, over the step, on the right-hand sides of later stages.
-    pub b: [[f64; 6]; 6],
+    pub b: [[f64; STAGES]; STAGES],
 }
 
 impl Rodas4 {
@@ -136,6 +137,8 @@ impl Rodas4 {
 impl<M: DifferentiableModel> Method<M> for Rodas4 {
     const ERROR_ORDER: u8 = 4;
 
+    type Stages = [M::State; STAGES];
+
     #[inline]
     fn attempt<I: InputSource<M>>(
         &self,
@@ -143,7 +146,7 @@ impl<M: DifferentiableModel> Method<M> for Rodas4 {
         input: &I,
         start: &Start<M::State>,
         step: f64,
-    ) -> Attempt<M::State> {
+    ) -> Attempt<M::State, Self::Stages> {
         let (x, since) = (start.state, start.time);
         let held = input.at(since, since, &x);
         let (first, by_state, by_input) = model.drift_and_jacobians(&x, &held);
@@ -190,7 +193,12 @@ impl<M: DifferentiableModel> Method<M> for Rodas4 {
     }
 
     #[inline]
-    fn dense(&self, attempt: &Attempt<M::State>) -> Dense<M::State> {
+    fn dense<I: InputSource<M>>(
+        &self,
+        _: &M,
+        _: &I,
+        attempt: &mut Attempt<M::State, Self::Stages>,
+    ) -> Dense<M::State> {
         let [one, two] =
             DENSE.map(|weights| weighted::<M::Scalar, M::State>(&weights, &attempt.stages));
         let difference = attempt.next.zip_with(attempt.state, |b, a| b - a);
@@ -202,7 +210,6 @@ impl<M: DifferentiableModel> Method<M> for Rodas4 {
                 difference.zip_with(one, |d, k| d + k),
                 two.zip_with(one, |l, k| l - k),
                 two.map(|l| -l),
-                M::State::splat(M::Scalar::ZERO),
             ],
         )
     }

@@ -22,7 +22,7 @@ use crate::{ItoHeun, LinearTransition, NoiseError, StepError};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoStrangSplitting<R, const N: usize> {
     half: LinearTransition<R, N>,
-    dt: f64,
+    pub(crate) dt: f64,
 }
 
 impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
@@ -103,7 +103,9 @@ impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
     ///
     /// `normals` are independent standard normal numbers for the two half steps of the coloured noise. `others` steps
     /// the other states over the given time, in s, by any scheme for stochastic or deterministic models: it gets the model
-    /// without the coloured noise's motion. Increments that it uses must be independent of `normals`.
+    /// without the coloured noise's motion. Increments that it uses must be independent of `normals`: a
+    /// [`WienerSource<C>`](crate::WienerSource) uses channels 0 to C − 1 of its member, so that streams of channels C to
+    /// C + 2`N` − 1 give `normals`.
     ///
     /// # Errors
     ///
@@ -122,8 +124,9 @@ impl<R: Real, const N: usize> ItoStrangSplitting<R, N> {
         accept(x, self.coloured_half(model, next, second))
     }
 
-    /// The same with [`ItoHeun`] for the other states: weak order 2 if their noise is additive, else 1. `dw` are the Wiener increments over the step, in s^½, of which those
-    /// that drive coloured noise are not used.
+    /// The same with [`ItoHeun`] for the other states: weak order 2 if their noise is additive, else 1. `dw` are the Wiener
+    /// increments over the step, in s^½, of which those that drive coloured noise are not used. They are independent of
+    /// `normals`, as in [`step`](Self::step).
     ///
     /// # Errors
     ///

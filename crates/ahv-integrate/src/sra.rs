@@ -23,7 +23,7 @@ use crate::{StepError, WienerIntegrals};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoSra1 {
-    dt: f64,
+    pub(crate) dt: f64,
 }
 
 impl ItoSra1 {

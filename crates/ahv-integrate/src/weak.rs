@@ -100,7 +100,7 @@ impl<W> WeakIncrements<W> {
 /// [`StochasticModel::noise_class`] is not `Constant`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ItoDri1 {
-    dt: f64,
+    pub(crate) dt: f64,
 }
 
 impl ItoDri1 {

@@ -7,8 +7,8 @@ use std::cell::Cell;
 
 use ahv_core::{Model, Vector};
 use ahv_integrate::{
-    Adaptive, ComponentLimit, Constant, Crossing, Dense, DormandPrince54, Ending, Event, Located,
-    Method, Observer, Problem, Progress, Rodas4, Tsit5, When,
+    Adaptive, ComponentLimit, Constant, Crossing, Dense, DormandPrince54, DormandPrince853, Ending,
+    Event, Located, Method, Observer, Problem, Progress, Rodas4, Tsit5, When,
 };
 use ahv_models::{dcom, flexible_mode};
 use approx::assert_relative_eq;
@@ -100,6 +100,9 @@ fn errors_and_steps_follow_the_tolerance() {
         follow(DormandPrince54, size)
     });
     check("Tsit5", 5.0, &|size| follow(Tsit5, size));
+    check("DormandPrince853", 8.0, &|size| {
+        follow(DormandPrince853, size)
+    });
     check("Rodas4", 4.0, &|size| follow(Rodas4, size));
 }
 
@@ -149,6 +152,7 @@ fn an_event_is_located_to_a_tenth_of_a_nanosecond() {
     }
     check(DormandPrince54);
     check(Tsit5);
+    check(DormandPrince853);
     check(Rodas4);
 }
 

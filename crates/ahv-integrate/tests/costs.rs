@@ -10,8 +10,8 @@ use ahv_core::{
     NoiseClass, Pattern, StochasticModel, Vector,
 };
 use ahv_integrate::{
-    DormandPrince54, Euler, Exponential, Fixed, Heun, ItoDri1, ItoEulerMaruyama, ItoHeun,
-    ItoMilstein, ItoSra1, Rk4, Rodas4, StepError, StratonovichHeun, Tsit5, WeakIncrements,
+    DormandPrince54, DormandPrince853, Euler, Exponential, Fixed, Heun, ItoDri1, ItoEulerMaruyama,
+    ItoHeun, ItoMilstein, ItoSra1, Rk4, Rodas4, StepError, StratonovichHeun, Tsit5, WeakIncrements,
     WienerIntegrals,
 };
 use common::vector;
@@ -148,6 +148,8 @@ fn a_deterministic_step_costs_what_is_documented() {
     assert_eq!(five, drifts(7));
     let five = cost(|m, x| Fixed::new(Tsit5, 0.1).step(m, x, &NO_INPUT));
     assert_eq!(five, drifts(7));
+    let eight = cost(|m, x| Fixed::new(DormandPrince853, 0.1).step(m, x, &NO_INPUT));
+    assert_eq!(eight, drifts(12));
     let exponential = cost(|m, x| Exponential::<0>::new(0.1, []).step(m, x, &NO_INPUT));
     assert_eq!(exponential, drifts(4));
     let stiff = cost(|m, x| Fixed::new(Rodas4, 0.1).step(m, x, &NO_INPUT));

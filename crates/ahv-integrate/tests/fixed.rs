@@ -6,7 +6,7 @@ mod common;
 mod order;
 
 use ahv_core::Model;
-use ahv_integrate::{DormandPrince54, Euler, Fixed, Heun, Rk4, StepError, Tsit5};
+use ahv_integrate::{DormandPrince54, DormandPrince853, Euler, Fixed, Heun, Rk4, StepError, Tsit5};
 use approx::assert_relative_eq;
 use common::vector;
 use order::observed_order;
@@ -88,6 +88,9 @@ fn the_orders_are_those_of_the_methods() {
     });
     assert_order(5.0, [64, 96, 128, 192, 256, 384], |dt, x| {
         Fixed::new(Tsit5, dt).step(&Logistic, x, &RATE)
+    });
+    assert_order(8.0, [8, 10, 12, 16, 20, 24], |dt, x| {
+        Fixed::new(DormandPrince853, dt).step(&Logistic, x, &RATE)
     });
 }
 

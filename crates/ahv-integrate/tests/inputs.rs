@@ -5,8 +5,9 @@ mod common;
 
 use ahv_core::{Bounds, DifferentiableModel, Model, Outside, Pattern};
 use ahv_integrate::{
-    Adaptive, Constant, Dense, DormandPrince54, Ending, Feedback, Held, InputSource, Interpolated,
-    Method, Observer, Problem, Progress, Rodas4, Saturated, Tsit5, saturate,
+    Adaptive, Constant, Dense, DormandPrince54, DormandPrince853, Ending, Feedback, Held,
+    InputSource, Interpolated, Method, Observer, Problem, Progress, Rodas4, Saturated, Tsit5,
+    saturate,
 };
 use approx::assert_relative_eq;
 use common::vector;
@@ -116,6 +117,7 @@ fn assert_all(input: &impl InputSource<Tank>, end: f64, exact: State<f64>) {
     for progress in [
         run(DormandPrince54, input, end),
         run(Tsit5, input, end),
+        run(DormandPrince853, input, end),
         run(Rodas4, input, end),
     ] {
         assert_relative_eq!(progress.state.level, exact.level, epsilon = 2e-9);
@@ -161,6 +163,7 @@ fn a_callback_closes_the_loop() {
     for progress in [
         run(DormandPrince54, &feedback, 1.5),
         run(Tsit5, &feedback, 1.5),
+        run(DormandPrince853, &feedback, 1.5),
     ] {
         assert_relative_eq!(progress.state.level, level, epsilon = 1e-9);
         assert_relative_eq!(progress.state.sum, sum, epsilon = 1e-9);

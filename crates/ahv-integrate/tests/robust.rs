@@ -9,8 +9,8 @@ mod random;
 
 use ahv_core::{Bounds, DifferentiableModel, Model, Outside, Vector, first_outside};
 use ahv_integrate::{
-    Adaptive, Constant, Crossing, DormandPrince54, Ending, Event, Failure, Leaving, Method,
-    Observer, Problem, Progress, Rodas4, Tsit5, When, Within,
+    Adaptive, Constant, Crossing, DormandPrince54, DormandPrince853, Ending, Event, Failure,
+    Leaving, Method, Observer, Problem, Progress, Rodas4, Tsit5, When, Within,
 };
 use ahv_models::{com, com_rigid, dcom, sdcom};
 use blow_up::{BlowUp, ONE, State};
@@ -250,6 +250,7 @@ where
     for [ended, failed] in [
         property(model, states, inputs, DormandPrince54, 1),
         property(model, states, inputs, Tsit5, 2),
+        property(model, states, inputs, DormandPrince853, 2),
         property(model, states, inputs, Rodas4, 3),
     ] {
         assert!(

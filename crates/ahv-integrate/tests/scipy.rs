@@ -5,8 +5,8 @@
 mod order;
 
 use ahv_integrate::{
-    Adaptive, Constant, DormandPrince54, Euler, Exponential, Fixed, FlexibleMode, Heun, Method,
-    Problem, Progress, Rk4, Rodas4, StepError, TimeGrid, Tsit5,
+    Adaptive, Constant, DormandPrince54, DormandPrince853, Euler, Exponential, Fixed, FlexibleMode,
+    Heun, Method, Problem, Progress, Rk4, Rodas4, StepError, TimeGrid, Tsit5,
 };
 use ahv_models::dcom;
 use order::observed_order;
@@ -116,7 +116,7 @@ const fn stepper(
     }
 }
 
-const STEPPERS: [Stepper; 7] = [
+const STEPPERS: [Stepper; 8] = [
     stepper(
         "Euler",
         1.0,
@@ -151,6 +151,13 @@ const STEPPERS: [Stepper; 7] = [
         |f, dt, x| Fixed::new(Tsit5, dt).step(&f.model, x, &INPUT),
         [34, 128],
         Some(4000),
+    ),
+    stepper(
+        "DormandPrince853",
+        8.0,
+        |f, dt, x| Fixed::new(DormandPrince853, dt).step(&f.model, x, &INPUT),
+        [12, 72],
+        Some(500),
     ),
     stepper(
         "Rodas4",
@@ -233,6 +240,10 @@ fn tight_tolerances_meet_scipy() {
                 fly_adaptively(&flight, DormandPrince54, 1e-14),
             ),
             ("Tsit5", fly_adaptively(&flight, Tsit5, 1e-14)),
+            (
+                "DormandPrince853",
+                fly_adaptively(&flight, DormandPrince853, 1e-14),
+            ),
             ("Rodas4", fly_adaptively(&flight, Rodas4, 1e-14)),
         ] {
             let error = distance(&end, &flight.explicit);

@@ -1,7 +1,9 @@
 //! The coefficients against the order conditions, so that no digit is mistyped.
 #![forbid(unsafe_code)]
 
-use ahv_integrate::{DormandPrince54, EmbeddedPair, Rodas4, RosenbrockTableau, Tableau, Tsit5};
+use ahv_integrate::{
+    DormandPrince54, DormandPrince853, EmbeddedPair, Rodas4, RosenbrockTableau, Tableau, Tsit5,
+};
 
 type Matrix<const N: usize> = [[f64; N]; N];
 
@@ -17,34 +19,48 @@ fn product<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|i| a[i] * b[i])
 }
 
-/// Elementary weights of the rooted trees up to order 5, without the weights b, and their densities.
-fn trees<const N: usize>(a: &Matrix<N>) -> Vec<(usize, [f64; N], f64)> {
-    let one = [1.0; N];
-    let c = times(a, &one);
-    let c2 = product(&c, &c);
-    let c3 = product(&c2, &c);
-    let ac = times(a, &c);
-    let ac2 = times(a, &c2);
-    let aac = times(a, &ac);
-    vec![
-        (1, one, 1.0),
-        (2, c, 2.0),
-        (3, c2, 3.0),
-        (3, ac, 6.0),
-        (4, c3, 4.0),
-        (4, product(&c, &ac), 8.0),
-        (4, ac2, 12.0),
-        (4, aac, 24.0),
-        (5, product(&c3, &c), 5.0),
-        (5, product(&c2, &ac), 10.0),
-        (5, product(&ac, &ac), 20.0),
-        (5, product(&c, &ac2), 15.0),
-        (5, product(&c, &aac), 30.0),
-        (5, times(a, &c3), 20.0),
-        (5, times(a, &product(&c, &ac)), 40.0),
-        (5, times(a, &ac2), 60.0),
-        (5, times(a, &aac), 120.0),
-    ]
+/// Order of a rooted tree, its elementary weights without the weights b, and its density.
+type Tree<const N: usize> = (usize, [f64; N], f64);
+
+/// All rooted trees up to this order.
+fn trees<const N: usize>(a: &Matrix<N>, most: usize) -> Vec<Tree<N>> {
+    let mut trees = Vec::new();
+    for order in 1..=most {
+        let mut grown = Vec::new();
+        grow(a, &trees, order, &mut grown, (order - 1, [1.0; N], 1.0), 0);
+        trees.extend(grown);
+    }
+    trees
+}
+
+/// Puts subtrees on a root until none of its nodes is left; subtrees stand in the order of the list, so that none comes twice.
+fn grow<const N: usize>(
+    a: &Matrix<N>,
+    subtrees: &[Tree<N>],
+    order: usize,
+    grown: &mut Vec<Tree<N>>,
+    (left, weights, density): (usize, [f64; N], f64),
+    from: usize,
+) {
+    if left == 0 {
+        grown.push((order, weights, order as f64 * density));
+    }
+    for (index, (nodes, own, dense)) in subtrees.iter().enumerate().skip(from) {
+        if *nodes <= left {
+            let weights = product(&weights, &times(a, own));
+            let rest = (left - nodes, weights, density * dense);
+            grow(a, subtrees, order, grown, rest, index);
+        }
+    }
+}
+
+#[test]
+fn there_are_so_many_rooted_trees() {
+    let trees = trees(&[[0.0]], 8);
+    let counts: Vec<usize> = (1..=8)
+        .map(|order| trees.iter().filter(|tree| tree.0 == order).count())
+        .collect();
+    assert_eq!(counts, [1, 1, 2, 4, 9, 20, 48, 115]);
 }
 
 fn assert_near(value: f64, exact: f64, tolerance: f64, what: &str) {
@@ -63,7 +79,7 @@ fn check(name: &str, tableau: &Tableau) {
     assert_eq!(b[6], 0.0, "{name}: the last stage is the next first");
     let lower: [f64; 7] = std::array::from_fn(|i| b[i] - error[i]);
     let mut lower_fails = 0.0_f64;
-    for (order, weights, density) in trees(a) {
+    for (order, weights, density) in trees(a, 5) {
         let what = format!("{name}, order {order}, density {density}");
         assert_near(dot(&b, &weights), 1.0 / density, 2e-14, &what);
         if order <= 4 {
@@ -102,6 +118,71 @@ fn the_dense_output_ends_where_the_step_does() {
             assert_eq!(*p, if stage == 0 { 1.0 } else { 0.0 }, "slope at the start");
         }
     }
+}
+
+#[test]
+fn the_method_of_order_8_meets_the_order_conditions() {
+    let a = DormandPrince853::A;
+    let b = a[12];
+    for (c, row) in DormandPrince853::C.iter().zip(&a) {
+        assert_near(row.iter().sum(), *c, 1e-14, "time of a stage");
+    }
+    let [fifth, third] = DormandPrince853::ERRORS;
+    let mut misses = [0.0_f64; 3];
+    for (order, weights, density) in trees(&a, 9) {
+        let [weight, fifth, third] = [
+            dot(&b, &weights) - 1.0 / density,
+            (0..12).map(|i| fifth[i] * weights[i]).sum(),
+            (0..12).map(|i| third[i] * weights[i]).sum(),
+        ];
+        let what = format!("order {order}, density {density}");
+        if order <= 8 {
+            assert_near(weight, 0.0, 1e-13, &what);
+        }
+        if order <= 5 {
+            assert_near(fifth, 0.0, 2e-14, &what);
+        }
+        if order <= 3 {
+            assert_near(third, 0.0, 2e-14, &what);
+        }
+        for (miss, (value, above)) in misses.iter_mut().zip([(weight, 9), (fifth, 6), (third, 4)]) {
+            if order == above {
+                *miss = miss.max(value.abs());
+            }
+        }
+    }
+    assert!(misses[0] > 1e-7, "order 9 would be met too: {misses:?}");
+    assert!(misses[1] > 1e-5 && misses[2] > 1e-4, "blind: {misses:?}");
+}
+
+#[test]
+fn the_dense_output_of_order_7_meets_the_order_conditions() {
+    let a = DormandPrince853::A;
+    let b = a[12];
+    let unit = |stage| std::array::from_fn::<f64, 16, _>(|i| if i == stage { 1.0 } else { 0.0 });
+    let (first, last) = (unit(0), unit(12));
+    let mut miss = 0.0_f64;
+    for theta in [0.1, 0.3, 0.5, 0.77, 1.0_f64] {
+        let rest = 1.0 - theta;
+        let [t1, t2, t3, t4] = [(2, 2), (3, 2), (3, 3), (4, 3)]
+            .map(|(ahead, behind)| theta.powi(ahead) * rest.powi(behind));
+        let [d1, d2, d3, d4] = DormandPrince853::DENSE;
+        let at_theta: [f64; 16] = std::array::from_fn(|i| {
+            let slopes = theta * rest * (rest * first[i] - theta * last[i]);
+            let cubic = theta * theta * (3.0 - 2.0 * theta) * b[i] + slopes;
+            cubic + t1 * d1[i] + t2 * d2[i] + t3 * d3[i] + t4 * d4[i]
+        });
+        for (order, weights, density) in trees(&a, 8) {
+            let exact = theta.powi(order as i32) / density;
+            let found = dot(&at_theta, &weights);
+            if order <= 7 {
+                assert_near(found, exact, 1e-13, &format!("order {order} at {theta}"));
+            } else {
+                miss = miss.max((found - exact).abs());
+            }
+        }
+    }
+    assert!(miss > 1e-7, "order 8 would be met too: {miss:e}");
 }
 
 /// (I/γ − C)⁻¹, row by row: Γ of the method, lower triangular.

@@ -3,6 +3,21 @@
 //! A [`Figure`] is a grid of [`Panel`]s, a panel has two [`Axis`] and [`Layer`]s that are drawn one over the other.
 //! Colours are Okabe and Ito's; dashes and shapes tell layers apart in a printout in grey. Text stays text. What is not
 //! finite is refused, and never drawn. A panel without data says so beside others that have some.
+//!
+//! ```
+//! use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel};
+//!
+//! let decay = (0..=50).map(|k| f64::from(k) / 10.0).map(|t| (t, (-t).exp()));
+//! let panel = Panel {
+//!     title: String::new(),
+//!     x: Axis::linear("time [s]"),
+//!     y: Axis::log("amplitude [1]"),
+//!     layers: vec![Layer::new("decay", Colour::Blue, Mark::Line(decay.collect()))],
+//! };
+//! let svg = Figure::new("A decay", 1, vec![panel]).svg()?;
+//! assert!(svg.starts_with("<svg") && svg.contains("amplitude [1]"));
+//! # Ok::<(), ahv_plot::PlotError>(())
+//! ```
 #![forbid(unsafe_code)]
 
 mod clip;

@@ -5,6 +5,24 @@
 //! ([`ahv_core::Table`]). It names no section, parameter or model: those are data. Its reference is the reader of the
 //! generator (`generator/ahv_generator/table.py`): both report the same rules at the same places, which a test of
 //! random changes compares (`tests/tests/rules.rs`). Start with [`check`].
+//!
+//! ```
+//! use ahv_table::{Family, Text, check};
+//!
+//! let families = [Family::of::<ahv_models::dcom::Model<f64>>()];
+//! let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../generator/tables/dcom.toml");
+//! let own = std::fs::read_to_string(path)?;
+//!
+//! // A table that the models were made of has no fault; its first set is its own.
+//! let checked = check(&Text::parse(own.clone())?, &families).map_err(|faults| faults[0].to_string())?;
+//! assert_eq!(checked.sets[0].name, "section5.1");
+//!
+//! // A mass below 0 breaks a rule of the models. The fault has the place of the number.
+//! let wrong = Text::parse(own.replacen("m = { value = ", "m = { value = -", 1))?;
+//! let faults = check(&wrong, &families).expect_err("a mass is positive");
+//! assert_eq!(faults[0].path, ["vehicle", "m", "value"]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 mod entries;

@@ -2,9 +2,9 @@
 
 use ahv_core::{Bounds, DifferentiableModel, Outside, Real, Vector};
 use ahv_integrate::{
-    Adaptive, ComponentLimit, Constant, Crossing, Dense, DormandPrince54, Event, Feedback, Held,
-    InputSource, Interpolated, Leaving, Located, Method, Observer, Problem, Progress, Rodas4,
-    Saturated, Tsit5, When, Within,
+    Adaptive, ComponentLimit, Constant, Crossing, Dense, DormandPrince54, DormandPrince853, Event,
+    Feedback, Held, InputSource, Interpolated, Leaving, Located, Method, Observer, Problem,
+    Progress, Rodas4, Saturated, Tsit5, When, Within,
 };
 use core::hint::black_box;
 
@@ -73,18 +73,16 @@ fn methods<M, I, B>(
     I: InputSource<M>,
     B: Vector<Bounds>,
 {
-    let names = [
-        "Adaptive<DormandPrince54>",
-        "Adaptive<Tsit5>",
-        "Adaptive<Rodas4>",
-    ];
-    at.visit(visitor, names[0], source, |x, step| {
+    at.visit(visitor, "Adaptive<DormandPrince54>", source, |x, step| {
         run(at, input, states, DormandPrince54, x, step)
     });
-    at.visit(visitor, names[1], source, |x, step| {
+    at.visit(visitor, "Adaptive<Tsit5>", source, |x, step| {
         run(at, input, states, Tsit5, x, step)
     });
-    at.visit(visitor, names[2], source, |x, step| {
+    at.visit(visitor, "Adaptive<DormandPrince853>", source, |x, step| {
+        run(at, input, states, DormandPrince853, x, step)
+    });
+    at.visit(visitor, "Adaptive<Rodas4>", source, |x, step| {
         run(at, input, states, Rodas4, x, step)
     });
 }

@@ -2,8 +2,8 @@
 
 use ahv_core::DifferentiableModel;
 use ahv_integrate::{
-    DormandPrince54, Euler, Exponential, Fixed, FlexibleMode, Heun, Progress, Rk4, Rodas4,
-    TimeGrid, Tsit5,
+    DormandPrince54, DormandPrince853, Euler, Exponential, Fixed, FlexibleMode, Heun, Progress,
+    Rk4, Rodas4, TimeGrid, Tsit5,
 };
 use core::hint::black_box;
 
@@ -26,6 +26,9 @@ pub(crate) fn all<M: DifferentiableModel>(at: &Place<M>, visitor: &mut dyn Visit
     });
     at.visit(visitor, "Fixed<Tsit5>", "", |x, _| {
         Fixed::new(Tsit5, dt).step(m, x, u).is_ok()
+    });
+    at.visit(visitor, "Fixed<DormandPrince853>", "", |x, _| {
+        Fixed::new(DormandPrince853, dt).step(m, x, u).is_ok()
     });
     at.visit(visitor, "Fixed<Rodas4>", "", |x, _| {
         Fixed::new(Rodas4, dt).step(m, x, u).is_ok()

@@ -118,7 +118,7 @@ pub fn all(visitor: &mut dyn Visitor<f64>) {
 }
 
 /// Visits every stepper with a fixed step on every model.
-pub fn fixed<R: Real>(visitor: &mut dyn Visitor<R>) {
+pub fn fixed<R: Real + PartialEq>(visitor: &mut dyn Visitor<R>) {
     macro_rules! calm {
         ($($module:ident),+) => {$(
             let place = place!($module, visitor);

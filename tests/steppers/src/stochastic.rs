@@ -5,9 +5,9 @@ use ahv_core::{
     StochasticModel, Vector,
 };
 use ahv_integrate::{
-    AdditiveChannels, BrownianPath, CommutativeChannels, ItoDri1, ItoEulerMaruyama, ItoHeun,
-    ItoMilstein, ItoSra1, ItoStrangSplitting, KeyedNormals, LinearTransition, NormalLanes,
-    NormalSource, NormalStream, RandNormals, Rk4, StratonovichHeun, WeakIncrements,
+    AdditiveChannels, BrownianPath, Checked, CommutativeChannels, ItoDri1, ItoEulerMaruyama,
+    ItoHeun, ItoMilstein, ItoSra1, ItoStrangSplitting, KeyedNormals, LinearTransition, NormalLanes,
+    NormalSource, NormalStream, RandNormals, Rk4, SdeScheme, StratonovichHeun, WeakIncrements,
     WienerIntegrals, WienerSource, bisect,
 };
 use ahv_models::flexible_mode;
@@ -24,7 +24,7 @@ const LEVEL: u32 = 10;
 /// Every scheme that any noise admits, and those that ask for more on the channels that have it. `N` channels.
 pub(crate) fn all<M, const N: usize>(at: &Place<M>, visitor: &mut dyn Visitor<M::Scalar>)
 where
-    M: DifferentiableNoise,
+    M: DifferentiableNoise<Scalar: PartialEq>,
 {
     let (m, u, dt) = (&at.model, &at.u, step_size());
     let (seed, member) = black_box((1, 2));
@@ -83,6 +83,31 @@ where
     });
     milstein(at, visitor);
     sra1(at, visitor);
+    by_normals::<M, ItoEulerMaruyama>(at, "ItoEulerMaruyama", visitor);
+    by_normals::<M, ItoHeun>(at, "ItoHeun", visitor);
+    by_normals::<M, StratonovichHeun>(at, "StratonovichHeun", visitor);
+    by_normals::<M, ItoDri1>(at, "ItoDri1", visitor);
+    by_normals::<M, Checked<ItoMilstein>>(at, "Checked<ItoMilstein>", visitor);
+    by_normals::<M, Checked<ItoSra1>>(at, "Checked<ItoSra1>", visitor);
+}
+
+/// A scheme by its trait, on models whose noise it admits.
+fn by_normals<M, S>(at: &Place<M>, name: &'static str, visitor: &mut dyn Visitor<M::Scalar>)
+where
+    M: DifferentiableNoise,
+    S: SdeScheme<M>,
+{
+    let (m, u) = (&at.model, &at.u);
+    let (seed, member) = black_box((11, 12));
+    let Ok(scheme) = S::set_up(m, &at.x, u, step_size()) else {
+        return;
+    };
+    at.visit(visitor, name, "SdeScheme", |x, step| {
+        let normal = |index: usize| NormalStream::new(seed, member, index as u64).normal(step);
+        let used = (0..scheme.normals()).filter(|&index| scheme.uses(m, x, u, index));
+        black_box(used.count());
+        scheme.step_from_normals(m, x, u, normal).is_ok()
+    });
 }
 
 /// On channels that commute.
@@ -173,7 +198,7 @@ pub(crate) fn splitting<M, const N: usize, const C: usize>(
     at: &Place<M>,
     visitor: &mut dyn Visitor<M::Scalar>,
 ) where
-    M: ColouredNoise + ItoCorrected,
+    M: ColouredNoise<Scalar: PartialEq> + ItoCorrected,
 {
     let (m, u, dt) = (&at.model, &at.u, step_size());
     let (seed, member) = black_box((5, 6));
@@ -196,6 +221,16 @@ pub(crate) fn splitting<M, const N: usize, const C: usize>(
             })
         },
     );
+    let number = |index: usize| NormalStream::new(seed, member, index as u64);
+    at.visit(visitor, "ItoStrangSplitting", "SdeScheme", |x, step| {
+        split.as_ref().is_ok_and(|split| {
+            let used =
+                (0..SdeScheme::<M>::normals(split)).filter(|&index| split.uses(m, x, u, index));
+            black_box(used.count());
+            let normal = |index: usize| number(index).normal(step);
+            split.step_from_normals(m, x, u, normal).is_ok()
+        })
+    });
     at.visit(
         visitor,
         "ItoStrangSplitting<Rk4>",

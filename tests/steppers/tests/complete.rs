@@ -12,7 +12,8 @@ const SOURCES: [&str; 4] = [
 
 /// Exports of `ahv-integrate` that do nothing by themselves: what is handed over, what comes back, and traits that a type
 /// above fulfils.
-const PASSIVE: [&str; 14] = [
+const PASSIVE: [&str; 16] = [
+    "Admits",
     "Anywhere",
     "Attempt",
     "EmbeddedPair",
@@ -22,6 +23,7 @@ const PASSIVE: [&str; 14] = [
     "NoiseError",
     "Precision",
     "RosenbrockTableau",
+    "Sense",
     "Start",
     "StepError",
     "Tableau",

@@ -155,7 +155,11 @@ impl<R: Real> Visitor<R> for Lane<R> {
     }
 }
 
-fn fly<R: Real>(seed: u64, pick: fn([f64; WIDTH]) -> R, show: fn(R) -> f64) -> Vec<Flight> {
+fn fly<R: Real + PartialEq>(
+    seed: u64,
+    pick: fn([f64; WIDTH]) -> R,
+    show: fn(R) -> f64,
+) -> Vec<Flight> {
     let mut lane = Lane {
         random: Random(seed),
         pick,

@@ -32,7 +32,7 @@ impl Mode {
 }
 
 /// A scalar that members are flown with.
-pub(super) trait Arithmetic: Real {
+pub(super) trait Arithmetic: Real + PartialEq {
     fn of(value: f64) -> Self;
     fn value(self) -> f64;
 }

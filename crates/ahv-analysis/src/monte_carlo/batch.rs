@@ -205,7 +205,7 @@ where
     F: GeneratedModel,
     A: Member<F>,
     E: Member<F>,
-    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
+    S: Steps<A::Model> + Steps<<Called<E> as Member<F>>::Model>,
 {
     type Output = ();
 
@@ -270,7 +270,7 @@ fn step<F, S, A>(
 where
     F: GeneratedModel,
     A: Member<F>,
-    S: Steps<F, A::Model>,
+    S: Steps<A::Model>,
 {
     let pick = |numbers: &Packed| A::Scalar::of(numbers.0[lane]);
     let (model, u) = (A::model(model, lane), F::map_input(u, pick));
@@ -312,7 +312,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
     where
         A: Member<F>,
         E: Member<F>,
-        S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
+        S: Steps<A::Model> + Steps<<Called<E> as Member<F>>::Model>,
     {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         match pulp::x86::V3::try_new() {
@@ -359,7 +359,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
         next: &mut F::StateOf<Packed>,
     ) where
         E: Member<F>,
-        S: Steps<F, E::Model>,
+        S: Steps<E::Model>,
     {
         for lane in 0..LANES {
             let mut finite = true;

@@ -5,7 +5,10 @@ use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 
 use ahv_core::{Bounds, CountVisitor, GeneratedModel, Outlined, Real, Straight, Vector};
-use ahv_integrate::ItoStrangSplitting;
+use ahv_integrate::{
+    Checked, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, ItoStrangSplitting,
+    SdeScheme, StratonovichHeun,
+};
 
 use super::MonteCarloError;
 use super::arithmetic::{Called, In, Mode};
@@ -13,9 +16,7 @@ use super::batch::{Batch, Dynamics, Member, Noise, Watch};
 use super::experiment::{Control, Experiment, Seen};
 use super::lanes::{LANES, Packed, packed};
 use super::rare::{Goal, Particle, Passed, pass};
-use super::scheme::{
-    EulerMaruyama, Heun, MOST_NORMALS, OneByOne, Scheme, Splitting, Stepping, Steps, column,
-};
+use super::scheme::{MOST_NORMALS, OneByOne, Scheme, Steps};
 
 /// Steps between two looks at whether to stop.
 const PATIENCE: u64 = 1024;
@@ -60,11 +61,12 @@ impl<F: GeneratedModel> Experiment<F> {
         match self.scheme {
             Scheme::Splitting => F::coloured(BySplitting(self))
                 .unwrap_or(Err(MonteCarloError::NoColouredNoise { model: F::NAME })),
-            Scheme::Heun => side_by_side::<F, Heun>(self),
-            Scheme::EulerMaruyama => side_by_side::<F, EulerMaruyama>(self),
-            Scheme::StratonovichHeun | Scheme::Milstein | Scheme::Sra1 | Scheme::Dri1 => {
-                BatchPropagator::<F, OneByOne, Called<In<f64>>, In<f64>>::new(self)
-            }
+            Scheme::Heun => side_by_side::<F, ItoHeun>(self),
+            Scheme::EulerMaruyama => side_by_side::<F, ItoEulerMaruyama>(self),
+            Scheme::StratonovichHeun => one_by_one::<F, StratonovichHeun>(self),
+            Scheme::Milstein => one_by_one::<F, Checked<ItoMilstein>>(self),
+            Scheme::Sra1 => one_by_one::<F, Checked<ItoSra1>>(self),
+            Scheme::Dri1 => one_by_one::<F, ItoDri1>(self),
         }
     }
 }
@@ -75,9 +77,23 @@ fn side_by_side<F, S>(
 ) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError>
 where
     F: GeneratedModel,
-    S: Steps<F, F::With<Straight<f64>>> + Steps<F, Outlined<F::With<f64>>> + 'static,
+    S: SdeScheme<F::With<Packed>>
+        + Steps<F::With<Straight<f64>>>
+        + Steps<Outlined<F::With<f64>>>
+        + 'static,
 {
-    BatchPropagator::<F, S, In<Straight<f64>>, In<f64>>::new(experiment)
+    BatchPropagator::<F, S, In<Straight<f64>>, In<f64>>::new::<S>(experiment)
+}
+
+/// Members one after the other, all schemes in one loop.
+fn one_by_one<F, S>(
+    experiment: &Experiment<F>,
+) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError>
+where
+    F: GeneratedModel,
+    S: SdeScheme<F::With<Packed>> + Into<OneByOne>,
+{
+    BatchPropagator::<F, OneByOne, Called<In<f64>>, In<f64>>::new::<S>(experiment)
 }
 
 impl Scheme {
@@ -100,8 +116,6 @@ impl<F: GeneratedModel> CountVisitor for Splits<'_, F> {
     fn visit<const N: usize>(self) -> bool {
         let (x, u) = generic_point::<F>();
         let model = F::with_parameters(self.0);
-        let first = |numbers: &Packed| numbers.0[0];
-        let (x, u) = (F::map_state(&x, first), F::map_input(&u, first));
         ItoStrangSplitting::<f64, N>::new(&model, &x, &u, 1.0).is_ok()
     }
 }
@@ -113,25 +127,33 @@ impl<'e, F: GeneratedModel> CountVisitor for BySplitting<'e, F> {
     type Output = Result<Box<dyn Propagator<F> + 'e>, MonteCarloError>;
 
     fn visit<const N: usize>(self) -> Self::Output {
-        side_by_side::<F, Splitting<N>>(self.0)
+        side_by_side::<F, ItoStrangSplitting<Packed, N>>(self.0)
     }
 }
+
+/// Sets up a scheme of the form `S` for the parameters of a batch.
+type SetUp<F, S> = fn(
+    &Experiment<F>,
+    &[<F as GeneratedModel>::ParametersOf<f64>; LANES],
+) -> Result<Dynamics<F, S>, MonteCarloError>;
 
 /// A propagator with a scheme `S`, fast in the arithmetic `A` and again in `E` where that has no result.
 struct BatchPropagator<'e, F: GeneratedModel, S, A, E> {
     experiment: &'e Experiment<F>,
     /// The model of the experiment's own parameters.
     shared: Dynamics<F, S>,
+    /// Makes those of dispersed parameters.
+    dynamics: SetUp<F, S>,
     /// Normal numbers that a step uses.
     used: [bool; MOST_NORMALS],
     arithmetic: PhantomData<fn() -> (A, E)>,
 }
 
-/// State and input in the validity box, where no noise is 0 by chance.
-fn generic_point<F: GeneratedModel>() -> (F::StateOf<Packed>, F::InputOf<Packed>) {
+/// A state and an input in the validity box at which no noise is 0 by chance: what a scheme is set up at.
+pub fn generic_point<F: GeneratedModel>() -> (F::StateOf<f64>, F::InputOf<f64>) {
     let between = |bounds: &Bounds| {
         let value = bounds.min + FRACTION * (bounds.max - bounds.min);
-        Packed::splat(if value.is_finite() { value } else { FRACTION })
+        if value.is_finite() { value } else { FRACTION }
     };
     (
         F::map_state(&F::STATE_BOUNDS, between),
@@ -139,19 +161,32 @@ fn generic_point<F: GeneratedModel>() -> (F::StateOf<Packed>, F::InputOf<Packed>
     )
 }
 
-/// The model of these parameters, and the scheme for it.
-fn dynamics<F: GeneratedModel, S: Stepping<F>>(
+/// The same for members side by side.
+fn generic_members<F: GeneratedModel>() -> (F::StateOf<Packed>, F::InputOf<Packed>) {
+    let (x, u) = generic_point::<F>();
+    let splat = |&value: &f64| Packed::splat(value);
+    (F::map_state(&x, splat), F::map_input(&u, splat))
+}
+
+/// The scheme `S` for a model of this experiment.
+fn set_up<F: GeneratedModel, S: SdeScheme<F::With<Packed>>>(
+    experiment: &Experiment<F>,
+    model: &F::With<Packed>,
+) -> Result<S, MonteCarloError> {
+    let (x, u) = generic_members::<F>();
+    S::set_up(model, &x, &u, experiment.dt).map_err(|reason| MonteCarloError::Scheme {
+        scheme: experiment.scheme.name(),
+        reason,
+    })
+}
+
+/// The model of these parameters, and the scheme for it, which is `Own` in the form `S`.
+fn dynamics<F: GeneratedModel, Own: SdeScheme<F::With<Packed>> + Into<S>, S>(
     experiment: &Experiment<F>,
     parameters: &[F::ParametersOf<f64>; LANES],
 ) -> Result<Dynamics<F, S>, MonteCarloError> {
     let model = packed::<F>(parameters);
-    let (x, u) = generic_point::<F>();
-    let scheme = S::new(experiment.scheme, &model, &x, &u, experiment.dt).map_err(|reason| {
-        MonteCarloError::Scheme {
-            scheme: experiment.scheme.name(),
-            reason,
-        }
-    })?;
+    let scheme = set_up::<F, Own>(experiment, &model)?.into();
     Ok(Dynamics { model, scheme })
 }
 
@@ -160,34 +195,34 @@ where
     F: GeneratedModel,
     A: Member<F> + 'e,
     E: Member<F> + 'e,
-    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model> + 'e,
+    S: Steps<A::Model> + Steps<<Called<E> as Member<F>>::Model> + 'e,
 {
+    /// With the scheme `Own`.
     #[allow(
         clippy::new_ret_no_self,
         reason = "callers need no more than the trait"
     )]
-    fn new(experiment: &'e Experiment<F>) -> Result<Box<dyn Propagator<F> + 'e>, MonteCarloError> {
+    fn new<Own>(
+        experiment: &'e Experiment<F>,
+    ) -> Result<Box<dyn Propagator<F> + 'e>, MonteCarloError>
+    where
+        Own: SdeScheme<F::With<Packed>> + Into<S>,
+    {
         if !(experiment.dt > 0.0 && experiment.dt.is_finite()) {
             return Err(MonteCarloError::StepSize(experiment.dt));
         }
-        let shared: Dynamics<F, S> = dynamics(experiment, &[experiment.parameters; LANES])?;
-        let normals = F::NoiseOf::<Packed>::LEN + shared.scheme.extra();
+        let shared = dynamics::<F, Own, S>(experiment, &[experiment.parameters; LANES])?;
+        let scheme: Own = set_up(experiment, &shared.model)?;
+        let normals = scheme.normals();
         if normals > MOST_NORMALS {
             return Err(MonteCarloError::Normals { normals });
         }
-        let (x, u) = generic_point::<F>();
-        let mut used = [false; MOST_NORMALS];
-        let (wiener, extra) = used.split_at_mut(F::NoiseOf::<Packed>::LEN);
-        for (channel, used) in wiener.iter_mut().enumerate() {
-            *used = S::uses(&shared.model, &column(&shared.model, &x, &u, channel));
-        }
-        extra
-            .iter_mut()
-            .take(shared.scheme.extra())
-            .for_each(|used| *used = true);
+        let (x, u) = generic_members::<F>();
+        let used = std::array::from_fn(|index| scheme.uses(&shared.model, &x, &u, index));
         Ok(Box::new(Self {
             experiment,
             shared,
+            dynamics: dynamics::<F, Own, S>,
             used,
             arithmetic: PhantomData,
         }))
@@ -215,7 +250,7 @@ where
                         *parameters = experiment.parameters;
                     }
                 }
-                Cow::Owned(dynamics(experiment, &parameters)?)
+                Cow::Owned((self.dynamics)(experiment, &parameters)?)
             }
         };
         let mut x = F::StateOf::splat(Packed::ZERO);
@@ -248,7 +283,7 @@ where
     F: GeneratedModel,
     A: Member<F>,
     E: Member<F>,
-    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
+    S: Steps<A::Model> + Steps<<Called<E> as Member<F>>::Model>,
 {
     fn fly(
         &self,

@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use ahv_core::Model;
 
-use super::{Controller, error_norm, first_step, power};
+use super::{Controller, error_norm, farthest, first_step, power, units};
 use crate::{Constant, Feedback, InputSource, Start};
 
 #[path = "../../tests/common/mod.rs"]
@@ -125,7 +125,9 @@ fn the_norm_counts_every_component_in_units_of_its_tolerance() {
             b: parts[1],
             c: 0.25 * parts[2],
         };
-        error_norm::<f64, _>(&error, [&first, &last], 0.1, &absolute)
+        let units = units::<f64, _>([&first, &last], 0.1, &absolute);
+        let size = error_norm::<f64, _>(&error, &units);
+        (size, farthest::<f64, _>(&error, &units))
     };
     for (parts, worst) in [
         ([2.0, 1.0, -0.5], 0),

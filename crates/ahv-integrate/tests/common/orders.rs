@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use ahv_integrate::{
-    Constant, DormandPrince54, Euler, Exponential, Fixed, FlexibleMode, Heun, Method, Rk4, Rodas4,
-    Start, StepError, Tsit5,
+    Constant, DormandPrince54, DormandPrince853, Euler, Exponential, Fixed, FlexibleMode, Heun,
+    Method, Rk4, Rodas4, Start, StepError, Tsit5,
 };
 use ahv_models::{dcom, flexible_mode};
 
@@ -22,8 +22,8 @@ struct Stepper {
     flight: fn(f64, &mut Flight) -> Result<(), StepError<f64>>,
     /// Least numbers of steps on the two problems: where the error begins to fall as a power.
     from: [u32; 2],
-    /// Order of the dense output, and its error within one step of a size in s.
-    dense: Option<(u8, DenseError)>,
+    /// Order of the dense output, the longest step in s on which it is measured, and its error within one step of a size in s.
+    dense: Option<(u8, f64, DenseError)>,
 }
 
 pub(crate) const FORCE: flexible_mode::Input<f64> = flexible_mode::Input { force: 300.0 };
@@ -63,7 +63,7 @@ pub(crate) fn flight() -> dcom::Model<f64> {
     dcom::Model::new(&dcom::NOMINAL)
 }
 
-fn steppers() -> [Stepper; 8] {
+fn steppers() -> [Stepper; 9] {
     [
         Stepper {
             name: "`Euler`",
@@ -95,7 +95,7 @@ fn steppers() -> [Stepper; 8] {
             mode: |dt, x| Fixed::new(DormandPrince54, dt).step(&mode(), x, &FORCE),
             flight: |dt, x| Fixed::new(DormandPrince54, dt).step(&flight(), x, &FLIGHT_INPUT),
             from: [32, 40],
-            dense: Some((4, |dt| dense_error(&DormandPrince54, dt))),
+            dense: Some((4, 0.0125, |dt| dense_error(&DormandPrince54, dt))),
         },
         Stepper {
             name: "`Tsit5`",
@@ -103,7 +103,15 @@ fn steppers() -> [Stepper; 8] {
             mode: |dt, x| Fixed::new(Tsit5, dt).step(&mode(), x, &FORCE),
             flight: |dt, x| Fixed::new(Tsit5, dt).step(&flight(), x, &FLIGHT_INPUT),
             from: [48, 40],
-            dense: Some((4, |dt| dense_error(&Tsit5, dt))),
+            dense: Some((4, 0.0125, |dt| dense_error(&Tsit5, dt))),
+        },
+        Stepper {
+            name: "`DormandPrince853`",
+            order: 8,
+            mode: |dt, x| Fixed::new(DormandPrince853, dt).step(&mode(), x, &FORCE),
+            flight: |dt, x| Fixed::new(DormandPrince853, dt).step(&flight(), x, &FLIGHT_INPUT),
+            from: [6, 12],
+            dense: Some((7, 0.1, |dt| dense_error(&DormandPrince853, dt))),
         },
         Stepper {
             name: "`Rodas4`",
@@ -111,7 +119,7 @@ fn steppers() -> [Stepper; 8] {
             mode: |dt, x| Fixed::new(Rodas4, dt).step(&mode(), x, &FORCE),
             flight: |dt, x| Fixed::new(Rodas4, dt).step(&flight(), x, &FLIGHT_INPUT),
             from: [48, 64],
-            dense: Some((3, |dt| dense_error(&Rodas4, dt))),
+            dense: Some((3, 0.0125, |dt| dense_error(&Rodas4, dt))),
         },
         Stepper {
             name: "`Exponential`",
@@ -212,8 +220,9 @@ fn dense_error(method: &impl Method<flexible_mode::Model<f64>>, dt: f64) -> f64 
         state: MODE_START,
         slope: None,
     };
-    let attempt = method.attempt(&model, &Constant(FORCE), &start, dt);
-    let dense = method.dense(&attempt);
+    let input = Constant(FORCE);
+    let mut attempt = method.attempt(&model, &input, &start, dt);
+    let dense = method.dense(&model, &input, &mut attempt);
     [0.2, 0.35, 0.5, 0.65, 0.8]
         .map(|part| mode_distance(&dense.at(part * dt), &exact_mode(part * dt)))
         .into_iter()
@@ -249,8 +258,8 @@ pub(crate) fn observed() -> Vec<Observed> {
             flight_distance(&end, &reference)
         };
         let exactly = mode_error(stepper.from[0]) < 1e-13;
-        let within = |error: fn(f64) -> f64| {
-            let points = steps_from(8).map(|parts| 0.1 / f64::from(parts));
+        let within = |longest: f64, error: DenseError| {
+            let points = steps_from(8).map(|parts| 8.0 * longest / f64::from(parts));
             // The error of one step falls one power faster than that of a run.
             observed_order(&points.map(|dt| (dt, error(dt)))) - 1.0
         };
@@ -259,7 +268,9 @@ pub(crate) fn observed() -> Vec<Observed> {
             order: stepper.order,
             mode: (!exactly).then(|| order(stepper.from[0], MODE_END, mode_error)),
             flight: order(stepper.from[1], FLIGHT_END, flight_error),
-            dense: stepper.dense.map(|(order, error)| (order, within(error))),
+            dense: stepper
+                .dense
+                .map(|(order, longest, error)| (order, within(longest, error))),
         }
     };
     steppers().into_iter().map(measure).collect()

@@ -119,7 +119,7 @@ where
     F: GeneratedModel,
     A: Member<F>,
     E: Member<F>,
-    S: Steps<F, A::Model> + Steps<F, <Called<E> as Member<F>>::Model>,
+    S: Steps<A::Model> + Steps<<Called<E> as Member<F>>::Model>,
 {
     let mut until = [0; LANES];
     for (until, particle) in until.iter_mut().zip(flying) {
