@@ -49,7 +49,7 @@ pub(crate) fn run() -> Result<(), String> {
     heading("Regenerate there");
     print!("{}", generate(&scratch)?);
 
-    heading("Build ahv");
+    heading("Build ahv: the longest step the first time");
     let ahv = build()?;
 
     heading("Fly both models with both values");

@@ -20,6 +20,8 @@ const CONSUMER: [&str; 4] = [
     "--target-dir",
     "target/consumer",
 ];
+/// Steps whose time is told at the end.
+const LISTED: usize = 10;
 /// Python of the benchmark, from the generator's folder.
 const PEERS: &str = "../bench/peers";
 /// A microcontroller: no standard library, no heap.
@@ -97,12 +99,13 @@ const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
 /// Runs the steps in turn, up to the first that fails.
 pub(crate) fn run() -> Result<(), String> {
-    let (mut passed, mut skipped) = (0, Vec::new());
-    for (name, step) in STEPS {
-        println!("== {name}");
+    let (mut passed, mut skipped, mut times) = (0, Vec::new(), Vec::new());
+    for (number, (name, step)) in (1..).zip(STEPS) {
+        println!("== {name} ({number} of {})", STEPS.len());
         let start = Instant::now();
         let outcome = step();
         let seconds = start.elapsed().as_secs_f64();
+        times.push((name, seconds));
         match outcome {
             Ok(Outcome::Passed) => {
                 passed += 1;
@@ -119,11 +122,21 @@ pub(crate) fn run() -> Result<(), String> {
             }
         }
     }
+    print!("{}", slowest(times));
     for line in &skipped {
         println!("{line}");
     }
     println!("{passed} passed, 0 failed");
     Ok(())
+}
+
+/// The slowest steps, the slowest first, and what all took.
+fn slowest(mut times: Vec<(&str, f64)>) -> String {
+    let all: f64 = times.iter().map(|it| it.1).sum();
+    times.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let lines = times.iter().take(LISTED);
+    let lines = lines.map(|(name, seconds)| format!("  {seconds:>7.1} s  {name}\n"));
+    format!("the slowest of {all:.0} s:\n{}", lines.collect::<String>())
 }
 
 fn cargo(command: &[&str], place: &[&str], rest: &[&str]) -> Result<Outcome, String> {
