@@ -3,22 +3,23 @@
 mod flight;
 mod grid;
 mod report;
+mod steppers;
 
 use std::path::PathBuf;
 
+use ahv_analysis::monte_carlo::Scheme;
 use ahv_core::{GeneratedModel, Vector};
-use ahv_integrate::{Euler, Heun, ItoEulerMaruyama, ItoHeun, NormalStream, Rk4, StratonovichHeun};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 
 use crate::failure::Failure;
 use crate::flight_condition::FlightCondition;
+use crate::names;
 use crate::registry::without_noise;
 use crate::vehicle::{Vehicle, VehicleArgs};
 use flight::Flight;
 use grid::grid;
-
-/// Run of the noise: a single simulation is the first member of its ensemble.
-const MEMBER: u64 = 0;
+use steppers::Calm;
 
 /// Simulates a model with held inputs and writes the trajectory as CSV.
 ///
@@ -42,9 +43,9 @@ pub(crate) struct Arguments {
     #[arg(long)]
     stochastic: bool,
 
-    /// Stepper [default: rk4 without noise, euler-maruyama with it]
-    #[arg(long, value_enum)]
-    scheme: Option<Scheme>,
+    /// Stepper [default: rk4 without noise, euler-maruyama with it]. With noise, the schemes of `ahv montecarlo`; heun is one of both
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(scheme_names()))]
+    scheme: Option<String>,
 
     /// Seed of the noise: the same seed gives the same numbers on every machine
     #[arg(long, default_value_t = 0)]
@@ -67,28 +68,36 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// A stepper with a fixed step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Scheme {
-    /// Euler, of order 1; without noise
-    Euler,
-    /// Heun, of order 2 without noise; with noise in the sense of Ito, of order 1
-    Heun,
-    /// The classical method of Runge and Kutta, of order 4; without noise
-    Rk4,
-    /// Euler-Maruyama, Ito; with noise
-    EulerMaruyama,
-    /// Heun in the sense of Stratonovich; with noise
-    StratonovichHeun,
+/// The steppers without noise, then the schemes of `ahv montecarlo`, each name once.
+fn scheme_names() -> Vec<&'static str> {
+    let mut names = Vec::from(Calm::ALL.map(Calm::name));
+    let noisy = Scheme::ALL.map(Scheme::name);
+    names.extend(
+        noisy
+            .iter()
+            .filter(|name| !Calm::ALL.map(Calm::name).contains(name)),
+    );
+    names
 }
 
-/// What to say of a scheme that is not for such a flight.
-fn other_scheme(scheme: Scheme, flight: &str, known: &str) -> Failure {
-    let name = scheme.to_possible_value();
-    let name = name.as_ref().map_or("this", |it| it.get_name());
-    Failure::Request(format!(
-        "--scheme: {name} is not for a flight {flight}; {known} are"
-    ))
+/// The one of `all` that is called `name`.
+///
+/// # Errors
+///
+/// [`Failure::Request`] with those that are for such a flight.
+fn scheme<T: Copy, const N: usize>(
+    asked: &str,
+    all: [T; N],
+    name: fn(T) -> &'static str,
+    flight: &str,
+) -> Result<T, Failure> {
+    let found = all.into_iter().find(|&it| name(it) == asked);
+    found.ok_or_else(|| {
+        Failure::Request(format!(
+            "--scheme: {asked} is not for a flight {flight}; {} are",
+            names::list(&all.map(name))
+        ))
+    })
 }
 
 /// Runs the command.
@@ -107,32 +116,23 @@ pub(crate) fn run<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failur
 
 /// Without noise.
 fn calm<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let scheme = arguments.scheme.unwrap_or(Scheme::Rk4);
-    if matches!(scheme, Scheme::EulerMaruyama | Scheme::StratonovichHeun) {
-        return Err(other_scheme(scheme, "without noise", "rk4, heun and euler"));
-    }
+    let asked = arguments.scheme.as_deref().unwrap_or(Calm::Rk4.name());
+    let stepper = scheme(asked, Calm::ALL, Calm::name, "without noise")?;
     let grid = grid(arguments.t_end, arguments.dt)?;
     let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
     let flight = Flight {
         vehicle: &vehicle,
         seed: None,
     };
-    flight.simulate(arguments, &grid, |x, u, _, dt| match scheme {
-        Scheme::Euler => Euler::new(dt).step(&vehicle.model, x, u),
-        Scheme::Heun => Heun::new(dt).step(&vehicle.model, x, u),
-        _ => Rk4::new(dt).step(&vehicle.model, x, u),
-    })
+    flight.simulate(arguments, &grid, stepper.advance(&vehicle)?)
 }
 
 /// With noise.
 fn noisy<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
-    let scheme = arguments.scheme.unwrap_or(Scheme::EulerMaruyama);
-    if matches!(scheme, Scheme::Rk4 | Scheme::Euler) {
-        let known = "euler-maruyama, heun and stratonovich-heun";
-        return Err(other_scheme(scheme, "with noise", known));
-    }
-    let channels = <M::Noise as Vector<f64>>::LEN;
-    if channels == 0 {
+    let asked = arguments.scheme.as_deref();
+    let asked = asked.unwrap_or(Scheme::EulerMaruyama.name());
+    let scheme = scheme(asked, Scheme::ALL, Scheme::name, "with noise")?;
+    if <M::Noise as Vector<f64>>::LEN == 0 {
         return Err(Failure::Request(format!(
             "--stochastic: {}",
             without_noise::<M>()
@@ -140,22 +140,10 @@ fn noisy<M: GeneratedModel>(arguments: &Arguments) -> Result<(), Failure> {
     }
     let grid = grid(arguments.t_end, arguments.dt)?;
     let vehicle: Vehicle<M> = arguments.vehicle.vehicle()?;
-    let normals =
-        (0..channels as u64).map(|channel| NormalStream::new(arguments.seed, MEMBER, channel));
-    let mut normals: Vec<NormalStream> = normals.collect();
     let flight = Flight {
         vehicle: &vehicle,
         seed: Some(arguments.seed),
     };
-    flight.simulate(arguments, &grid, |x, u, step, dt| {
-        let mut normals = normals
-            .iter_mut()
-            .map(|normals| normals.normal(step.into()));
-        let dw = M::Noise::from_fn(|_| normals.next().unwrap_or(0.0) * dt.sqrt());
-        match scheme {
-            Scheme::Heun => ItoHeun::new(dt).step(&vehicle.model, x, u, &dw),
-            Scheme::StratonovichHeun => StratonovichHeun::new(dt).step(&vehicle.model, x, u, &dw),
-            _ => ItoEulerMaruyama::new(dt).step(&vehicle.model, x, u, &dw),
-        }
-    })
+    let advance = steppers::noisy(scheme, &vehicle, arguments.seed)?;
+    flight.simulate(arguments, &grid, advance)
 }

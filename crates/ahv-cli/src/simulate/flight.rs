@@ -1,10 +1,11 @@
 //! One simulation, for any model.
 
 use ahv_core::{GeneratedModel, Vector, first_outside};
-use ahv_integrate::{self as integrate, StepError, TimeGrid};
+use ahv_integrate::{self as integrate, TimeGrid};
 
 use super::Arguments;
 use super::report::{Departure, Report};
+use super::steppers::Advance;
 
 use crate::assignment::Assignments;
 use crate::csv_file::CsvFile;
@@ -32,7 +33,7 @@ impl<M: GeneratedModel> Flight<'_, M> {
         &self,
         arguments: &Arguments,
         grid: &TimeGrid,
-        mut advance: impl FnMut(&mut M::State, &M::Input, u32, f64) -> Result<(), StepError<f64>>,
+        mut advance: Advance<'_, M>,
     ) -> Result<(), Failure> {
         let vehicle = self.vehicle;
         let (start, u) = self.start(arguments)?;
