@@ -5,6 +5,7 @@
 
 mod flights;
 mod model;
+mod steppers;
 
 use ahv_core::{
     Bounds, GeneratedModel, ModeOfMotion, ModelList, ModelVisitor, Table, TrimProblem, Vector,
@@ -19,7 +20,8 @@ use crate::monte_carlo::{
 };
 use crate::trim::{SteadyState, Trim, TrimError};
 
-pub use flights::{Experiment, Feedback, Point, Seen, Stepper, Stepping};
+pub use flights::{Experiment, Feedback, Point, Seen};
+pub use steppers::{Advance, Calm, StepperError};
 
 /// Names and units of the components of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -198,8 +200,18 @@ pub trait AnyModel: Send + Sync {
     fn default_scheme(&self, p: &[f64]) -> Scheme;
     /// As [`crate::monte_carlo::Feedback::unsteady`].
     fn unsteady(&self, p: &[f64], feedback: &Feedback) -> Option<Unsteady>;
-    /// A step of a single flight after another.
-    fn flight(&self, p: &[f64]) -> Box<dyn Stepping + '_>;
+    /// The steps of a single flight without noise.
+    ///
+    /// # Errors
+    ///
+    /// [`StepperError::FlexibleModes`]
+    fn calm(&self, p: &[f64], stepper: Calm) -> Result<Advance, StepperError>;
+    /// The steps of a single flight with the noise of `seed`: that of member 0 of an ensemble.
+    ///
+    /// # Errors
+    ///
+    /// [`StepperError::NoColouredNoise`], [`StepperError::Noise`]
+    fn noisy(&self, p: &[f64], scheme: Scheme, seed: u64) -> Result<Advance, StepperError>;
     /// As [`crate::monte_carlo::Experiment::run_and_list`]; without a list as [`crate::monte_carlo::Experiment::run`].
     ///
     /// # Errors

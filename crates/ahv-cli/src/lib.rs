@@ -3,6 +3,25 @@
 //! [`run`] is the whole program; an [`ExtraCommand`] adds a command of another crate. Such a command watches its work with
 //! [`progress`], stops in order by [`signals`], leaves files and JSON by [`output`] and [`csv_file`], writes numbers by
 //! [`number`] and fails by [`failure`], as those do that are here.
+//!
+//! ```
+//! use ahv_cli::{ExtraCommand, failure::Failure};
+//!
+//! /// Greets somebody.
+//! #[derive(clap::Args)]
+//! struct Greeting {
+//!     name: String,
+//! }
+//!
+//! fn greet(greeting: &Greeting) -> Result<(), Failure> {
+//!     println!("Hello, {}", greeting.name);
+//!     Ok(())
+//! }
+//!
+//! // A binary with the general commands and this one ends with `ahv_cli::run::<ahv_models::Models>(&commands)`.
+//! let commands = [ExtraCommand::new("greet", greet)];
+//! # assert_eq!(commands.len(), 1);
+//! ```
 #![forbid(unsafe_code)]
 
 mod assignment;

@@ -6,19 +6,18 @@ mod report;
 
 use std::path::PathBuf;
 
-use ahv_analysis::erased::Stepper;
-use ahv_integrate::NormalStream;
-use clap::{Args, ValueEnum};
+use ahv_analysis::erased::Calm;
+use ahv_analysis::monte_carlo::Scheme;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 
 use crate::failure::Failure;
 use crate::flight_condition::FlightCondition;
+use crate::names;
 use crate::registry::needs_noise;
-use crate::vehicle::{Vehicle, VehicleArgs};
+use crate::vehicle::VehicleArgs;
 use flight::Flight;
 use grid::grid;
-
-/// Run of the noise: a single simulation is the first member of its ensemble.
-const MEMBER: u64 = 0;
 
 /// Simulates a model with held inputs and writes the trajectory as CSV.
 ///
@@ -42,9 +41,9 @@ pub(crate) struct Arguments {
     #[arg(long)]
     stochastic: bool,
 
-    /// Stepper [default: rk4 without noise, euler-maruyama with it]
-    #[arg(long, value_enum)]
-    scheme: Option<Scheme>,
+    /// Stepper [default: rk4 without noise, euler-maruyama with it]. With noise, the schemes of `ahv montecarlo`; heun is one of both
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(scheme_names()))]
+    scheme: Option<String>,
 
     /// Seed of the noise: the same seed gives the same numbers on every machine
     #[arg(long, default_value_t = 0)]
@@ -67,28 +66,36 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// A stepper with a fixed step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Scheme {
-    /// Euler, of order 1; without noise
-    Euler,
-    /// Heun, of order 2 without noise; with noise in the sense of Ito, of order 1
-    Heun,
-    /// The classical method of Runge and Kutta, of order 4; without noise
-    Rk4,
-    /// Euler-Maruyama, Ito; with noise
-    EulerMaruyama,
-    /// Heun in the sense of Stratonovich; with noise
-    StratonovichHeun,
+/// The steppers without noise, then the schemes of `ahv montecarlo`, each name once.
+fn scheme_names() -> Vec<&'static str> {
+    let mut names = Vec::from(Calm::ALL.map(Calm::name));
+    let noisy = Scheme::ALL.map(Scheme::name);
+    names.extend(
+        noisy
+            .iter()
+            .filter(|name| !Calm::ALL.map(Calm::name).contains(name)),
+    );
+    names
 }
 
-/// What to say of a scheme that is not for such a flight.
-fn other_scheme(scheme: Scheme, flight: &str, known: &str) -> Failure {
-    let name = scheme.to_possible_value();
-    let name = name.as_ref().map_or("this", |it| it.get_name());
-    Failure::Request(format!(
-        "--scheme: {name} is not for a flight {flight}; {known} are"
-    ))
+/// The one of `all` that is called `name`.
+///
+/// # Errors
+///
+/// [`Failure::Request`] with those that are for such a flight.
+fn scheme<T: Copy, const N: usize>(
+    asked: &str,
+    all: [T; N],
+    name: fn(T) -> &'static str,
+    flight: &str,
+) -> Result<T, Failure> {
+    let found = all.into_iter().find(|&it| name(it) == asked);
+    found.ok_or_else(|| {
+        Failure::Request(format!(
+            "--scheme: {asked} is not for a flight {flight}; {} are",
+            names::list(&all.map(name))
+        ))
+    })
 }
 
 /// Runs the command.
@@ -99,60 +106,24 @@ fn other_scheme(scheme: Scheme, flight: &str, known: &str) -> Failure {
 /// trim or the simulation fails. The output file is then as it was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let vehicle = arguments.vehicle.vehicle()?;
-    if arguments.stochastic || vehicle.model.coloured_states() > 0 {
-        noisy(arguments, &vehicle)
+    let (model, parameters) = (vehicle.model, &vehicle.parameters);
+    let asked = arguments.scheme.as_deref();
+    let noisy = arguments.stochastic || model.coloured_states() > 0;
+    let advance = if noisy {
+        let asked = asked.unwrap_or(Scheme::EulerMaruyama.name());
+        let scheme = scheme(asked, Scheme::ALL, Scheme::name, "with noise")?;
+        needs_noise("--stochastic", model, "")?;
+        model.noisy(parameters, scheme, arguments.seed)
     } else {
-        calm(arguments, &vehicle)
-    }
-}
-
-/// Without noise.
-fn calm(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
-    let scheme = arguments.scheme.unwrap_or(Scheme::Rk4);
-    let stepper = match scheme {
-        Scheme::Euler => Stepper::Euler,
-        Scheme::Heun => Stepper::Heun,
-        Scheme::Rk4 => Stepper::Rk4,
-        Scheme::EulerMaruyama | Scheme::StratonovichHeun => {
-            return Err(other_scheme(scheme, "without noise", "rk4, heun and euler"));
-        }
+        let asked = asked.unwrap_or(Calm::Rk4.name());
+        let stepper = scheme(asked, Calm::ALL, Calm::name, "without noise")?;
+        model.calm(parameters, stepper)
     };
+    let advance = advance.map_err(|error| Failure::Request(format!("--scheme: {error}")))?;
     let grid = grid(arguments.t_end, arguments.dt)?;
     let flight = Flight {
-        vehicle,
-        seed: None,
+        vehicle: &vehicle,
+        seed: noisy.then_some(arguments.seed),
     };
-    let model = vehicle.model.flight(&vehicle.parameters);
-    flight.simulate(arguments, &grid, |x, u, _, dt| {
-        model.step(stepper, dt, x, u, &[])
-    })
-}
-
-/// With noise.
-fn noisy(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
-    let scheme = arguments.scheme.unwrap_or(Scheme::EulerMaruyama);
-    let stepper = match scheme {
-        Scheme::Heun => Stepper::ItoHeun,
-        Scheme::StratonovichHeun => Stepper::StratonovichHeun,
-        Scheme::EulerMaruyama => Stepper::ItoEulerMaruyama,
-        Scheme::Rk4 | Scheme::Euler => {
-            let known = "euler-maruyama, heun and stratonovich-heun";
-            return Err(other_scheme(scheme, "with noise", known));
-        }
-    };
-    needs_noise("--stochastic", vehicle.model, "")?;
-    let grid = grid(arguments.t_end, arguments.dt)?;
-    let channels = 0..vehicle.model.channels() as u64;
-    let normals = channels.map(|channel| NormalStream::new(arguments.seed, MEMBER, channel));
-    let mut normals: Vec<NormalStream> = normals.collect();
-    let flight = Flight {
-        vehicle,
-        seed: Some(arguments.seed),
-    };
-    let model = vehicle.model.flight(&vehicle.parameters);
-    flight.simulate(arguments, &grid, |x, u, step, dt| {
-        let normals = normals.iter_mut().map(|it| it.normal(step.into()));
-        let dw: Vec<f64> = normals.map(|normal| normal * dt.sqrt()).collect();
-        model.step(stepper, dt, x, u, &dw)
-    })
+    flight.simulate(arguments, &grid, advance)
 }

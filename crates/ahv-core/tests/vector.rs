@@ -192,6 +192,5 @@ mod names {
         u: U<T>;
         e: E<T>;
         r: R<U>;
-        columns: COLUMNS<U>;
     }
 }

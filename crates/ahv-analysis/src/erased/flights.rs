@@ -1,7 +1,6 @@
 //! Flights of a model that is not named: what is flown, and what is seen of it.
 
 use ahv_core::{Bounds, GeneratedModel, Vector};
-use ahv_integrate::{Euler, Heun, ItoEulerMaruyama, ItoHeun, Rk4, StepError, StratonovichHeun};
 use nalgebra::DMatrix;
 
 use super::{values, vector};
@@ -138,66 +137,4 @@ pub struct Point {
     pub state: Vec<f64>,
     /// Input.
     pub input: Vec<f64>,
-}
-
-/// A stepper with a fixed step for a single flight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stepper {
-    /// [`Euler`], without noise.
-    Euler,
-    /// [`Heun`], without noise.
-    Heun,
-    /// [`Rk4`], without noise.
-    Rk4,
-    /// [`ItoEulerMaruyama`].
-    ItoEulerMaruyama,
-    /// [`ItoHeun`].
-    ItoHeun,
-    /// [`StratonovichHeun`].
-    StratonovichHeun,
-}
-
-/// A single flight with held inputs, step by step.
-pub trait Stepping {
-    /// Moves `x` by a step of `dt`, in s; `dw` are the increments of the Wiener processes over it, for a stepper with noise.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError`]; `x` then is as it was.
-    fn step(
-        &self,
-        stepper: Stepper,
-        dt: f64,
-        x: &mut Vec<f64>,
-        u: &[f64],
-        dw: &[f64],
-    ) -> Result<(), StepError<f64>>;
-}
-
-/// A model that flies alone.
-pub(super) struct Alone<M>(pub(super) M);
-
-impl<M: GeneratedModel> Stepping for Alone<M> {
-    fn step(
-        &self,
-        stepper: Stepper,
-        dt: f64,
-        state: &mut Vec<f64>,
-        u: &[f64],
-        dw: &[f64],
-    ) -> Result<(), StepError<f64>> {
-        let (model, u, dw) = (&self.0, &vector(u), &vector(dw));
-        let mut x: M::State = vector(state);
-        let x_next = &mut x;
-        match stepper {
-            Stepper::Euler => Euler::new(dt).step(model, x_next, u),
-            Stepper::Heun => Heun::new(dt).step(model, x_next, u),
-            Stepper::Rk4 => Rk4::new(dt).step(model, x_next, u),
-            Stepper::ItoEulerMaruyama => ItoEulerMaruyama::new(dt).step(model, x_next, u, dw),
-            Stepper::ItoHeun => ItoHeun::new(dt).step(model, x_next, u, dw),
-            Stepper::StratonovichHeun => StratonovichHeun::new(dt).step(model, x_next, u, dw),
-        }?;
-        *state = values(&x);
-        Ok(())
-    }
 }

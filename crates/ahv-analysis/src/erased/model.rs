@@ -5,7 +5,8 @@ use std::marker::PhantomData;
 use ahv_core::{Bounds, GeneratedModel, ModeOfMotion, Table, TrimProblem, Vector};
 use nalgebra::DMatrix;
 
-use super::flights::{Alone, Experiment, Feedback, Point, Seen, Stepping};
+use super::flights::{Experiment, Feedback, Point, Seen};
+use super::steppers::{self, Advance, Calm, StepperError};
 use super::{AnyModel, Components, List, ParameterValues, values, vector};
 use crate::covariance::{CovarianceError, Flight, Regulation, Spreading};
 use crate::disperse::{self, Draws, Member, Nominal, Slopes, SolutionError};
@@ -215,8 +216,12 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
         feedback.typed::<M>().unsteady(&model::<M>(p))
     }
 
-    fn flight(&self, p: &[f64]) -> Box<dyn Stepping + '_> {
-        Box::new(Alone(model::<M>(p)))
+    fn calm(&self, p: &[f64], stepper: Calm) -> Result<Advance, StepperError> {
+        stepper.advance(model::<M>(p))
+    }
+
+    fn noisy(&self, p: &[f64], scheme: Scheme, seed: u64) -> Result<Advance, StepperError> {
+        steppers::noisy(scheme, model::<M>(p), seed)
     }
 
     fn run_and_list(

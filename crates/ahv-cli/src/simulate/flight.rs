@@ -1,6 +1,7 @@
 //! One simulation, for any model.
 
-use ahv_integrate::{self as integrate, StepError, TimeGrid};
+use ahv_analysis::erased::Advance;
+use ahv_integrate::{self as integrate, TimeGrid};
 
 use super::Arguments;
 use super::report::{Departure, Report};
@@ -30,7 +31,7 @@ impl Flight<'_> {
         &self,
         arguments: &Arguments,
         grid: &TimeGrid,
-        mut advance: impl FnMut(&mut Vec<f64>, &[f64], u32, f64) -> Result<(), StepError<f64>>,
+        mut advance: Advance,
     ) -> Result<(), Failure> {
         let vehicle = self.vehicle;
         let (start, u) = self.start(arguments)?;

@@ -176,3 +176,119 @@ fn permissions_are_kept_and_links_are_not_followed() {
         .mode();
     assert_eq!(mode & 0o777, 0o640);
 }
+
+/// The last row of a flight of DCOM with a ringing mode, by a stepper.
+fn ringing(bench: &Bench, scheme: &str) -> Vec<f64> {
+    let flight = ["--model", "dcom", "--t-end", "0.099", "--dt", "0.002"];
+    let more = ["--initial", "eta_1=0.5,eta_2=-0.3", "--scheme", scheme];
+    bench.succeed(&with(&flight, &more));
+    bench.rows().pop().expect("rows")
+}
+
+#[test]
+fn every_stepper_flies_without_noise_at_its_order() {
+    let bench = Bench::new();
+    let exact = ringing(&bench, "dormand-prince853");
+    assert_eq!(exact[0], 0.099);
+    for (scheme, bound) in [
+        ("euler", 0.3),
+        ("heun", 0.01),
+        ("rk4", 1e-5),
+        ("rodas4", 1e-4),
+        ("exponential", 1e-5),
+        ("dormand-prince54", 1e-7),
+        ("tsit5", 1e-7),
+    ] {
+        let found = ringing(&bench, scheme);
+        // eta_1, whose size is 0.5.
+        let error = (found[6] - exact[6]).abs();
+        println!("{scheme}: {error:.1e}");
+        assert!(error < bound && error > 0.0, "{scheme}: {error:e}");
+    }
+    let rigid = ["--model", "com_rigid", "--t-end", "0.1", "--dt", "0.01"];
+    bench.fail(
+        &with(&rigid, &["--scheme", "exponential"]),
+        2,
+        &["exponential needs one to three flexible modes", "com_rigid"],
+    );
+}
+
+#[test]
+fn every_scheme_flies_with_noise_that_it_admits() {
+    let bench = Bench::new();
+    let mode = ["--model", "flexible_mode", "--t-end", "0.1", "--dt", "0.01"];
+    for (flight, schemes) in [
+        (
+            &SDCOM[..],
+            &[
+                "splitting",
+                "heun",
+                "euler-maruyama",
+                "stratonovich-heun",
+                "dri1",
+            ][..],
+        ),
+        (
+            &mode,
+            &["heun", "euler-maruyama", "milstein", "sra1", "dri1"],
+        ),
+    ] {
+        let mut texts = Vec::new();
+        for scheme in schemes {
+            bench.succeed(&with(flight, &["--scheme", scheme]));
+            let text = bench.text();
+            bench.succeed(&with(flight, &["--scheme", scheme]));
+            assert_eq!(bench.text(), text, "{scheme}");
+            texts.push(text);
+        }
+        // Milstein's scheme is Euler and Maruyama's where noise is additive; the others differ.
+        texts.sort();
+        texts.dedup();
+        let same = usize::from(schemes.contains(&"milstein"));
+        assert_eq!(texts.len() + same, schemes.len());
+    }
+    for (flight, scheme, reason) in [
+        (&SDCOM[..], "milstein", "w_gamma and w_alpha do not commute"),
+        (
+            &SDCOM,
+            "sra1",
+            "needs additive noise, but what w_gamma does",
+        ),
+        (&mode, "splitting", "xi drives it and eta_dot too"),
+    ] {
+        let told = format!("--scheme: {scheme} is not for this flight");
+        bench.fail(&with(flight, &["--scheme", scheme]), 2, &[&told, reason]);
+    }
+    let noisy = with(&DCOM, &["--stochastic", "--scheme", "splitting"]);
+    bench.fail(
+        &noisy,
+        2,
+        &["splitting needs coloured noise, which dcom does not have"],
+    );
+}
+
+#[test]
+fn a_scheme_for_other_flights_is_refused_with_those_for_this_one() {
+    let bench = Bench::new();
+    bench.fail(
+        &with(&SDCOM, &["--scheme", "tsit5"]),
+        2,
+        &[
+            "--scheme: tsit5 is not for a flight with noise",
+            "splitting, heun, euler-maruyama, stratonovich-heun, milstein, sra1 and dri1 are",
+        ],
+    );
+    bench.fail(
+        &with(&DCOM, &["--scheme", "dri1"]),
+        2,
+        &[
+            "--scheme: dri1 is not for a flight without noise",
+            "euler, heun, rk4, dormand-prince54, tsit5, dormand-prince853, rodas4 and exponential are",
+        ],
+    );
+    bench.fail(
+        &with(&DCOM, &["--scheme", "rk5"]),
+        2,
+        &["invalid value 'rk5'", "rk4", "dri1"],
+    );
+}
