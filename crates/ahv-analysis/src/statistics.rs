@@ -253,6 +253,41 @@ pub fn mean_and_std(sample: &[f64]) -> (f64, f64) {
     (mean, (squares / (count - 1.0).max(1.0)).sqrt())
 }
 
+/// Spearman's rank correlation of paired numbers, equal ones with the mean of their ranks; `None` if all of one are equal.
+pub fn rank_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
+    let (a, b) = (ranks_of(a), ranks_of(b));
+    let ((mean_a, std_a), (mean_b, std_b)) = (mean_and_std(&a), mean_and_std(&b));
+    let products = a.iter().zip(&b).map(|(a, b)| (a - mean_a) * (b - mean_b));
+    let covariance = products.sum::<f64>() / (a.len() as f64 - 1.0);
+    let correlation = covariance / (std_a * std_b);
+    correlation
+        .is_finite()
+        .then(|| correlation.clamp(-1.0, 1.0))
+}
+
+/// The probability that the rank correlation of `count` pairs that have nothing to do with each other is this far from 0: its
+/// standard deviation is then 1/√(n − 1), and its law nearly normal (Kendall and Gibbons 1990, section 4.14).
+pub fn chance_of_rank_correlation(correlation: f64, count: usize) -> f64 {
+    let spread = (count as f64 - 1.0).max(1.0).sqrt();
+    libm::erfc(correlation.abs() * spread / std::f64::consts::SQRT_2)
+}
+
+/// The rank of each number, from 1.
+fn ranks_of(sample: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..sample.len()).collect();
+    order.sort_by(|&i, &j| sample[i].total_cmp(&sample[j]));
+    let mut ranks = vec![0.0; sample.len()];
+    let mut before = 0;
+    for equal in order.chunk_by(|&i, &j| sample[i] == sample[j]) {
+        let mean = before as f64 + 0.5 * (equal.len() as f64 + 1.0);
+        for &index in equal {
+            ranks[index] = mean;
+        }
+        before += equal.len();
+    }
+    ranks
+}
+
 /// Fourth standardised moment m₄/m₂²: 3 for a normal distribution, with a standard error of √(24/n).
 pub fn kurtosis(sample: &[f64]) -> f64 {
     let count = sample.len() as f64;

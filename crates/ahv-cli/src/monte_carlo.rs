@@ -1,9 +1,11 @@
 //! `ahv montecarlo`: many flights with noise and dispersions.
 
+mod causes;
 mod figure;
 mod members;
 mod report;
 mod tables;
+mod text;
 mod trajectories;
 
 use std::path::PathBuf;
@@ -20,6 +22,7 @@ use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
 use crate::vehicle::Vehicle;
+use causes::{Cause, Kept};
 use members::MemberList;
 use trajectories::Format;
 
@@ -83,6 +86,7 @@ struct Told<'a> {
     arguments: &'a Arguments,
     ready: Ready,
     outcome: Outcome,
+    causes: Vec<Cause>,
 }
 
 impl Arguments {
@@ -107,18 +111,24 @@ impl Arguments {
             total: Some(self.members.saturating_mul(ready.experiment.steps())),
         });
         let threads = ready.threads(self.members);
+        let mut kept = Kept::default();
         let outcome = watched(progress, |control| {
             let (model, experiment) = (ready.vehicle.model, &ready.experiment);
-            let mut list = list
-                .as_mut()
-                .map(|list| |first, seen: &[Seen]| list.add(first, seen));
-            let list = list.as_mut().map(|list| list as List<'_>);
+            let mut add = |first, seen: &[Seen]| {
+                kept.add(&ready, first, seen);
+                if let Some(list) = &mut list {
+                    list.add(first, seen);
+                }
+            };
+            let wanted = folder.is_some() || experiment.dispersion.is_some();
+            let list = wanted.then_some(&mut add as List<'_>);
             model.run_and_list(experiment, self.members, threads, control, list)
         })?;
         let complete = outcome.members == outcome.asked;
         let listed = list.map_or(Ok(()), |list| list.finish(complete));
         let told = Told {
             arguments: self,
+            causes: kept.causes(&ready),
             ready,
             outcome,
         };

@@ -1,4 +1,25 @@
-use super::{Estimate, OpenEstimate, kurtosis, mean_and_std, normal_density, ranks, student_95};
+use super::{
+    Estimate, OpenEstimate, chance_of_rank_correlation, kurtosis, mean_and_std, normal_density,
+    rank_correlation, ranks, student_95,
+};
+
+/// By hand: deviations of ranks -1.5, 0, 0, 1.5 and 1.5, 0.5, -0.5, -1.5.
+#[test]
+fn ranks_correlate() {
+    let found = rank_correlation(&[1.0, 5.0, 5.0, 9.0], &[0.4, 0.3, 0.2, 0.1]);
+    let by_hand = -4.5 / (4.5_f64 * 5.0).sqrt();
+    assert!(
+        (found.expect("a number") - by_hand).abs() < 1e-15,
+        "{found:?}"
+    );
+    assert_eq!(
+        rank_correlation(&[1.0, 2.0, 4.0], &[1e3, 1e5, 1e9]),
+        Some(1.0)
+    );
+    assert_eq!(rank_correlation(&[1.0, 1.0, 1.0], &[1.0, 2.0, 3.0]), None);
+    // 1.96 standard deviations.
+    assert!((chance_of_rank_correlation(0.196, 101) - 0.05).abs() < 1e-4);
+}
 
 /// Against the sum of the binomial distribution, term by term.
 #[test]

@@ -1,15 +1,14 @@
-//! What is told of the flights: as JSON, and in words.
-
-use std::fmt::Write;
+//! What is told of the flights as JSON, and what is warned of.
 
 use ahv_analysis::monte_carlo::{QUANTILES, Snapshot};
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
 use serde::Serialize;
 
 use super::Told;
-use crate::assignment::{interval, show};
+use super::causes::Cause;
+use crate::assignment::show;
 use crate::flights::Settings;
-use crate::number::{self, Shown};
+use crate::number;
 use crate::output::Pairs;
 use crate::vehicle::{Heading, PointJson};
 
@@ -39,6 +38,9 @@ pub(super) struct Json<'a> {
     std_inside_validity_box: Pairs<Option<f64>>,
     digest: &'a str,
     left_validity_box: Estimate,
+    /// With `--disperse`.
+    #[serde(skip_serializing_if = "<[Cause]>::is_empty")]
+    rank_correlations: &'a [Cause],
     snapshots: Vec<JsonSnapshot>,
 }
 
@@ -109,6 +111,7 @@ impl Told<'_> {
             std_inside_validity_box: names.pairs(last().map(|it| it.std_of_stayed)),
             digest: &outcome.digest,
             left_validity_box: self.left_any(outcome.snapshots.last(), 0),
+            rank_correlations: &self.causes,
             snapshots: outcome
                 .snapshots
                 .iter()
@@ -192,91 +195,7 @@ impl Told<'_> {
         })
     }
 
-    fn rate(&self) -> f64 {
+    pub(super) fn rate(&self) -> f64 {
         self.outcome.member_steps as f64 / self.outcome.elapsed.as_secs_f64().max(1e-9)
-    }
-
-    pub(super) fn text(&self) -> String {
-        let (outcome, experiment) = (&self.outcome, &self.ready.experiment);
-        let flights = if self.is_complete() {
-            format!("{} flights", outcome.members)
-        } else {
-            format!(
-                "interrupted: {} of {} flights",
-                outcome.members, outcome.asked
-            )
-        };
-        let mut text = format!(
-            "{}: {}, {}\n{} of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second, threads {}\n\
-             at the end, mean and standard deviation with intervals of 95 %, 0.5 % and 99.5 % points with theirs",
-            self.ready.vehicle.name(),
-            self.ready.place,
-            self.ready.vehicle.described(),
-            flights,
-            Shown(self.ready.duration()),
-            experiment.scheme.name(),
-            Shown(experiment.dt),
-            experiment.mode.name(),
-            experiment.seed,
-            if experiment.dispersion.is_some() {
-                ", dispersed"
-            } else {
-                ""
-            },
-            if experiment.feedback.is_some() {
-                ", feedback"
-            } else {
-                ""
-            },
-            self.rate(),
-            self.ready.threads(outcome.asked),
-        );
-        let last = outcome.snapshots.last();
-        let states = last.into_iter().flat_map(|it| &it.states);
-        // Writing into a String cannot fail.
-        for ((name, unit), state) in self.ready.vehicle.states.iter().zip(states) {
-            let shown = |value: f64| show(value, unit);
-            let range = |estimate: Option<OpenEstimate>| match estimate {
-                Some(it) => interval(&it, shown),
-                None => "none".to_owned(),
-            };
-            let point = |estimate: Option<&OpenEstimate>| {
-                interval(&estimate.copied().unwrap_or_default(), shown)
-            };
-            let _ = write!(
-                text,
-                "\n  {name:<12} {}; {}; {} .. {}",
-                range(state.mean.map(|it| Some(it).into())),
-                range(state.std),
-                point(state.quantiles.first()),
-                point(state.quantiles.last()),
-            );
-        }
-        let percent = |it: Estimate| {
-            format!(
-                "{:.4} % [{:.4}, {:.4}]",
-                100.0 * it.value,
-                100.0 * it.low,
-                100.0 * it.high
-            )
-        };
-        let _ = write!(
-            text,
-            "\nleft the validity box: {}",
-            percent(self.left_any(last, 0))
-        );
-        if self.has_limits() {
-            let _ = write!(
-                text,
-                "\nleft the limits: {}",
-                percent(self.left_any(last, 1))
-            );
-        }
-        let _ = write!(
-            text,
-            "\nlost, with a state that was no longer finite, or parameters that break a rule: {} of {}\ndigest of the last states: {}",
-            outcome.lost, outcome.members, outcome.digest
-        );
-        text
     }
 }
