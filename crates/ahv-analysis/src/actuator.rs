@@ -77,3 +77,66 @@ fn between(value: f64, min: f64, max: f64) -> f64 {
     let value = if value < min { min } else { value };
     if value > max { max } else { value }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ELEVATOR: Actuator = Actuator {
+        bandwidth: 20.0,
+        rate: 0.5,
+        bounds: Bounds {
+            min: -0.2,
+            max: 0.3,
+        },
+    };
+    const FREE: Actuator = Actuator {
+        rate: f64::INFINITY,
+        ..ELEVATOR
+    };
+
+    fn near(found: (f64, Limits), position: f64, limits: Limits) {
+        assert!((found.0 - position).abs() < 1e-15, "{found:?}, {position}");
+        assert_eq!(found.1, limits);
+    }
+
+    /// Up and down, the distance to the command decays as exp(−ωt).
+    #[test]
+    fn without_limits_it_is_a_lag() {
+        let left = (-20.0_f64 * 0.03).exp();
+        for (from, to) in [(0.1, 0.25), (0.25, 0.1), (-0.1, 0.2), (0.2, -0.1)] {
+            let found = FREE.moved(from, to, 0.03);
+            near(found, to + (from - to) * left, Limits::default());
+        }
+    }
+
+    /// A command beyond an end is one to the end, and is told; one to the end itself is met.
+    #[test]
+    fn the_position_keeps_its_bounds() {
+        for (command, end, position) in [
+            (1.0, 0.3, true),
+            (0.3, 0.3, false),
+            (-1.0, -0.2, true),
+            (-0.2, -0.2, false),
+        ] {
+            let limits = Limits {
+                position,
+                rate: false,
+            };
+            near(FREE.moved(0.1, command, 10.0), end, limits);
+        }
+    }
+
+    /// At 0.5 rad/s it moves 0.005 rad in 10 ms, if the lag asks for as much.
+    #[test]
+    fn it_moves_no_faster_than_its_rate() {
+        let limits = Limits {
+            position: false,
+            rate: true,
+        };
+        near(ELEVATOR.moved(0.1, 0.25, 0.01), 0.105, limits);
+        near(ELEVATOR.moved(0.1, -0.15, 0.01), 0.095, limits);
+        let slow = 0.1 + 0.02 * -libm::expm1(-0.2);
+        near(ELEVATOR.moved(0.1, 0.12, 0.01), slow, Limits::default());
+    }
+}

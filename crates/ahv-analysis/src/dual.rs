@@ -152,3 +152,47 @@ pub fn output_slopes<M: GeneratedModel>(
     });
     slopes.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two functions of time at one time: values and rates of which none is 0 or 1.
+    const F: Dual = Dual {
+        value: 0.7,
+        slope: 3.0,
+    };
+    const G: Dual = Dual {
+        value: -1.3,
+        slope: 0.4,
+    };
+
+    fn near(found: Dual, value: f64, slope: f64) {
+        let errors = [found.value - value, found.slope - slope];
+        let small = errors.iter().all(|error| error.abs() < 1e-14);
+        assert!(small, "{found:?}: {value}, {slope}");
+    }
+
+    /// The rules for sum, difference, product and quotient, written out in decimals.
+    #[test]
+    fn arithmetic_has_the_slopes_of_the_rules() {
+        near(F + G, -0.6, 3.4);
+        near(F - G, 2.0, 2.6);
+        near(F * G, -0.91, -3.9 + 0.28);
+        near(F / G, -7.0 / 13.0, (-3.9 - 0.28) / 1.69);
+        near(-F, -0.7, -3.0);
+        near(F.recip(), 10.0 / 7.0, -3.0 / 0.49);
+    }
+
+    /// The chain rule with the derivatives that every table has.
+    #[test]
+    fn functions_have_the_slopes_of_the_chain_rule() {
+        let (sin, cos) = 0.7_f64.sin_cos();
+        near(Real::sin(F), sin, 3.0 * cos);
+        near(Real::cos(F), cos, -3.0 * sin);
+        near(Real::exp(F), 0.7_f64.exp(), 3.0 * 0.7_f64.exp());
+        near(Real::sqrt(F), 0.7_f64.sqrt(), 1.5 / 0.7_f64.sqrt());
+        near(Real::abs(F), 0.7, 3.0);
+        near(Real::abs(G), 1.3, -0.4);
+    }
+}

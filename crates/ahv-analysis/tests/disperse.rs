@@ -241,6 +241,19 @@ fn small_uncertainties_spread_as_slopes_say() {
     }
 }
 
+/// The real poles of a mode are numbered from right to left, from 1 on.
+#[test]
+fn real_poles_of_a_mode_are_numbered_from_the_right() {
+    let about = nominal::<dcom::Model<f64>>(&dcom::NOMINAL, level::<dcom::Model<f64>>());
+    let about = about.expect("it trims");
+    let place = |name: &str| {
+        let mut quantities = about.quantities.iter();
+        let index = quantities.position(|it| (it.kind, it.name.as_str()) == (Kind::Pole, name));
+        about.values()[index.unwrap_or_else(|| panic!("{name}: {:?}", about.quantities))]
+    };
+    assert!(place("short_period_1") > 0.0 && place("short_period_2") < 0.0);
+}
+
 #[test]
 fn members_do_not_depend_on_each_other() {
     let draws = draws(

@@ -639,3 +639,29 @@ fn outputs_may_be_states_and_others_at_once() {
         Err(LinearizeError::UnknownOutput("height".to_owned()))
     );
 }
+
+/// Flows between tanks keep what all of them hold: one pole is 0, and rounding does not hide it; the others are stable.
+/// From eight tanks on rounding is below a tenth of what it may be.
+#[test]
+fn what_is_conserved_has_a_pole_at_zero() {
+    for (size, step) in (8..=16).flat_map(|size| (1..=6).map(move |step| (size, step))) {
+        // Whole numbers, so that each column's sum is 0 exactly.
+        let flow = |to: usize, from: usize| ((step * (7 + 5 * to * to + 3 * from)) % 13 + 1) as f64;
+        let mut a = DMatrix::from_fn(size, size, flow);
+        for tank in 0..size {
+            a[(tank, tank)] -= a.column(tank).sum();
+        }
+        let system = LinearSystem {
+            states: vec!["tank"; size],
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            a,
+            b: DMatrix::zeros(size, 0),
+            c: DMatrix::zeros(0, size),
+            d: DMatrix::zeros(0, 0),
+        };
+        let found = values(&poles(&system, &[]).expect("poles"));
+        assert_eq!(found[0], Complex::new(0.0, 0.0), "{size} {step}");
+        assert!(found[1..].iter().all(|pole| pole.re < -1.0), "{found:?}");
+    }
+}

@@ -13,10 +13,11 @@ use ahv_analysis::monte_carlo::{
     Control, Experiment, Feedback, Mode, MonteCarloError, RareError, RareEstimate, RareEvent,
     Scheme,
 };
-use ahv_analysis::statistics::Estimate;
+use ahv_analysis::statistics::{Estimate, Z_95};
 use ahv_analysis::trim::{Trim, trim};
 use ahv_core::{Bounds, ColouredNoise, GeneratedModel, StochasticModel, Vector};
 use ahv_models::sdcom::{INPUT_BOUNDS, Input, NOMINAL, Noise, Parameters, State};
+use approx::assert_relative_eq;
 use common::level;
 
 type Model = ahv_models::sdcom::Model<f64>;
@@ -231,6 +232,32 @@ fn rare_passages_of_coloured_noise_are_as_likely_as_its_kernel_says() {
         for level in &found.levels[..found.levels.len() - 1] {
             assert!((0.1..0.35).contains(&level.share), "{level:?}");
         }
+    }
+}
+
+/// After one step chi_1 is a normal number, so that it passes a limit by its tail: who passes at the last step has passed. The
+/// second time a level stands between, and the same step leads past both.
+#[test]
+fn a_flight_of_one_step_passes_as_often_as_a_normal_number() {
+    let chain = Chain::of(Scheme::EulerMaruyama);
+    let experiment = Experiment {
+        snapshots: vec![1],
+        ..open_loop(2)
+    };
+    let known = 0.5 * libm::erfc(1.5 / 2.0_f64.sqrt());
+    for levels in [Vec::new(), vec![0.5 * chain.spread]] {
+        let event = RareEvent {
+            limit: 1.5 * chain.spread,
+            levels: Some(levels),
+            ..passage(chain, 1.0)
+        };
+        let found = estimate(&experiment, &event, 1);
+        let Estimate { value, low, high } = found.probability;
+        assert!(low < known && known < high, "{found:?}, {known}");
+        assert!(high < 1.3 * value, "{found:?}");
+        // The interval of that many plain flights is as wide: they are of one step.
+        let plain = 2.0 * Z_95 * (value * (1.0 - value) / found.plain_member_steps).sqrt();
+        assert_relative_eq!(plain, high - low, max_relative = 1e-9);
     }
 }
 

@@ -426,6 +426,8 @@ fn the_bound_that_blocks_is_told() {
     let flight = level::<com_rigid::Model<f64>>().within(&bounds);
     let error = trim(&com_rigid::Model::new(&com::NOMINAL), &flight).expect_err("too little fuel");
     let nearest = error.nearest().expect("a nearest point");
+    // At its minimum the search ends: it does not try ever shorter steps, up to the hopeless damping.
+    assert!(nearest.iterations < 20, "{nearest:?}");
     assert_eq!(nearest.input[0], ("phi", 0.2));
     assert_eq!(nearest.worst, "velocity");
     assert!(nearest.worst_residual() < 0.0, "{nearest:?}");
@@ -460,6 +462,30 @@ fn all_violated_bounds_are_named() {
     let mut named: Vec<String> = blocking.iter().map(ToString::to_string).collect();
     named.sort();
     assert_eq!(named, ["delta_e <= 0.2", "phi <= 0.2"]);
+}
+
+/// An elevator that moves nothing blocks nothing, at either of its bounds; without it there is no trim.
+#[test]
+fn a_bound_of_an_input_without_effect_does_not_block() {
+    let parameters = com::Parameters {
+        c_l_delta_e: 0.0,
+        c_d_delta_e: 0.0,
+        c_d_delta_e_2: 0.0,
+        c_m_delta_e: 0.0,
+        ..com::NOMINAL
+    };
+    let model = com_rigid::Model::new(&parameters);
+    let flight = level::<com_rigid::Model<f64>>();
+    let start = flight.input.delta_e;
+    for delta_e in [
+        Bounds::new(start + 0.1, start + 0.2),
+        Bounds::new(start - 0.2, start - 0.1),
+    ] {
+        let phi = Bounds::new(f64::NEG_INFINITY, f64::INFINITY);
+        let flight = flight.clone().within(&com::Input { phi, delta_e });
+        let error = trim(&model, &flight).expect_err("no balance of moments");
+        assert!(matches!(error, TrimError::NoConvergence { .. }), "{error}");
+    }
 }
 
 #[test]

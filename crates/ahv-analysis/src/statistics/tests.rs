@@ -160,3 +160,18 @@ fn a_normal_density_has_one_whole_and_its_deviation() {
         assert!((fall - (-0.5_f64).exp()).abs() < 1e-15, "{std}");
     }
 }
+
+/// The table of χ²: the ends for 31 and for 101 numbers, which have 30 and 100 degrees of freedom.
+#[test]
+fn the_interval_of_a_normal_deviation_is_that_of_chi_squared() {
+    for (freedom, tails) in [
+        (30.0, [46.979_24, 16.790_77]),
+        (100.0, [129.561_2, 74.221_93]),
+    ] {
+        let [low, high] = tails.map(|tail: f64| 3.0 * (freedom / tail).sqrt());
+        let it = Estimate::of_normal_std(3.0, freedom + 1.0);
+        assert_eq!(it.value, 3.0);
+        let errors = [it.low / low - 1.0, it.high / high - 1.0];
+        assert!(errors.iter().all(|error| error.abs() < 5e-4), "{errors:?}");
+    }
+}
