@@ -476,7 +476,7 @@ fn a_bound_of_an_input_without_effect_does_not_block() {
     };
     let model = com_rigid::Model::new(&parameters);
     let flight = level::<com_rigid::Model<f64>>();
-    let start = flight.input.delta_e;
+    let start = flight.input_value("delta_e");
     for delta_e in [
         Bounds::new(start + 0.1, start + 0.2),
         Bounds::new(start - 0.2, start - 0.1),

@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn a_row_has_the_digits_of_its_deviation() {
         assert_eq!([0.0123, 1.23, 123.0, 0.0].map(decimals), [4, 2, 0, 3]);
-        assert_eq!(number(85000.123_456, decimals(1.23)), "85000.12");
+        assert_eq!(number(85_000.123_456, decimals(1.23)), "85000.12");
         assert_eq!(number(1.5e-9, decimals(1e-9)), "1.500e-9");
         assert_eq!(number(-0.0, 2), "0.00");
         assert_eq!(number(3e40, 2), "3.000e40");
