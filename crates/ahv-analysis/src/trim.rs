@@ -276,7 +276,7 @@ pub enum TrimError {
         Shown(nearest.worst_residual())
     )]
     Blocked {
-        /// The bounds that the search ran into, then others that the trim outside violates; at least one.
+        /// The bounds that the trim outside violates; where none is known, those that the search ran into. At least one.
         blocking: Vec<Blocking>,
         /// The sought inputs of a trim outside the bounds, if there is one.
         beyond: Option<Vec<(&'static str, f64)>>,
@@ -339,11 +339,10 @@ where
         return Ok(system.finish(&last.point, iterations));
     }
     let beyond = [first, last].into_iter().find(|it| it.converged);
-    let mut blocking = system.blocking(&nearest);
-    for violated in beyond.iter().flat_map(|it| system.violated(&it.point)) {
-        if blocking.iter().all(|it| it.input != violated.input) {
-            blocking.push(violated);
-        }
+    let violated = beyond.iter().flat_map(|it| system.violated(&it.point));
+    let mut blocking: Vec<Blocking> = violated.collect();
+    if blocking.is_empty() {
+        blocking = system.blocking(&nearest);
     }
     let beyond = beyond.map(|it| system.named_inputs(&it.point));
     let nearest = Box::new(system.describe(&nearest, iterations));

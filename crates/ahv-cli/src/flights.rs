@@ -12,8 +12,8 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 
-use crate::assignment::Assignments;
-use crate::failure::Failure;
+use crate::assignment::{Assignments, show};
+use crate::failure::{Failure, complain};
 use crate::flight_condition::FlightCondition;
 use crate::labels::Labels;
 use crate::number::positive;
@@ -24,6 +24,8 @@ use crate::signals::Stoppable;
 use crate::steps::allowed;
 use crate::vehicle::{PointJson, Vehicle, VehicleArgs};
 
+/// Difference of two times, relative to them, that is rounding.
+const SAME: f64 = 1e-9;
 /// Most steps of a member: some hours.
 const MOST_STEPS: f64 = 1e12;
 
@@ -130,6 +132,13 @@ impl Flights {
         }
         let steps = (self.t_end / self.dt).round();
         let steps = allowed(self.t_end, self.dt, steps, MOST_STEPS)?;
+        let end = number::time(steps as f64 * self.dt);
+        if (end - self.t_end).abs() > SAME * self.t_end {
+            complain(&format!(
+                "note: the flights end at {} s, the multiple of --dt that is nearest to --t-end",
+                Shown(end)
+            ));
+        }
         Ok(Experiment {
             parameters: vehicle.parameters.clone(),
             dispersion: self.dispersion(vehicle)?,
@@ -235,11 +244,11 @@ pub(crate) fn deviations(
     let given = Assignments::parse(option, texts, labels)?;
     given.apply(&mut deviations);
     vehicle.check_effect(option, &given)?;
-    let mut named = labels.names.iter().zip(&deviations);
+    let mut named = labels.iter().zip(&deviations);
     match named.find(|(_, deviation)| **deviation < 0.0) {
-        Some((name, &value)) => Err(Failure::Request(format!(
+        Some(((name, unit), &value)) => Err(Failure::Request(format!(
             "{option}: {name} is {}; a standard deviation is 0 or more",
-            Shown(value)
+            show(value, unit)
         ))),
         None => Ok(deviations),
     }

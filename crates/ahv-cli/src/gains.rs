@@ -80,7 +80,7 @@ impl Vehicle {
     }
 
     /// The inputs that a trim does not seek, and where they are held.
-    fn held(&self, flight: &SteadyState) -> Vec<(&'static str, f64)> {
+    pub(crate) fn held(&self, flight: &SteadyState) -> Vec<(&'static str, f64)> {
         let sought = self.sought_inputs(flight);
         let held = self
             .inputs

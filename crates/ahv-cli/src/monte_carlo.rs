@@ -15,10 +15,9 @@ use ahv_analysis::monte_carlo::Outcome;
 use ahv_core::Bounds;
 use clap::Args;
 
-use crate::assignment::Assignments;
+use crate::assignment::{Assignments, show};
 use crate::failure::{Failure, complain, print};
 use crate::flights::{Flights, Ready, watched};
-use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
 use crate::vehicle::Vehicle;
@@ -103,6 +102,11 @@ impl Arguments {
             output::folder(folder)?;
         }
         let folder = self.out.as_deref();
+        if self.trajectories.is_empty()
+            && let Some(folder) = folder
+        {
+            output::warn_of_earlier(folder, &["trajectories.csv", "trajectories.parquet"]);
+        }
         let list = folder.map(|folder| MemberList::create(&ready, folder, self.members));
         let mut list = list.transpose()?;
         let progress = Progress::start(Work {
@@ -173,6 +177,14 @@ fn limits(texts: &[String], vehicle: &Vehicle) -> Result<Option<Vec<Bounds>>, Fa
         };
         let (name, ends) = text.split_once('=').ok_or_else(form)?;
         let (min, max) = ends.split_once("..").ok_or_else(form)?;
+        let unit = vehicle.states.unit(name.trim());
+        if unit.starts_with("rad") && [min, max].iter().any(|it| it.trim().parse::<f64>().is_ok()) {
+            return Err(Failure::Request(format!(
+                "--limit: {name} is an angle, and each end needs a unit: {name}={}deg..{}deg",
+                min.trim_end_matches("deg"),
+                max.trim_end_matches("deg")
+            )));
+        }
         low.push(format!("{name}={min}"));
         high.push(format!("{name}={max}"));
     }
@@ -191,12 +203,12 @@ fn limits(texts: &[String], vehicle: &Vehicle) -> Result<Option<Vec<Bounds>>, Fa
     );
     let ends = low.into_iter().zip(high);
     let bounds: Vec<Bounds> = ends.map(|(low, high)| Bounds::new(low, high)).collect();
-    let mut named = states.names.iter().zip(&bounds);
+    let mut named = states.iter().zip(&bounds);
     match named.find(|(_, it)| it.min >= it.max) {
-        Some((name, &Bounds { min, max })) => Err(Failure::Request(format!(
+        Some(((name, unit), &Bounds { min, max })) => Err(Failure::Request(format!(
             "--limit: of {name} the lower limit {} is not below the upper one {}",
-            Shown(min),
-            Shown(max)
+            show(min, unit),
+            show(max, unit)
         ))),
         None => Ok(Some(bounds)),
     }

@@ -187,6 +187,18 @@ pub fn folder(path: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Warns of files of an earlier run that stay beside those of this one, which does not write them.
+pub fn warn_of_earlier(folder: &Path, names: &[&str]) {
+    for path in names.iter().map(|name| folder.join(name)) {
+        if fs::symlink_metadata(&path).is_ok() {
+            complain(&format!(
+                "warning: {} is of an earlier run, and stays as it is",
+                path.display()
+            ));
+        }
+    }
+}
+
 /// Writes a picture. One that cannot be drawn is a warning that says why: the numbers are not lost with it.
 ///
 /// # Errors

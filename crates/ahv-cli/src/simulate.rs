@@ -109,13 +109,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (model, parameters) = (vehicle.model, &vehicle.parameters);
     let asked = arguments.scheme.as_deref();
     let noisy = arguments.stochastic || model.coloured_states() > 0;
+    let default = match noisy {
+        true => Scheme::EulerMaruyama.name(),
+        false => Calm::Rk4.name(),
+    };
+    let asked = asked.unwrap_or(default);
     let advance = if noisy {
-        let asked = asked.unwrap_or(Scheme::EulerMaruyama.name());
         let scheme = scheme(asked, Scheme::ALL, Scheme::name, "with noise")?;
         needs_noise("--stochastic", model, "")?;
         model.noisy(parameters, scheme, arguments.seed)
     } else {
-        let asked = asked.unwrap_or(Calm::Rk4.name());
         let stepper = scheme(asked, Calm::ALL, Calm::name, "without noise")?;
         model.calm(parameters, stepper)
     };
@@ -123,6 +126,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let grid = grid(arguments.t_end, arguments.dt)?;
     let flight = Flight {
         vehicle: &vehicle,
+        scheme: asked,
         seed: noisy.then_some(arguments.seed),
     };
     flight.simulate(arguments, &grid, advance)

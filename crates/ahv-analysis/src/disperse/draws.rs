@@ -96,7 +96,9 @@ pub enum DrawError {
         index: usize,
     },
     /// Nothing to draw.
-    #[error("every parameter has an uncertainty or a value of 0: there is nothing to draw")]
+    #[error(
+        "there is nothing to draw: every parameter that may vary has an uncertainty of 0, or a value of 0"
+    )]
     Nothing,
 }
 

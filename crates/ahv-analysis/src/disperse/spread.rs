@@ -2,6 +2,9 @@
 
 use crate::statistics::{OpenEstimate, kurtosis, mean_and_std, quantile};
 
+/// Range, relative to the largest number, that rounding explains: it is no spread.
+const ROUNDING: f64 = 1e-12;
+
 /// The distribution of a number over members.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Spread {
@@ -39,6 +42,12 @@ impl Spread {
         let mut sorted = sample.to_vec();
         sorted.sort_by(f64::total_cmp);
         let (mean, std) = mean_and_std(sample);
+        let (min, max) = (*sorted.first()?, *sorted.last()?);
+        let std = if max - min > ROUNDING * max.abs().max(min.abs()) {
+            std
+        } else {
+            0.0
+        };
         let count = sample.len();
         // Equal numbers have no kurtosis.
         let kurtosis = if std > 0.0 { kurtosis(sample) } else { 3.0 };
@@ -51,11 +60,11 @@ impl Spread {
             std_error: interval.closed().map(|_| error),
             std_low: interval.low,
             std_high: interval.high,
-            min: *sorted.first()?,
+            min,
             p05: quantile(&sorted, 0.05)?,
             p50: quantile(&sorted, 0.5)?,
             p95: quantile(&sorted, 0.95)?,
-            max: *sorted.last()?,
+            max,
         })
     }
 }

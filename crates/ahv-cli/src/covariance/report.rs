@@ -127,7 +127,10 @@ impl Outcome<'_> {
         if self.is_complete() {
             format!("{} flights", self.members)
         } else {
-            self.mark()
+            format!(
+                "{} of {} flights, for it was interrupted,",
+                self.members, self.arguments.members
+            )
         }
     }
 

@@ -13,6 +13,8 @@ const BAR: f64 = 0.32;
 const BINS: u32 = 24;
 /// Real part, in 1/s, up to which a zero counts as lying at the origin: that of the altitude does.
 const AT_ORIGIN: f64 = 1e-6;
+/// Width of a bar, relative to the largest number, below which it is rounding.
+const ROUNDING: f64 = 1e-12;
 /// Colours of the members' roots and of the nominal ones.
 const POLES: (Colour, Colour) = (Colour::SkyBlue, Colour::Blue);
 const ZEROS: (Colour, Colour) = (Colour::Orange, Colour::Vermillion);
@@ -20,7 +22,7 @@ const ZEROS: (Colour, Colour) = (Colour::Orange, Colour::Vermillion);
 const DRAWN: usize = 400;
 
 /// What people look at of a trim over the first of it, a dot a member.
-pub(super) fn trim(outcome: &Outcome<'_>) -> Result<String, PlotError> {
+pub(super) fn trim(outcome: &Outcome<'_>) -> Result<String, String> {
     let quantities = &outcome.nominal.quantities;
     let place = |name: &str| {
         quantities
@@ -32,7 +34,12 @@ pub(super) fn trim(outcome: &Outcome<'_>) -> Result<String, PlotError> {
         let (x, y) = (place(shown.first()?)?, place(name)?);
         Some(scatter(outcome, x, y))
     });
-    Figure::new(outcome.mark(), 3, panels.collect()).svg()
+    let panels: Vec<Panel> = panels.collect();
+    if panels.is_empty() {
+        return Err("a trim of this model has no two quantities to draw".to_owned());
+    }
+    let figure = Figure::new(outcome.mark(), 3, panels);
+    figure.svg().map_err(|error| error.to_string())
 }
 
 fn scatter(outcome: &Outcome<'_>, x: usize, y: usize) -> Panel {
@@ -157,12 +164,14 @@ fn histograms(outcome: &Outcome<'_>) -> Panel {
     }
 }
 
-/// Edges and heights of a histogram: numbers per unit; `None` without two different numbers.
+/// Edges and heights of a histogram: numbers per unit; `None` of numbers that do not differ.
 fn bins(sample: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let low = sample.iter().copied().fold(f64::INFINITY, f64::min);
     let high = sample.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let width = (high - low) / f64::from(BINS);
-    if !(width > 0.0 && width.is_finite()) {
+    // Numbers that rounding parts have no edges between them.
+    let least = ROUNDING * low.abs().max(high.abs());
+    if !(width > least && width.is_finite()) {
         return None;
     }
     let edges: Vec<f64> = (0..=BINS)

@@ -199,12 +199,15 @@ impl Outcome<'_> {
             )
         };
         let mut text = format!(
-            "{}: {}, {}\n{} members, {} parameters {}, seed {}\n",
+            "{}: {}, {}\n{} members, {} {}, seed {}\n",
             self.vehicle.name(),
             self.vehicle.at(&self.nominal.flight),
             self.vehicle.described(),
             members,
-            self.slopes.parameters.len(),
+            match self.slopes.parameters.len() {
+                1 => "1 parameter".to_owned(),
+                count => format!("{count} parameters"),
+            },
             match self.draws.distribution() {
                 Distribution::Uniform => "uniform within their uncertainty",
                 Distribution::Normal => "normal, the uncertainty three standard deviations",

@@ -17,6 +17,8 @@ use crate::vehicle::Vehicle;
 /// A vehicle with how it is to fly.
 pub(super) struct Flight<'a> {
     pub(super) vehicle: &'a Vehicle,
+    /// Name of the stepper.
+    pub(super) scheme: &'a str,
     /// `None` without noise.
     pub(super) seed: Option<u64>,
 }
@@ -67,6 +69,7 @@ impl Flight<'_> {
         let report = Report {
             vehicle,
             grid,
+            scheme: self.scheme,
             seed: self.seed,
             initial_state: start,
             final_state: run.state,

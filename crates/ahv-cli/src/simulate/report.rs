@@ -22,6 +22,7 @@ pub(super) struct Departure {
 pub(super) struct Report<'a> {
     pub(super) vehicle: &'a Vehicle,
     pub(super) grid: &'a TimeGrid,
+    pub(super) scheme: &'a str,
     pub(super) seed: Option<u64>,
     pub(super) initial_state: Vec<f64>,
     pub(super) final_state: Vec<f64>,
@@ -41,6 +42,7 @@ struct Json<'a> {
     steps: u32,
     t_end: f64,
     dt: f64,
+    scheme: &'a str,
     seed: Option<u64>,
     initial_state: Pairs<f64>,
     final_state: Pairs<f64>,
@@ -91,6 +93,7 @@ impl Report<'_> {
             steps: self.grid.steps(),
             t_end: self.grid.end(),
             dt: self.grid.dt(),
+            scheme: self.scheme,
             seed: self.seed,
             initial_state: self
                 .vehicle
@@ -114,14 +117,15 @@ impl Report<'_> {
 
     fn text(&self) -> String {
         let steps = self.grid.steps();
-        let [t_end, dt] = [self.grid.end(), self.grid.dt()].map(Shown);
+        let [t_end, dt] = [self.grid.end(), self.grid.dt().min(self.grid.end())].map(Shown);
         let seed = self
             .seed
             .map_or_else(String::new, |seed| format!(", seed {seed}"));
         let plural = if steps == 1 { "step" } else { "steps" };
         format!(
-            "{}: {steps} {plural} of {dt} s to {t_end} s{seed}, written to {}\n{}\nheld:\n{}\nat the end:\n{}",
+            "{}: {}, {steps} {plural} of {dt} s to {t_end} s{seed}, written to {}\n{}\nheld:\n{}\nat the end:\n{}",
             self.vehicle.name(),
+            self.scheme,
             self.out.display(),
             self.vehicle.described(),
             self.vehicle.inputs.describe(&self.input),

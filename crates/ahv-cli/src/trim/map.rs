@@ -8,8 +8,10 @@ use ahv_core::Bounds;
 use ahv_plot::{Axis, Cells, Colour, Figure, Layer, Mark, Panel, Shape};
 use serde::Serialize;
 
+use crate::assignment::show;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
+use crate::named::{Named, shown_as};
 use crate::number;
 use crate::output::{self, Pairs, readable};
 use crate::vehicle::{Heading, Vehicle};
@@ -43,6 +45,8 @@ struct Cell {
 /// Trims by rows of the second state, the first running fastest.
 pub(super) struct Map<'a> {
     vehicle: &'a Vehicle,
+    /// What else is given, and the inputs that are held.
+    condition: Vec<(&'static str, f64)>,
     /// The two given states.
     names: [&'static str; 2],
     /// Their values.
@@ -57,6 +61,9 @@ pub(super) struct Map<'a> {
 pub(super) struct Json<'a> {
     #[serde(flatten)]
     heading: Heading<'a>,
+    /// What else is given, with the inputs that are held; angles in deg, as their names say.
+    #[serde(flatten)]
+    condition: Named<f64>,
     units: Pairs<&'static str>,
     points: usize,
     converged: usize,
@@ -106,8 +113,11 @@ impl<'a> Map<'a> {
             }
         });
         let single = |name: &&&str| !name.ends_with(|last: char| last.is_ascii_digit());
+        let others = flight.given().filter(|(name, _)| !names.contains(name));
+        let held = vehicle.held(flight).into_iter().filter(|it| it.1 != 0.0);
         Ok(Self {
             vehicle,
+            condition: others.chain(held).collect(),
             cells: cells.collect(),
             quantities: problem.shown.iter().filter(single).copied().collect(),
             names,
@@ -150,6 +160,10 @@ impl<'a> Map<'a> {
         let failed: usize = blocked.iter().map(|it| it.1).sum();
         Json {
             heading: self.vehicle.heading(),
+            condition: Named::new(self.condition.iter().map(|&(name, value)| {
+                let unit = self.vehicle.unit(name);
+                shown_as(name, value, unit)
+            })),
             units: self.vehicle.point_units(),
             points: self.cells.len(),
             converged: self.cells.len() - failed,
@@ -166,11 +180,21 @@ impl<'a> Map<'a> {
             .map(|(why, count)| format!("\n  {count} are blocked by {why}"))
             .collect();
         format!(
-            "{}: {converged} of {points} points trim, written to {}\n{}{blocked}",
+            "{}: {converged} of {points} points trim{}, written to {}\n{}{blocked}",
             self.vehicle.name(),
+            self.at(),
             folder.display(),
             self.vehicle.described()
         )
+    }
+
+    /// What else is given, for a person.
+    fn at(&self) -> String {
+        let given = self.condition.iter().map(|&(name, value)| {
+            let unit = self.vehicle.unit(name);
+            format!(", {name} {}", show(value, unit))
+        });
+        given.collect()
     }
 
     /// Writes the points as CSV.
@@ -199,6 +223,7 @@ impl<'a> Map<'a> {
     fn header(&self) -> Vec<String> {
         let label = |name: &&str| format!("{name} [{}]", self.vehicle.unit(name));
         let mut header: Vec<String> = self.names.iter().map(label).collect();
+        header.extend(self.condition.iter().map(|(name, _)| label(name)));
         header.push("converged".to_owned());
         header.extend(self.quantities.iter().map(label));
         header.push("blocking_bound".to_owned());
@@ -207,6 +232,7 @@ impl<'a> Map<'a> {
 
     fn record(&self, cell: &Cell) -> Vec<String> {
         let mut record: Vec<String> = cell.at.map(number::cell).into();
+        record.extend(self.condition.iter().map(|it| number::cell(it.1)));
         record.push(cell.result.is_ok().to_string());
         record.extend(self.quantities.iter().map(|name| match &cell.result {
             Ok(trim) => number::cell(self.value(name, trim)),
@@ -238,8 +264,9 @@ impl<'a> Map<'a> {
         let mut panels: Vec<Panel> = maps.collect();
         panels.push(self.panel("Trim, or the bound that blocks it", self.outcomes()));
         let title = format!(
-            "Trims of {}, {}",
+            "Trims of {}{}, {}",
             self.vehicle.name(),
+            self.at(),
             self.vehicle.described()
         );
         Figure::new(title, 2, panels)

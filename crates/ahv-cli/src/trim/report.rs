@@ -95,15 +95,16 @@ impl<'a> Report<'a> {
     }
 
     /// What lies outside the validity box.
-    fn outside(&self) -> Option<Outside> {
-        let found = self.found.as_ref()?;
-        let outside = self.vehicle.outside(&found.state, &found.input);
-        outside.into_iter().next()
+    fn outside(&self) -> Vec<Outside> {
+        let found = self.found.iter();
+        found
+            .flat_map(|it| self.vehicle.outside(&it.state, &it.input))
+            .collect()
     }
 
     pub(super) fn json(&self) -> Json<'_> {
         let (vehicle, found) = (self.vehicle, self.found.as_ref());
-        let outside = self.outside();
+        let outside = self.outside().into_iter().next();
         let bounds = self.error.map(|error| vehicle.blocking(error));
         let bounds = bounds.unwrap_or_default();
         Json {
@@ -200,9 +201,13 @@ impl<'a> Report<'a> {
             "" => String::new(),
             lines => format!("\noutputs:{lines}"),
         };
-        let place = match self.outside() {
-            None => "inside the validity box".to_owned(),
-            Some(outside) => describe_outside(&outside, vehicle.unit(outside.name)),
+        let outside = self.outside();
+        let outside = outside
+            .iter()
+            .map(|it| describe_outside(it, vehicle.unit(it.name)));
+        let place = match outside.collect::<Vec<_>>().join("\n") {
+            none if none.is_empty() => "inside the validity box".to_owned(),
+            outside => outside,
         };
         format!(
             "{head}\n{nearest}state:\n{}\ninput:\n{}{others}\nresiduals, per s:\n{}\nlargest {:.3e}, after {} iterations\n{place}",

@@ -413,8 +413,8 @@ fn text(method: Reduction, experiment: &Experiment, subjects: &[Subject]) -> Str
             text,
             "mode {}: omega {} rad/s, zeta {}, sigma {}, slowest decay rate {} 1/s\n  \
              decay {} 1/s, intensity {}; {}\n  \
-             std of eta {}, of chi {}; {}\n  \
-             sampled at {} s: eta {}, chi {}\n",
+             stationary std of eta {}, of chi {}; {}\n  \
+             sampled from rest, std at {} s: eta {}, chi {}\n",
             index + 1,
             Shown(mode.omega),
             Shown(mode.zeta),

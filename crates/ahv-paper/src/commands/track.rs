@@ -165,6 +165,10 @@ fn numeric(error: TrackError) -> Failure {
 }
 
 fn write_tables(folder: &Path, outcomes: &[Outcome], complete: bool) -> Result<(), Failure> {
+    let flown = |name: &str| outcomes.iter().any(|it| it.controller == name);
+    for other in ["backstepping", "lqr"].iter().filter(|name| !flown(name)) {
+        output::warn_of_earlier(folder, &[&format!("{other}.csv")]);
+    }
     tables::statistics(&folder.join("statistics.csv"), outcomes, complete)?;
     for outcome in outcomes {
         if let Some(flight) = outcome.flights.first() {
@@ -216,10 +220,15 @@ impl<'a> Json<'a> {
 
 fn text(trial: &Trial, outcomes: &[Outcome], folder: &Path) -> String {
     let mut text = format!(
-        "{} flights of {} s for each controller, seed {}; picture and tables are in {}\n\
+        "{} flights of {} s{}, seed {}; picture and tables are in {}\n\
          mean over the flights [its interval of 95 %], 5 % and 95 % points, least and largest",
         trial.runs,
         trial.duration,
+        if outcomes.len() > 1 {
+            " for each controller"
+        } else {
+            ""
+        },
         trial.seed,
         folder.display()
     );
