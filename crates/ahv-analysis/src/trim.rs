@@ -341,8 +341,12 @@ where
     let beyond = [first, last].into_iter().find(|it| it.converged);
     let violated = beyond.iter().flat_map(|it| system.violated(&it.point));
     let mut blocking: Vec<Blocking> = violated.collect();
+    let met = system.blocking(&nearest);
     if blocking.is_empty() {
-        blocking = system.blocking(&nearest);
+        blocking = met;
+    } else {
+        // Those first that the search ran into.
+        blocking.sort_by_key(|it| met.iter().all(|met| met.input != it.input));
     }
     let beyond = beyond.map(|it| system.named_inputs(&it.point));
     let nearest = Box::new(system.describe(&nearest, iterations));

@@ -16,7 +16,7 @@ const MOST_DECIMALS: i32 = 8;
 /// A number as large as this one is, too.
 const LARGE: f64 = 1e9;
 /// Parameters that are listed.
-const LISTED: usize = 5;
+const LISTED: usize = 4;
 
 /// Headings of the table; the interval of the mean is as wide to both sides.
 const HEADINGS: [&str; 9] = [
@@ -177,7 +177,7 @@ fn table(rows: &[[String; HEADINGS.len()]]) -> String {
                 _ => format!("{cell:>width$}"),
             }
         });
-        format!("  {}", cells.collect::<Vec<_>>().join("  "))
+        format!("  {}", cells.collect::<Vec<_>>().join(" "))
             .trim_end()
             .to_owned()
     };

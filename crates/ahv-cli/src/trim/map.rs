@@ -220,10 +220,15 @@ impl<'a> Map<'a> {
         output::picture(&folder.join("trim_map.svg"), self.figure().svg())
     }
 
+    /// What else is given or held elsewhere than at 0.
+    fn elsewhere(&self) -> impl Iterator<Item = &(&'static str, f64)> {
+        self.condition.iter().filter(|it| it.1 != 0.0)
+    }
+
     fn header(&self) -> Vec<String> {
         let label = |name: &&str| format!("{name} [{}]", self.vehicle.unit(name));
         let mut header: Vec<String> = self.names.iter().map(label).collect();
-        header.extend(self.condition.iter().map(|(name, _)| label(name)));
+        header.extend(self.elsewhere().map(|(name, _)| label(name)));
         header.push("converged".to_owned());
         header.extend(self.quantities.iter().map(label));
         header.push("blocking_bound".to_owned());
@@ -232,7 +237,7 @@ impl<'a> Map<'a> {
 
     fn record(&self, cell: &Cell) -> Vec<String> {
         let mut record: Vec<String> = cell.at.map(number::cell).into();
-        record.extend(self.condition.iter().map(|it| number::cell(it.1)));
+        record.extend(self.elsewhere().map(|it| number::cell(it.1)));
         record.push(cell.result.is_ok().to_string());
         record.extend(self.quantities.iter().map(|name| match &cell.result {
             Ok(trim) => number::cell(self.value(name, trim)),
