@@ -20,6 +20,7 @@ use crate::monte_carlo::{
 };
 use crate::trim::{SteadyState, Trim, TrimError};
 
+pub use crate::values::{values, vector};
 pub use flights::{Experiment, Feedback, Point, Seen};
 pub use steppers::{Advance, Calm, StepperError};
 
@@ -61,16 +62,6 @@ impl Components {
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|&own| own == name)
     }
-}
-
-/// The components of a vector, in order.
-pub fn values<T: Copy, V: Vector<T>>(vector: &V) -> Vec<T> {
-    (0..V::LEN).filter_map(|index| vector.get(index)).collect()
-}
-
-/// The vector of these components; 0 for those that are missing.
-pub fn vector<V: Vector<f64>>(values: &[f64]) -> V {
-    V::from_fn(|index| values.get(index).copied().unwrap_or(0.0))
 }
 
 /// A set of parameters of a model.

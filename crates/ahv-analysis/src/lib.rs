@@ -41,3 +41,4 @@ pub mod poles;
 pub mod sensitivity;
 pub mod statistics;
 pub mod trim;
+mod values;

@@ -14,7 +14,7 @@ use ahv_core::{Bounds, DifferentiableModel, Equation, Given, Shown, Sought, Trim
 pub use response::{Shift, response};
 use system::{Point, System};
 
-use crate::erased::values;
+use crate::values::values;
 
 /// A steady state that is asked for.
 #[derive(Clone, Debug, PartialEq)]

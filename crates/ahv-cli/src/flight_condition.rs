@@ -7,12 +7,13 @@ use ahv_analysis::trim::{SteadyState, Trim, TrimError};
 use ahv_core::{Bounds, Given, Outside};
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
-use crate::assignment::{Assignments, show, show_beside};
+use crate::assignment::Assignments;
 use crate::failure::{Failure, complain};
 use crate::labels::Labels;
 use crate::names;
 use crate::output::describe_outside;
 use crate::registry::models;
+use crate::show::{show, show_beside};
 use crate::units::Units;
 use crate::vehicle::{Vehicle, hyphenated};
 

@@ -12,7 +12,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 
-use crate::assignment::{Assignments, show};
+use crate::assignment::Assignments;
 use crate::failure::{Failure, complain};
 use crate::flight_condition::FlightCondition;
 use crate::labels::Labels;
@@ -20,6 +20,7 @@ use crate::number::positive;
 use crate::number::{self, Shown};
 use crate::progress::Progress;
 use crate::registry::needs_noise;
+use crate::show::show;
 use crate::signals::Stoppable;
 use crate::steps::allowed;
 use crate::vehicle::{PointJson, Vehicle, VehicleArgs};

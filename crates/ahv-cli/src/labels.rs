@@ -2,8 +2,8 @@
 
 use ahv_core::{Bounds, Outside};
 
-use crate::assignment::show;
 use crate::output::Pairs;
+use crate::show::show;
 
 /// Names and units of the components of a vector.
 #[derive(Clone, Copy, Debug)]

@@ -46,6 +46,7 @@ mod poles;
 pub mod progress;
 mod rare;
 mod registry;
+mod show;
 pub mod signals;
 mod simulate;
 pub mod steps;

@@ -15,11 +15,12 @@ use ahv_analysis::monte_carlo::Outcome;
 use ahv_core::Bounds;
 use clap::Args;
 
-use crate::assignment::{Assignments, show};
+use crate::assignment::Assignments;
 use crate::failure::{Failure, complain, print};
 use crate::flights::{Flights, Ready, watched};
 use crate::output;
 use crate::progress::{Progress, Work};
+use crate::show::show;
 use crate::vehicle::Vehicle;
 use causes::{Cause, Kept};
 use members::MemberList;

@@ -12,8 +12,8 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use tempfile::{Builder, NamedTempFile};
 
-use crate::assignment::show;
 use crate::failure::{Failure, complain, print};
+use crate::show::show;
 
 /// Temporary files that are there now.
 static TEMPORARIES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());

@@ -9,13 +9,14 @@ use ahv_analysis::statistics::Estimate;
 use clap::Args;
 use serde::Serialize;
 
-use crate::assignment::{Assignments, show};
+use crate::assignment::Assignments;
 use crate::failure::{Failure, print};
 use crate::flights::{Flights, Ready, Settings, watched};
 use crate::number::Shown;
 use crate::output;
 use crate::progress::{Progress, Work};
 use crate::registry::needs_noise;
+use crate::show::show;
 use crate::signals::interrupted;
 use crate::vehicle::Heading;
 

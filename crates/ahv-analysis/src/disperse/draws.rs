@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use ahv_core::{Shown, Vector};
 use ahv_integrate::NormalStream;
 
-use crate::erased::{values, vector};
+use crate::values::{values, vector};
 
 /// Set in the seed, so that parameters have nothing to do with the noise of flights of the same seed.
 const PARAMETER_SEED: u64 = 0x5851_F42D_4C95_7F2D;

@@ -6,10 +6,10 @@ use nalgebra::{Complex, DMatrix};
 use super::draws::Draws;
 use super::quantity::{Kind, Quantity};
 use super::{Nominal, SolutionError};
-use crate::erased::vector;
 use crate::linearize::{LinearSystem, linearize};
 use crate::sensitivity::RootVectors;
 use crate::trim::{Shift, Trim, response};
+use crate::values::vector;
 
 /// Step of the central differences, as a share of the parameter.
 const STEP: f64 = 1e-5;

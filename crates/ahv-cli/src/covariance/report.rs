@@ -10,11 +10,11 @@ use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::Outcome;
-use crate::assignment::{interval, show};
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::number::{Shown, cell, time};
 use crate::output::Pairs;
+use crate::show::{interval, show};
 use crate::signals::interrupted;
 use crate::vehicle::{Heading, PointJson};
 

@@ -6,10 +6,10 @@ use serde::Serialize;
 
 use super::Told;
 use super::causes::Cause;
-use crate::assignment::show;
 use crate::flights::Settings;
 use crate::number;
 use crate::output::Pairs;
+use crate::show::show;
 use crate::vehicle::{Heading, PointJson};
 
 /// How many times as large as that of the others a standard deviation is that a few members make.

@@ -8,12 +8,12 @@ use ahv_core::Bounds;
 use ahv_plot::{Axis, Cells, Colour, Figure, Layer, Mark, Panel, Shape};
 use serde::Serialize;
 
-use crate::assignment::show;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::named::{Named, shown_as};
 use crate::number;
 use crate::output::{self, Pairs, readable};
+use crate::show::show;
 use crate::vehicle::{Heading, Vehicle};
 
 /// Points along the two given states.

@@ -4,12 +4,12 @@ use ahv_analysis::trim::{Nearest, SteadyState, Trim, TrimError};
 use ahv_core::Outside;
 use serde::Serialize;
 
-use crate::assignment::show;
 use crate::labels::Labels;
 use crate::named::{Named, shown_as};
 use crate::number::Shown;
 use crate::output::{Pairs, describe_outside};
 use crate::registry::models;
+use crate::show::show;
 use crate::vehicle::{Heading, PointJson, Vehicle};
 
 /// The trim, or the point that comes nearest to one.
