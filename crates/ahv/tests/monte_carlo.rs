@@ -294,3 +294,27 @@ fn bad_requests_are_refused_with_a_reason() {
     ]);
     assert_eq!(com.status.code(), Some(2));
 }
+
+/// Flights that end elsewhere than asked, and files of an earlier run beside new ones, are told.
+#[test]
+fn another_end_and_earlier_files_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let told = |rest: &str| {
+        let line = format!("montecarlo --model sdcom --members 4 --dt 0.1 --out {out} {rest}");
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        String::from_utf8(run(&arguments).stderr).expect("text")
+    };
+    let whole = told("--t-end 0.3 --trajectories 0");
+    assert!(!whole.contains("the flights end at"), "{whole}");
+    let other = told("--t-end 0.35");
+    assert!(
+        other.contains("note: the flights end at 0.3 s") || other.contains("at 0.4 s"),
+        "{other}"
+    );
+    assert!(
+        other.contains("trajectories.csv is of an earlier run"),
+        "{other}"
+    );
+    assert!(folder.path().join("trajectories.csv").exists());
+}

@@ -68,3 +68,16 @@ impl Spread {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Spread;
+
+    /// What rounding parts has no spread; what is a little more has.
+    #[test]
+    fn rounding_is_no_spread() {
+        let std = |step: f64| Spread::of(&[-47.4, -47.4 - step, -47.4 + step]).map(|it| it.std);
+        assert_eq!(std(2e-14), Some(0.0));
+        assert!(std(1e-10).is_some_and(|std| std > 5e-11));
+    }
+}

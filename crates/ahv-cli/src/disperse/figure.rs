@@ -224,3 +224,16 @@ fn tornado(outcome: &Outcome<'_>, quantity: &Quantity, ranked: &[Contribution]) 
         layers: bars.chain([zero]).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::bins;
+
+    /// Zeros that a parameter does not move differ by rounding alone.
+    #[test]
+    fn numbers_that_rounding_parts_have_no_bars() {
+        assert!(bins(&[-47.4, -47.4 - 2e-14, -47.4 + 2e-14]).is_none());
+        let (_, heights) = bins(&[1.0, 1.5, 2.0]).expect("bars");
+        assert!(heights.iter().all(|height| height.is_finite()));
+    }
+}
