@@ -85,6 +85,13 @@ fn accepted(unit: &'static str) -> Vec<(&'static str, f64)> {
     }
 }
 
+/// The number and the unit of a value whose unit is not accepted.
+fn other_unit(text: &str) -> Option<(&str, &str)> {
+    let ends = text.char_indices().rev().map(|(end, _)| text.split_at(end));
+    let mut parts = ends.map(|(number, unit)| (number.trim(), unit));
+    parts.find(|(number, _)| number.parse().is_ok_and(f64::is_finite))
+}
+
 fn parse_value(name: &str, text: &str, unit: &'static str) -> Result<f64, String> {
     let units = accepted(unit);
     let with_unit = units
@@ -92,9 +99,13 @@ fn parse_value(name: &str, text: &str, unit: &'static str) -> Result<f64, String
         .find_map(|&(unit, factor)| Some((text.strip_suffix(unit)?, factor)));
     let (number, factor) = with_unit.unwrap_or((text, 1.0));
     let number: f64 = number.trim().parse().map_err(|_| match units.first() {
-        Some((first, _)) => {
-            format!("`{text}` is no value for {name}; write for example {name}=1.5{first}")
-        }
+        Some((first, _)) => match other_unit(text) {
+            Some((number, other)) => format!(
+                "`{text}`: {name} is in {}, not in {other}; write for example {name}={number}{first}",
+                units.iter().map(|it| it.0).collect::<Vec<_>>().join(" or ")
+            ),
+            None => format!("`{text}` is no value for {name}; write for example {name}=1.5{first}"),
+        },
         None => format!("`{text}` is no value for {name}, which is a bare number"),
     })?;
     let is_angle = unit.starts_with("rad");

@@ -20,6 +20,7 @@ use crate::number::{Shown, positive};
 use crate::output;
 use crate::progress::{Progress, Work};
 use crate::registry::needs_noise;
+use crate::show::show;
 use crate::signals::Stoppable;
 use crate::steps::{MOST_STEPS, allowed};
 use crate::vehicle::{Vehicle, VehicleArgs};
@@ -109,7 +110,8 @@ struct Outcome<'a> {
     /// Members that were flown.
     members: u64,
     sampled: Vec<Snapshot>,
-    stationary: Option<DMatrix<f64>>,
+    /// If it is asked for: where the linear system comes to rest, or why it does not.
+    stationary: Option<Result<DMatrix<f64>, String>>,
 }
 
 /// Steps of each part of the flight.
@@ -170,6 +172,13 @@ fn spread(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
         CovarianceError::Times => Failure::Request(format!("--dt and --t-end: {error}")),
         _ => Failure::Numeric(format!("{}: {error}", vehicle.name())),
     };
+    let restless = |error: CovarianceError| match error {
+        CovarianceError::NotAtRest { name, rate } => format!(
+            "there is no stationary covariance: the flight is not at rest, {name} changes by {} per s",
+            show(rate, vehicle.unit(name))
+        ),
+        _ => error.to_string(),
+    };
     // Not multiples of a part: 14 of 20 parts of 1 s are 0.7 s.
     let time = |index| arguments.t_end * f64::from(index) / f64::from(SAMPLES);
     let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
@@ -177,8 +186,7 @@ fn spread(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let linear = linear.map_err(failed)?;
     let stationary = arguments
         .stationary
-        .then(|| model.stationary(parameters, &flight).map_err(failed))
-        .transpose()?;
+        .then(|| model.stationary(parameters, &flight).map_err(restless));
     let stoppable = Stoppable::new(progress.control());
     let sampled = sample(vehicle, &experiment, arguments.members, progress.control());
     drop(stoppable);
@@ -197,6 +205,10 @@ fn spread(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     };
     // Whatever fails, the rest is reported; the picture comes last.
     let written = folder.map_or(Ok(()), |folder| outcome.write(folder));
+    let rest = match &outcome.stationary {
+        Some(Err(why)) => Err(Failure::Numeric(format!("{}: {why}", vehicle.name()))),
+        _ => Ok(()),
+    };
     let printed = if arguments.json {
         output::print_json(&outcome.json())
     } else {
@@ -205,7 +217,7 @@ fn spread(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let drawn = folder.map_or(Ok(()), |folder| {
         output::picture(&folder.join("covariance.svg"), figure::draw(&outcome))
     });
-    written.and(printed).and(drawn)?;
+    written.and(printed).and(drawn).and(rest)?;
     if outcome.is_complete() {
         return Ok(());
     }

@@ -460,4 +460,13 @@ fn tracking_writes_its_parts_and_repeats() {
     assert!(picture.starts_with("<svg") && picture.contains("backstepping, median"));
     assert_eq!(run("5"), first);
     assert_ne!(run("6"), first);
+    // One controller leaves the other's flight of an earlier run, and says so.
+    let alone = ["--runs", "2", "--controller", "lqr", "--out", path(&out)];
+    let output = ahv(&[&["track"], &alone[..]].concat());
+    let [told, warned] = [&output.stdout, &output.stderr].map(|it| String::from_utf8_lossy(it));
+    assert!(
+        warned.contains("backstepping.csv is of an earlier run"),
+        "{warned}"
+    );
+    assert!(!told.contains("for each controller"), "{told}");
 }

@@ -134,3 +134,34 @@ fn a_full_device_is_a_failure_of_the_help_too() {
         assert_eq!(status.expect("ahv starts").code(), Some(2), "{arguments:?}");
     }
 }
+
+/// Values stand in the unit in which they are asked for, and a unit of the other system is named.
+#[test]
+fn units_of_values_are_explained() {
+    let flight = "covariance --model sdcom --members 30 --t-end 0.1";
+    let members = "montecarlo --model sdcom --members 8 --t-end 0.1";
+    for (line, words) in [
+        (
+            format!("{flight} --units si --state-std altitude=50ft"),
+            ["`50ft`", "altitude is in m, not in ft", "altitude=50m"],
+        ),
+        (
+            format!("{flight} --state-std altitude=1e3m"),
+            ["`1e3m`", "altitude is in ft, not in m", "altitude=1e3ft"],
+        ),
+        (
+            format!("{flight} --state-std alpha=-1deg"),
+            ["--state-std", "alpha is -1 deg", "0 or more"],
+        ),
+        (
+            format!("{members} --limit alpha=0..3deg"),
+            ["--limit", "needs a unit", "alpha=0deg..3deg"],
+        ),
+        (
+            format!("{members} --limit alpha=3deg..2deg"),
+            ["--limit", "lower limit 3 deg", "upper one 2 deg"],
+        ),
+    ] {
+        refused(&line, &words);
+    }
+}

@@ -219,6 +219,9 @@ fn covariance_reports_the_flights_that_were_flown() {
     let read = |name: &str| fs::read_to_string(place.path().join(name)).expect("a file");
     assert!(read("covariance.csv").trim_end().ends_with(",false"));
     assert!(read("covariance.svg").contains("interrupted: "));
+    let said = String::from_utf8_lossy(&output.stderr);
+    let part = format!("interrupted: {members} of 1000000 flights were flown, and are reported");
+    assert!(said.contains(&part), "{said}");
 }
 
 /// The repetitions that were flown make an estimate of their own, which says that it is a part.

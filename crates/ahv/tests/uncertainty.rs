@@ -73,6 +73,20 @@ fn the_spread_is_told_in_numbers() {
 #[test]
 fn what_varies_and_what_moves_together_is_chosen() {
     let lift = json(&[&FEW[..], &["--vary", "C_L"]].concat());
+    // Parameters without effect are left out: the noise does not move a trim.
+    let stochastic = ["disperse", "--model", "sdcom", "--members", "30"];
+    let effects = [&stochastic[..], &["--vary", "sigma,C_L", "--top", "99"]].concat();
+    let told = text(&effects);
+    let effects: Vec<&str> = told
+        .lines()
+        .filter(|it| it.starts_with("    "))
+        .map(str::trim)
+        .collect();
+    assert!(
+        effects.iter().any(|it| it.starts_with("c_l_alpha ")),
+        "{told}"
+    );
+    assert!(!effects.iter().any(|it| it.starts_with("sigma")), "{told}");
     let names = |outcome: &Value| -> Vec<String> {
         let effects = outcome["quantities"][0]["sensitivities"]
             .as_array()
@@ -288,6 +302,17 @@ fn a_regulated_flight_stays_and_an_unstable_one_has_no_stationary_covariance() {
         message.contains("the short period mode has the pole +1.67"),
         "{message}"
     );
+    // All else is reported.
+    let rest: Value = {
+        let output = run(&[&few[..], &["--json"]].concat());
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    assert_eq!(rest["times"].as_array().map(Vec::len), Some(20));
+    assert!(rest["stationary_std"].is_null());
+    let climbing = run(&[&few[..], &["--gamma", "1"]].concat());
+    let message = String::from_utf8_lossy(&climbing.stderr);
+    let place = "not at rest, altitude changes by 134.419845 ft per s";
+    assert!(message.contains(place), "{message}");
     let spread = [
         "--feedback",
         gains,

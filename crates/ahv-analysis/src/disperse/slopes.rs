@@ -35,8 +35,8 @@ pub struct Contribution {
 }
 
 impl Slopes {
-    /// What each parameter contributes to the quantity number `quantity`, the greatest first; empty for a root that is
-    /// not simple.
+    /// What each parameter contributes to the quantity number `quantity`, the greatest first, without those that contribute
+    /// nothing; empty for a root that is not simple.
     pub fn ranked(&self, quantity: usize, draws: &Draws) -> Vec<Contribution> {
         let slopes = self.by_quantity.get(quantity).and_then(Option::as_ref);
         let pairs = slopes
@@ -48,6 +48,7 @@ impl Slopes {
                 slope,
                 effect: slope * draws.deviation(parameter),
             })
+            .filter(|it| it.effect != 0.0)
             .collect();
         contributions.sort_by(|a, b| b.effect.abs().total_cmp(&a.effect.abs()));
         contributions

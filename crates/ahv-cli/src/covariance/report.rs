@@ -141,8 +141,13 @@ impl Outcome<'_> {
             .max_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
+    /// The stationary covariance, if it is asked for and there is one.
+    fn stationary(&self) -> Option<&DMatrix<f64>> {
+        self.stationary.as_ref()?.as_ref().ok()
+    }
+
     fn stationary_std(&self) -> Option<Vec<f64>> {
-        let variances = self.stationary.as_ref()?.diagonal();
+        let variances = self.stationary()?.diagonal();
         Some(
             variances
                 .iter()
@@ -179,7 +184,7 @@ impl Outcome<'_> {
             share_inside: self.share_inside(),
             worst_ratio: self.worst(),
             stationary_std: self.stationary_std().map(|std| states.pairs(std)),
-            stationary_covariance: self.stationary.as_ref().map(rows),
+            stationary_covariance: self.stationary().map(rows),
             times: self.pairs().map(at).collect(),
         }
     }

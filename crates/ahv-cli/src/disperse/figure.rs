@@ -190,7 +190,6 @@ pub(super) fn sensitivities(outcome: &Outcome<'_>) -> Result<String, String> {
     let panels = outcome.headline().into_iter().filter_map(|index| {
         let quantity = outcome.nominal.quantities.get(index)?;
         let mut ranked = outcome.ranked(index);
-        ranked.retain(|it| it.effect != 0.0);
         ranked.truncate(outcome.arguments.top);
         (!ranked.is_empty()).then(|| tornado(outcome, quantity, &ranked))
     });

@@ -101,7 +101,6 @@ impl Outcome<'_> {
                 .slopes
                 .ranked(index, &self.draws)
                 .into_iter()
-                .filter(|it| it.effect != 0.0)
                 .map(|it| JsonSensitivity {
                     parameter: self.parameter(&it),
                     slope: it.slope,
@@ -209,7 +208,7 @@ impl Outcome<'_> {
                 count => format!("{count} parameters"),
             },
             match self.draws.distribution() {
-                Distribution::Uniform => "uniform within their uncertainty",
+                Distribution::Uniform => "uniform within the uncertainty",
                 Distribution::Normal => "normal, the uncertainty three standard deviations",
             },
             self.arguments.seed
@@ -265,12 +264,10 @@ impl Outcome<'_> {
             let (label, factor) = self.label(&self.nominal.quantities[index]);
             let _ = write!(text, "\n  {label}:");
             for it in self.ranked(index).iter().take(self.arguments.top) {
-                let _ = write!(
-                    text,
-                    "\n    {:<20} {:+.5}",
-                    self.parameter(it),
-                    Shown(factor * it.effect)
-                );
+                let effect = factor * it.effect;
+                let sign = if effect > 0.0 { "+" } else { "" };
+                let (parameter, effect) = (self.parameter(it), number(effect));
+                let _ = write!(text, "\n    {parameter:<20} {sign}{effect}");
             }
         }
         text

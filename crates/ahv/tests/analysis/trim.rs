@@ -212,6 +212,16 @@ fn a_trim_outside_the_box_says_so() {
     let told = text(&words);
     let place = "velocity is 12000 ft/s, outside its validity box of 7000 ft/s to 11000 ft/s";
     assert!(told.contains(place), "{told}");
+    let low = [&words[..6], &["70000"]].concat();
+    let (trim, told) = (json(&low), text(&low));
+    assert_eq!(trim["outside_validity_box"]["name"], "velocity");
+    for state in [
+        "velocity is 12000 ft/s",
+        "altitude is 70000 ft",
+        "eta_1 is 3.031131",
+    ] {
+        assert!(told.contains(state), "{told}");
+    }
 }
 
 #[test]
@@ -285,7 +295,26 @@ fn a_map_is_a_table_and_a_picture() {
         assert!(svg.contains(part), "no {part:?}");
     }
     let told = text(&words);
-    assert!(told.contains("of 20 points trim"), "{told}");
+    assert!(
+        told.contains("of 20 points trim, gamma 0 deg, written"),
+        "{told}"
+    );
+    // What is given elsewhere than at 0 is part of the result, wherever that is read.
+    let climb = [&words[..], &["--gamma", "1"]].concat();
+    assert_eq!(json(&climb)["gamma_deg"], 1.0);
+    let told = text(&climb);
+    assert!(
+        told.contains("of 20 points trim, gamma 1 deg, written"),
+        "{told}"
+    );
+    let csv = fs::read_to_string(out.join("trim_map.csv")).expect("it is written");
+    assert!(
+        csv.lines()
+            .next()
+            .is_some_and(|head| head.contains("gamma [rad]"))
+    );
+    let svg = fs::read_to_string(out.join("trim_map.svg")).expect("it is written");
+    assert!(svg.contains("gamma 1 deg"));
     fail(
         &["trim", "--model", "com", "--map", "20", "--out", "x"],
         2,

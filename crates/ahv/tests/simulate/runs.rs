@@ -40,6 +40,7 @@ fn a_trimmed_flight_stays_at_its_trim() {
     assert_eq!(json["choices"]["canard"], "none");
     assert_eq!(json["unit_system"], "ft-slug-s-rad");
     assert_eq!(json["steps"], 50);
+    assert_eq!(json["scheme"], "rk4");
     assert_eq!(json["seed"], Value::Null);
     assert_eq!(json["left_validity_box"], Value::Null);
     // serde_json reads back to a last digit.
@@ -102,6 +103,12 @@ fn the_last_step_ends_at_the_end() {
     assert_eq!(json(&output)["steps"], 4);
     let times: Vec<f64> = bench.rows().iter().map(|row| row[0]).collect();
     assert_eq!((times.len(), times[3], times[4]), (5, 0.09, 0.1));
+    let short = bench.succeed(&["--model", "dcom", "--t-end", "0.1", "--dt", "2"]);
+    let told = String::from_utf8_lossy(&short.stdout);
+    assert!(
+        told.starts_with("dcom: rk4, 1 step of 0.1 s to 0.1 s, written"),
+        "{told}"
+    );
 }
 
 #[test]
