@@ -110,7 +110,7 @@ pub(crate) fn measure(rounds: u32) -> Result<Weak, String> {
     })
 }
 
-fn experiment_of(scheme: Scheme, dt: f64, seed: u64) -> Experiment<Model<f64>> {
+fn experiment_of(scheme: Scheme, dt: f64, seed: u64) -> Experiment {
     Experiment {
         scheme,
         dt,
@@ -121,7 +121,7 @@ fn experiment_of(scheme: Scheme, dt: f64, seed: u64) -> Experiment<Model<f64>> {
 }
 
 fn moments_of(
-    experiment: &Experiment<Model<f64>>,
+    experiment: &Experiment,
     threads: &ThreadPool,
 ) -> Result<Vec<f64>, String> {
     let ends = fly(experiment, FLIGHTS, threads)?;

@@ -1,6 +1,8 @@
 //! The product's ways to do it. A row more is a [`Runner`] more in [`runners`].
 
-use ahv_analysis::monte_carlo::{Control, Experiment, LANES, Mode, Scheme};
+use ahv_analysis::erased::values;
+use ahv_analysis::monte_carlo::{Experiment, LANES, Mode, Scheme};
+use ahv_analysis::ordered::Control;
 use ahv_core::Vector as _;
 use ahv_integrate::{ItoEulerMaruyama, WienerSource};
 use ahv_models::sdcom::{Input, Model, Noise, State};
@@ -47,12 +49,12 @@ pub(crate) fn runners(flight: Flight, threads: usize) -> Result<Vec<Runner<'stat
 }
 
 /// What members fly from a start at held inputs, by the method of the peers, with nothing watched.
-pub(crate) fn experiment(flight: &Flight, mode: Mode) -> Experiment<Model<f64>> {
+pub(crate) fn experiment(flight: &Flight, mode: Mode) -> Experiment {
     Experiment {
-        parameters: flight.parameters,
+        parameters: values(&flight.parameters),
         dispersion: None,
-        state: [flight.start, State::splat(0.0)],
-        input: [flight.input, Input::splat(0.0)],
+        state: [values(&flight.start), values(&State::splat(0.0))],
+        input: [values(&flight.input), values(&Input::splat(0.0))],
         feedback: None,
         watched: Vec::new(),
         scheme: Scheme::EulerMaruyama,
@@ -65,21 +67,20 @@ pub(crate) fn experiment(flight: &Flight, mode: Mode) -> Experiment<Model<f64>> 
 
 /// The ends of members, [`LANES`] at a time.
 pub(crate) fn fly(
-    experiment: &Experiment<Model<f64>>,
+    experiment: &Experiment,
     members: u64,
     pool: &ThreadPool,
 ) -> Result<Vec<[f64; STATES]>, String> {
     let control = Control::default();
-    let propagator = experiment
-        .propagator()
-        .map_err(|it| format!("error: {it}"))?;
+    let engine = experiment.engine::<Model<f64>>();
+    let engine = engine.map_err(|it| format!("error: {it}"))?;
     let batch = |first: u64| {
         let first = first * LANES as u64;
         let numbers: Vec<u64> = (first..members.min(first + LANES as u64)).collect();
-        let seen = propagator.fly(&numbers, &control);
+        let seen = engine.fly(&numbers, &control);
         let seen = seen.map_err(|it| format!("error: {it}"))?;
         let ends = seen.into_iter().flatten().map(|it| match it.lost {
-            None => Ok(it.last.to_array()),
+            None => Ok(std::array::from_fn(|state| it.last[state])),
             Some(_) => Err("error: a member is lost".to_owned()),
         });
         ends.collect::<Result<Vec<_>, String>>()
@@ -92,7 +93,7 @@ pub(crate) fn fly(
 }
 
 fn side_by_side(
-    experiment: &Experiment<Model<f64>>,
+    experiment: &Experiment,
     seed: u64,
     pool: &ThreadPool,
 ) -> Result<Vec<[f64; STATES]>, String> {

@@ -15,7 +15,7 @@ use std::sync::atomic::Ordering;
 
 use ahv_core::GeneratedModel;
 
-use crate::monte_carlo::Control;
+use crate::ordered::Control;
 use crate::ordered::in_order;
 use crate::trim::SteadyState;
 

@@ -3,7 +3,6 @@
 //! [`AnyModel`] says what [`GeneratedModel`] says, and does what this crate does, with vectors that are slices in the order of
 //! their names. It is compiled once for a model; what is written over it is compiled once for all.
 
-mod flights;
 mod model;
 mod steppers;
 
@@ -15,13 +14,11 @@ use nalgebra::DMatrix;
 use crate::covariance::{CovarianceError, Flight, Spreading};
 use crate::disperse::{Draws, Member, Nominal, Slopes, SolutionError};
 use crate::linearize::{LinearSystem, LinearizeError};
-use crate::monte_carlo::{
-    Control, MonteCarloError, Outcome, RareEstimate, RareEvent, Scheme, Unsteady,
-};
+use crate::monte_carlo::{Engine, Experiment, Feedback, MonteCarloError, Scheme, Unsteady};
+use crate::ordered::Control;
 use crate::trim::{SteadyState, Trim, TrimError};
 
 pub use crate::values::{values, vector};
-pub use flights::{Experiment, Feedback, Point, Seen};
 pub use steppers::{Advance, Calm, StepperError};
 
 /// Names and units of the components of a vector.
@@ -74,9 +71,6 @@ pub struct ParameterValues {
     /// Relative uncertainties.
     pub uncertainty: Vec<f64>,
 }
-
-/// Is given what was seen of members in their order, many at a time, after the number of the first.
-pub type List<'l> = &'l mut dyn FnMut(u64, &[Seen]);
 
 /// A model, whichever it is; p, x and u stand for parameters, state and input in the order of their names.
 pub trait AnyModel: Send + Sync {
@@ -152,19 +146,15 @@ pub trait AnyModel: Send + Sync {
     fn covariance(
         &self,
         p: &[f64],
-        flight: &Flight<Vec<f64>, Vec<f64>>,
+        flight: &Flight,
         times: &[f64],
-    ) -> Result<Vec<Spreading<Vec<f64>>>, CovarianceError>;
+    ) -> Result<Vec<Spreading>, CovarianceError>;
     /// As [`Flight::stationary`].
     ///
     /// # Errors
     ///
     /// Those of [`Flight::stationary`].
-    fn stationary(
-        &self,
-        p: &[f64],
-        flight: &Flight<Vec<f64>, Vec<f64>>,
-    ) -> Result<DMatrix<f64>, CovarianceError>;
+    fn stationary(&self, p: &[f64], flight: &Flight) -> Result<DMatrix<f64>, CovarianceError>;
 
     /// As [`crate::disperse::nominal`].
     ///
@@ -189,7 +179,7 @@ pub trait AnyModel: Send + Sync {
 
     /// As [`Scheme::default_for`].
     fn default_scheme(&self, p: &[f64]) -> Scheme;
-    /// As [`crate::monte_carlo::Feedback::unsteady`].
+    /// As [`Feedback::unsteady`].
     fn unsteady(&self, p: &[f64], feedback: &Feedback) -> Option<Unsteady>;
     /// The steps of a single flight without noise.
     ///
@@ -203,41 +193,12 @@ pub trait AnyModel: Send + Sync {
     ///
     /// [`StepperError::NoColouredNoise`], [`StepperError::Noise`]
     fn noisy(&self, p: &[f64], scheme: Scheme, seed: u64) -> Result<Advance, StepperError>;
-    /// As [`crate::monte_carlo::Experiment::run_and_list`]; without a list as [`crate::monte_carlo::Experiment::run`].
+    /// As [`Experiment::engine`].
     ///
     /// # Errors
     ///
-    /// Those of [`crate::monte_carlo::Experiment::run_and_list`].
-    fn run_and_list(
-        &self,
-        experiment: &Experiment,
-        members: u64,
-        threads: usize,
-        control: &Control,
-        list: Option<List<'_>>,
-    ) -> Result<Outcome, MonteCarloError>;
-    /// As [`crate::monte_carlo::Experiment::trajectory`], with every step.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`crate::monte_carlo::Experiment::trajectory`].
-    fn trajectory(
-        &self,
-        experiment: &Experiment,
-        member: u64,
-    ) -> Result<Vec<Point>, MonteCarloError>;
-    /// As [`crate::monte_carlo::Experiment::first_passage`].
-    ///
-    /// # Errors
-    ///
-    /// Those of [`crate::monte_carlo::Experiment::first_passage`].
-    fn first_passage(
-        &self,
-        experiment: &Experiment,
-        event: &RareEvent,
-        threads: usize,
-        control: &Control,
-    ) -> Result<RareEstimate, MonteCarloError>;
+    /// Those of [`Experiment::engine`].
+    fn engine<'e>(&self, experiment: &'e Experiment) -> Result<Engine<'e>, MonteCarloError>;
 }
 
 /// The model `M`.

@@ -7,11 +7,13 @@
 
 mod arithmetic;
 mod batch;
-
+mod engine;
 mod experiment;
 mod feedback;
 mod lanes;
+mod observe;
 mod outcome;
+mod passage;
 mod propagator;
 mod rare;
 mod scheme;
@@ -19,18 +21,18 @@ mod spread;
 
 use ahv_core::Shown;
 use ahv_integrate::NoiseError;
+use scheme::MOST_NORMALS;
 
 pub use arithmetic::Mode;
 pub use batch::Loss;
-pub use experiment::{Control, Experiment, Seen};
+pub use engine::{Engine, Point};
+pub use experiment::{Experiment, Particle, Seen};
 pub use feedback::{Feedback, Unsteady};
 pub use lanes::{LANES, Packed};
-pub use outcome::{Outcome, Point, Snapshot, StateSpread};
-pub use propagator::{Propagator, generic_point};
+pub use outcome::{Outcome, Snapshot, StateSpread};
+pub use propagator::generic_point;
 pub use rare::{FEWEST_REPETITIONS, Level, RareError, RareEstimate, RareEvent};
 pub use scheme::Scheme;
-
-use scheme::MOST_NORMALS;
 pub use spread::{Bin, QUANTILES};
 
 /// Why members cannot be flown.

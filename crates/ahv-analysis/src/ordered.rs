@@ -1,6 +1,17 @@
 //! Work on many members that can be stopped.
 
+use std::sync::atomic::{AtomicBool, AtomicU64};
+
 use rayon::prelude::*;
+
+/// Counts steps, and stops the work when asked to.
+#[derive(Debug, Default)]
+pub struct Control {
+    /// Steps of members that are done.
+    pub done: AtomicU64,
+    /// Whether to stop.
+    pub stop: AtomicBool,
+}
 
 /// What `make` makes of each item, up to the first of which it makes nothing, because it was stopped.
 ///

@@ -8,9 +8,11 @@ use std::marker::PhantomData;
 use ahv_analysis::covariance::{
     CovarianceError, Flight, Regulation, Spreading, lyapunov, noise_intensity,
 };
+use ahv_analysis::erased::{values, vector};
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
-use ahv_analysis::monte_carlo::{Control, Experiment, Mode, Scheme, Snapshot};
+use ahv_analysis::monte_carlo::{Experiment, Mode, Scheme, Snapshot};
+use ahv_analysis::ordered::Control;
 use ahv_analysis::statistics::Estimate;
 use ahv_analysis::trim::trim;
 use ahv_core::{DifferentiableModel, GeneratedModel, Model, Pattern, StochasticModel, Vector};
@@ -145,10 +147,10 @@ impl StochasticModel for Square {
 /// x = 1/(1 + t), so that Ṗ = −4 P/(1 + t) + σ² and P = σ² ((1 + t)⁵ − 1)/(5 (1 + t)⁴).
 #[test]
 fn the_covariance_follows_a_curved_flight_with_order_2() {
-    let (model, one) = (Square(0.3), One { x: 1.0 });
+    let model = Square(0.3);
     let times = [0.0, 0.5, 0.505, 3.0];
     let errors = [2e-2, 1e-2].map(|dt| {
-        let spread = Flight::new(one, one, dt).covariance(&model, &times);
+        let spread = Flight::new(vec![1.0], vec![1.0], dt).covariance(&model, &times);
         let errors = spread
             .expect("a flight")
             .into_iter()
@@ -156,7 +158,7 @@ fn the_covariance_follows_a_curved_flight_with_order_2() {
             .map(|(it, time)| {
                 let r = 1.0 + time;
                 let expected = 0.09 * (r.powi(5) - 1.0) / (5.0 * r.powi(4));
-                [it.state.x - 1.0 / r, it.covariance[(0, 0)] - expected]
+                [it.state[0] - 1.0 / r, it.covariance[(0, 0)] - expected]
             });
         errors.collect::<Vec<_>>()
     });
@@ -172,8 +174,8 @@ fn the_covariance_follows_a_curved_flight_with_order_2() {
 
 #[test]
 fn times_and_steps_without_sense_are_refused() {
-    let (model, one) = (Square(0.3), One { x: 1.0 });
-    let flight = |dt| Flight::new(one, one, dt);
+    let model = Square(0.3);
+    let flight = |dt| Flight::new(vec![1.0], vec![1.0], dt);
     for (dt, times) in [
         (0.0, vec![1.0]),
         (f64::NAN, vec![1.0]),
@@ -185,7 +187,7 @@ fn times_and_steps_without_sense_are_refused() {
         assert_eq!(refused, Err(CovarianceError::Times), "{dt} {times:?}");
     }
     let diverged = Flight {
-        start: One { x: -1.0 },
+        start: vec![-1.0],
         ..flight(0.01)
     };
     let failure = diverged.covariance(&model, &[3.0]);
@@ -274,8 +276,6 @@ impl StochasticModel for Pair {
     }
 }
 
-const REST: Two<f64> = Two { x: 0.0, y: 0.0 };
-const IDLE: One<f64> = One { x: 0.0 };
 
 /// Var x = g²(1 − e^(−2at))/(2a) and Var y = g²/a² (t − 2(1 − e^(−at))/a + (1 − e^(−2at))/(2a)): a step as long as one likes.
 #[test]
@@ -283,7 +283,7 @@ fn coloured_noise_and_its_integral_have_their_closed_form_however_stiff() {
     for a in [0.5, 40.0, 2625.0, 1e5] {
         let model = Pair { a, c: 0.0, g: 3.0 };
         for dt in [0.01, 0.05, 1.0] {
-            let spread = Flight::new(REST, IDLE, dt).covariance(&model, &[0.05, 1.0]);
+            let spread = Flight::new(vec![0.0; 2], vec![0.0], dt).covariance(&model, &[0.05, 1.0]);
             for it in spread.expect("a flight") {
                 let t = it.time;
                 let [once, twice] = [1.0, 2.0].map(|k| -f64::exp_m1(-k * a * t) / (k * a));
@@ -308,7 +308,7 @@ fn an_initial_covariance_moves_with_the_flight() {
     let model = Pair { a, c, g: 0.0 };
     let flight = Flight {
         initial: matrix(&[&[0.04, 0.0, 0.01], &[0.0, 0.0, 0.0], &[0.01, 0.0, 0.09]]),
-        ..Flight::new(REST, IDLE, 0.1)
+        ..Flight::new(vec![0.0; 2], vec![0.0], 0.1)
     };
     let spread = flight.covariance(&model, &[t]).expect("a flight");
     let (e, r) = ((-a * t).exp(), -f64::exp_m1(-a * t) * c / a);
@@ -327,7 +327,7 @@ fn units_of_an_initial_covariance_do_not_matter() {
     };
     let of = |initial| Flight {
         initial,
-        ..Flight::new(REST, IDLE, 0.1)
+        ..Flight::new(vec![0.0; 2], vec![0.0], 0.1)
     };
     let (small, large, share) = (1e-9, 1e6, 0.9);
     let both = share * small * large;
@@ -424,20 +424,20 @@ impl<U: Vector<f64>> StochasticModel for Driven<U> {
 /// An input known to σ moves each state by σ t: sixteen states and inputs have it, and seventeen are refused.
 #[test]
 fn as_many_states_and_inputs_as_transitions_are_made_for() {
-    let still = Fifteen::splat(0.0);
-    let mut flight = Flight::new(still, IDLE, 0.1);
+    let still = vec![0.0; 15];
+    let mut flight = Flight::new(still.clone(), vec![0.0], 0.1);
     flight.initial[(15, 15)] = 0.04;
-    let spread = flight.covariance(&Driven(PhantomData), &[3.0]);
+    let spread = flight.covariance(&Driven::<One<f64>>(PhantomData), &[3.0]);
     for std in spread.expect("a flight")[0].std() {
         assert_relative_eq!(std, 0.6, max_relative = 1e-12);
     }
-    let one_more = Flight::new(still, REST, 0.1);
+    let one_more = Flight::new(still, vec![0.0; 2], 0.1);
     let expected = CovarianceError::TooLarge {
         found: 17,
         most: 16,
     };
     assert_eq!(
-        one_more.covariance(&Driven(PhantomData), &[3.0]),
+        one_more.covariance(&Driven::<Two<f64>>(PhantomData), &[3.0]),
         Err(expected)
     );
 }
@@ -450,7 +450,7 @@ fn a_closed_loop_comes_to_rest_where_lyapunov_says() {
         c: 1.0,
         g: 0.3,
     };
-    let open = Flight::new(REST, IDLE, 0.05);
+    let open = Flight::new(vec![0.0; 2], vec![0.0], 0.05);
     let failure = open.stationary_among(&model, &[]);
     assert!(
         matches!(
@@ -461,11 +461,11 @@ fn a_closed_loop_comes_to_rest_where_lyapunov_says() {
     );
     let closed = Flight {
         feedback: Some(Regulation {
-            state: REST,
-            rate: REST.map(|_| 0.0),
-            input: IDLE,
+            state: vec![0.0; 2],
+            rate: vec![0.0; 2],
+            input: vec![0.0],
             gain: matrix(&[&[3.0, 2.0]]),
-            bandwidth: One { x: 20.0 },
+            bandwidth: vec![20.0],
         }),
         ..open.clone()
     };
@@ -478,7 +478,7 @@ fn a_closed_loop_comes_to_rest_where_lyapunov_says() {
         epsilon = 1e-12
     );
     let moving = Flight {
-        start: Two { x: 0.1, y: 0.0 },
+        start: vec![0.1, 0.0],
         ..closed
     };
     assert!(matches!(
@@ -488,9 +488,9 @@ fn a_closed_loop_comes_to_rest_where_lyapunov_says() {
 }
 
 /// A flight of a model at its trim, with held inputs.
-fn held<M: GeneratedModel>(model: &M, dt: f64) -> Flight<M::State, M::Input> {
+fn held<M: GeneratedModel>(model: &M, dt: f64) -> Flight {
     let trim = trim(model, &level::<M>()).expect("it trims");
-    Flight::new(trim.state, trim.input, dt)
+    Flight::new(values(&trim.state), values(&trim.input), dt)
 }
 
 /// exp(M), by its series for M/2⁸ and squaring.
@@ -514,9 +514,10 @@ fn the_covariance_at_a_trim_is_that_of_one_matrix_exponential() {
     let model = sdcom::Model::new(&sdcom::NOMINAL);
     let flight = held(&model, 0.1);
     let spread = flight.covariance(&model, &[0.5]).expect("a flight");
-    let (a, _) = model.jacobians(&flight.start, &flight.input);
+    let (x, u) = (vector(&flight.start), vector(&flight.input));
+    let (a, _) = model.jacobians(&x, &u);
     let a: [[f64; 8]; 8] = a.to_matrix();
-    let noise = noise_intensity(&model, &flight.start, &flight.input);
+    let noise = noise_intensity(&model, &x, &u);
     let t = 0.05;
     let mut block = DMatrix::zeros(16, 16);
     for row in 0..8 {
@@ -540,17 +541,18 @@ fn the_covariance_at_a_trim_is_that_of_one_matrix_exponential() {
 
 /// The ensemble of the same flight, by the default scheme of its model.
 fn sample<M: GeneratedModel>(
-    flight: &Flight<M::State, M::Input>,
+    flight: &Flight,
     parameters: &M::ParametersOf<f64>,
     scheme: Scheme,
     snapshots: Vec<u64>,
     members: u64,
 ) -> Vec<Snapshot> {
-    let experiment = Experiment::<M> {
-        parameters: *parameters,
+    let still = |it: &[f64]| vec![0.0; it.len()];
+    let experiment = Experiment {
+        parameters: values(parameters),
         dispersion: None,
-        state: [flight.start, Vector::splat(0.0)],
-        input: [flight.input, Vector::splat(0.0)],
+        state: [flight.start.clone(), still(&flight.start)],
+        input: [flight.input.clone(), still(&flight.input)],
         feedback: None,
         watched: Vec::new(),
         scheme,
@@ -559,12 +561,13 @@ fn sample<M: GeneratedModel>(
         snapshots,
         seed: 3,
     };
-    let outcome = experiment.run(members, 2, &Control::default());
+    let engine = experiment.engine::<M>().expect("the scheme goes");
+    let outcome = engine.run(members, 2, &Control::default());
     outcome.expect("flights").snapshots
 }
 
 /// Every standard deviation in its interval of 95 % would be luck: 2.3 half widths hold each with near certainty.
-fn agrees(linear: &Spreading<impl Vector<f64>>, sampled: &Snapshot) {
+fn agrees(linear: &Spreading, sampled: &Snapshot) {
     for (index, (linear, state)) in linear.std().into_iter().zip(&sampled.states).enumerate() {
         let Estimate { value, low, high } =
             state.std.and_then(|it| it.closed()).expect("a deviation");
@@ -621,10 +624,11 @@ fn stiff_coloured_noise_has_its_exact_deviation_at_any_step() {
     let chi = 7;
     let exact = {
         let flight = held(&model, 1.0);
-        let (a, _) = model.jacobians(&flight.start, &flight.input);
+        let (x, u) = (vector(&flight.start), vector(&flight.input));
+        let (a, _) = model.jacobians(&x, &u);
         let rate = -a.chi_3.chi_3;
         assert!((2600.0..2650.0).contains(&rate), "{rate}");
-        let noise = noise_intensity(&model, &flight.start, &flight.input);
+        let noise = noise_intensity(&model, &x, &u);
         (noise[(chi, chi)] / (2.0 * rate)).sqrt()
     };
     assert!((exact - 0.0329).abs() < 5e-5, "{exact}");
@@ -655,7 +659,14 @@ fn a_regulated_flight_has_a_stationary_covariance() {
         })
     ));
     let inputs = ["phi", "delta_e"];
-    let system = linearize(&model, &open.start, &open.input, &inputs, &[]).expect("linear");
+    let system = linearize(
+        &model,
+        &vector(&open.start),
+        &vector(&open.input),
+        &inputs,
+        &[],
+    )
+    .expect("linear");
     let x_std: sdcom::State<f64> = deviations(<sdcom::Model<f64>>::DEVIATIONS);
     let u_std: sdcom::Input<f64> = deviations(<sdcom::Model<f64>>::DEVIATIONS);
     let regulator = Regulator::new(
@@ -667,15 +678,11 @@ fn a_regulated_flight_has_a_stationary_covariance() {
     let gain = regulator.expect("a regulator").gain.insert_row(2, 0.0);
     let closed = Flight {
         feedback: Some(Regulation {
-            state: open.start,
-            rate: sdcom::State::splat(0.0),
-            input: open.input,
+            state: open.start.clone(),
+            rate: vec![0.0; 8],
+            input: open.input.clone(),
             gain,
-            bandwidth: sdcom::Input {
-                phi: 20.0,
-                delta_e: 20.0,
-                delta_c: 0.0,
-            },
+            bandwidth: vec![20.0, 20.0, 0.0],
         }),
         ..open
     };

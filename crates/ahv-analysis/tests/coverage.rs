@@ -9,7 +9,9 @@ mod common;
 use std::collections::BTreeMap;
 
 use ahv_analysis::disperse::{Distribution, Draws};
-use ahv_analysis::monte_carlo::{Control, Experiment, Mode, QUANTILES, Scheme, StateSpread};
+use ahv_analysis::erased::values;
+use ahv_analysis::monte_carlo::{Experiment, Mode, QUANTILES, Scheme, StateSpread};
+use ahv_analysis::ordered::Control;
 use ahv_analysis::statistics::{Estimate, OpenEstimate, mean_and_std};
 use ahv_analysis::trim::trim;
 use ahv_core::{GeneratedModel, Vector};
@@ -278,13 +280,15 @@ fn flights<M: GeneratedModel>(
     table: &mut Table,
     name: &str,
     states: &[&str],
-    experiment: impl Fn(u64) -> Experiment<M>,
+    experiment: impl Fn(u64) -> Experiment,
 ) {
     let seeds = seeds();
     let sizes = &MEMBERS[..if seeds > SEEDS { 2 } else { 1 }];
     for &members in sizes {
         let run = |seed, members| {
-            let outcome = experiment(seed).run(members, 2, &Control::default());
+            let experiment = experiment(seed);
+            let engine = experiment.engine::<M>().expect("the scheme goes");
+            let outcome = engine.run(members, 2, &Control::default());
             let mut snapshots = outcome.expect("flights").snapshots;
             snapshots.pop().expect("a snapshot").states
         };
@@ -317,7 +321,7 @@ fn intervals_of_flights_cover_as_documented() {
         rows: Vec::new(),
     };
     let calm = held::<sdcom::Model<f64>>(&sdcom::SECTION5_3, Scheme::Splitting, 0.02, 50);
-    flights(&mut table, "sdcom section5.3, 1 s", &["velocity"], |seed| {
+    flights::<sdcom::Model<f64>>(&mut table, "sdcom section5.3, 1 s", &["velocity"], |seed| {
         Experiment {
             seed,
             ..calm.clone()
@@ -326,7 +330,7 @@ fn intervals_of_flights_cover_as_documented() {
     let calm = held::<dcom::Model<f64>>(&dcom::NOMINAL, Scheme::Heun, 4e-3, 125);
     let uncertainty = dcom::SETS[0].uncertainty();
     let states = ["alpha", "pitch_rate"];
-    flights(&mut table, "dcom dispersed, 0.5 s", &states, |seed| {
+    flights::<dcom::Model<f64>>(&mut table, "dcom dispersed, 0.5 s", &states, |seed| {
         let law = Distribution::Uniform;
         let draws = Draws::new(dcom::NOMINAL, uncertainty, law, Vec::new(), seed);
         Experiment {
@@ -344,13 +348,13 @@ fn held<M: GeneratedModel>(
     scheme: Scheme,
     dt: f64,
     steps: u64,
-) -> Experiment<M> {
+) -> Experiment {
     let rest = trim(&M::with_parameters(parameters), &level::<M>()).expect("it trims");
     Experiment {
-        parameters: *parameters,
+        parameters: values(parameters),
         dispersion: None,
-        state: [rest.state, Vector::splat(0.0)],
-        input: [rest.input, Vector::splat(0.0)],
+        state: [values(&rest.state), vec![0.0; M::State::LEN]],
+        input: [values(&rest.input), vec![0.0; M::Input::LEN]],
         feedback: None,
         watched: Vec::new(),
         scheme,

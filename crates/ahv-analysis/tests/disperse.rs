@@ -7,7 +7,7 @@ use ahv_analysis::disperse::{
     Distribution, DrawError, Draws, Group, Kind, SolutionError, Spread, disperse, nominal, slopes,
     solve, spreads,
 };
-use ahv_analysis::monte_carlo::Control;
+use ahv_analysis::ordered::Control;
 use ahv_analysis::sensitivity::RootVectors;
 use ahv_core::{GeneratedModel, ParameterSetOf, Vector};
 use ahv_models::{com, com_rigid, dcom, sdcom};

@@ -6,9 +6,11 @@ mod common;
 use std::sync::atomic::Ordering;
 
 use ahv_analysis::actuator::Actuator;
+use ahv_analysis::erased::{values, vector};
 use ahv_analysis::monte_carlo::{
-    Control, Experiment, Feedback, Mode, MonteCarloError, QUANTILES, Scheme, Seen,
+    Experiment, Feedback, Mode, MonteCarloError, Outcome, Point, QUANTILES, Scheme, Seen,
 };
+use ahv_analysis::ordered::Control;
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
 use ahv_analysis::trim::trim;
 use ahv_core::{Bounds, ColouredNoise, GeneratedModel, Vector};
@@ -19,11 +21,14 @@ use ahv_integrate::{
 use ahv_models::{com, dcom, flexible_mode, sdcom, sdcom_gust};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use common::level;
+use nalgebra::DMatrix;
 
 type Sdcom = sdcom::Model<f64>;
 
 const SEED: u64 = 5;
 const CHANNELS: usize = sdcom::Noise::<()>::LEN;
+/// Number of δe among the inputs.
+const ELEVATOR: usize = 1;
 
 /// Near the level trim of the nominal table.
 const STATE: sdcom::State<f64> = sdcom::State {
@@ -42,14 +47,14 @@ const INPUT: sdcom::Input<f64> = sdcom::Input {
     delta_c: 0.0,
 };
 
-fn experiment(scheme: Scheme, dt: f64, snapshots: Vec<u64>) -> Experiment<Sdcom> {
+fn experiment(scheme: Scheme, dt: f64, snapshots: Vec<u64>) -> Experiment {
     Experiment {
-        parameters: sdcom::NOMINAL,
+        parameters: values(&sdcom::NOMINAL),
         dispersion: None,
-        state: [STATE, Vector::splat(0.0)],
-        input: [INPUT, Vector::splat(0.0)],
+        state: [values(&STATE), vec![0.0; 8]],
+        input: [values(&INPUT), vec![0.0; 3]],
         feedback: None,
-        watched: vec![sdcom::STATE_BOUNDS],
+        watched: vec![values(&sdcom::STATE_BOUNDS)],
         scheme,
         mode: Mode::Exact,
         dt,
@@ -58,17 +63,30 @@ fn experiment(scheme: Scheme, dt: f64, snapshots: Vec<u64>) -> Experiment<Sdcom>
     }
 }
 
+/// Of these members, the last states and how they were lost.
 fn fly<M: GeneratedModel>(
-    experiment: &Experiment<M>,
+    experiment: &Experiment,
     members: &[u64],
-) -> Result<Vec<Seen<M>>, MonteCarloError> {
-    let seen = experiment.propagator()?.fly(members, &Control::default())?;
+) -> Result<Vec<Seen>, MonteCarloError> {
+    let seen = experiment
+        .engine::<M>()?
+        .fly(members, &Control::default())?;
     Ok(seen.expect("nobody stops it"))
 }
 
-fn last(experiment: &Experiment<Sdcom>, members: &[u64]) -> Vec<sdcom::State<f64>> {
-    let seen = fly(experiment, members).expect("the scheme goes");
-    seen.into_iter().map(|seen| seen.last).collect()
+fn last(experiment: &Experiment, members: &[u64]) -> Vec<sdcom::State<f64>> {
+    let seen = fly::<Sdcom>(experiment, members).expect("the scheme goes");
+    seen.into_iter().map(|seen| vector(&seen.last)).collect()
+}
+
+fn run<M: GeneratedModel>(experiment: &Experiment, members: u64, threads: usize) -> Outcome {
+    let engine = experiment.engine::<M>().expect("the scheme goes");
+    let outcome = engine.run(members, threads, &Control::default());
+    outcome.expect("it goes")
+}
+
+fn index(name: &str) -> usize {
+    sdcom::State::<f64>::index_of(name).expect("a state")
 }
 
 /// One member by the stepper of `ahv-integrate`, its noise from `WienerSource`.
@@ -149,12 +167,7 @@ fn dri1_has_both_kinds_of_its_numbers() {
 #[test]
 fn threads_and_chunks_change_no_bit() {
     let experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 10, 20]);
-    let run = |threads| {
-        experiment
-            .run(300, threads, &Control::default())
-            .expect("it goes")
-    };
-    let (one, three) = (run(1), run(3));
+    let [one, three] = [1, 3].map(|threads| run::<Sdcom>(&experiment, 300, threads));
     assert_eq!(one.digest, three.digest);
     for (a, b) in one.snapshots.iter().zip(&three.snapshots) {
         assert_eq!(a.covariance, b.covariance);
@@ -169,10 +182,9 @@ fn threads_and_chunks_change_no_bit() {
 #[test]
 fn moments_and_quantiles_are_those_of_the_members() {
     let experiment = experiment(Scheme::EulerMaruyama, 1e-2, vec![10]);
-    let index = <sdcom::State<f64> as Vector<f64>>::index_of("altitude").expect("a state");
     for members in [300, 2300] {
-        let outcome = experiment.run(members, 2, &Control::default());
-        let spread = &outcome.expect("it goes").snapshots[0].states[index];
+        let outcome = run::<Sdcom>(&experiment, members, 2);
+        let spread = &outcome.snapshots[0].states[index("altitude")];
         let numbers: Vec<u64> = (0..members).collect();
         let batches = numbers.chunks(8).flat_map(|batch| last(&experiment, batch));
         let mut sample: Vec<f64> = batches.map(|x| x.altitude).collect();
@@ -214,11 +226,9 @@ fn moments_and_quantiles_are_those_of_the_members() {
 #[test]
 fn coloured_noise_has_its_stationary_deviation_at_a_long_step() {
     let experiment = experiment(Scheme::Splitting, 0.05, vec![12]);
-    let outcome = experiment
-        .run(4096, 2, &Control::default())
-        .expect("it goes");
+    let outcome = run::<Sdcom>(&experiment, 4096, 2);
     let model = sdcom::Model::new(&sdcom::NOMINAL);
-    let chi_1 = sdcom::State::<f64>::index_of("chi_1").expect("a state");
+    let chi_1 = index("chi_1");
     let rate = model.decay(chi_1).expect("coloured noise");
     let gain = model.prepared.chi_diffusion_1;
     let time = 0.6;
@@ -227,67 +237,78 @@ fn coloured_noise_has_its_stationary_deviation_at_a_long_step() {
     assert!(std.holds(exact), "{exact} is not in {std:?}");
 }
 
+/// Flights about a reference, by an elevator with these gains and this actuator.
+fn about(
+    state: sdcom::State<f64>,
+    rate: sdcom::State<f64>,
+    gains: &[(&str, f64)],
+    actuator: Actuator,
+) -> Experiment {
+    let mut gain = DMatrix::zeros(3, 8);
+    for &(name, value) in gains {
+        gain[(ELEVATOR, index(name))] = value;
+    }
+    let mut actuators = vec![None; 3];
+    actuators[ELEVATOR] = Some(actuator);
+    let feedback = Feedback {
+        state: values(&state),
+        rate: values(&rate),
+        input: values(&INPUT),
+        gain,
+        actuators,
+    };
+    Experiment {
+        feedback: Some(feedback),
+        ..experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 1, 2, 50])
+    }
+}
+
+fn trajectory(experiment: &Experiment) -> Vec<Point> {
+    let engine = experiment.engine::<Sdcom>().expect("the scheme goes");
+    engine.trajectory(2, 1).expect("it goes")
+}
+
 #[test]
 fn feedback_moves_the_inputs_as_the_actuator_does() {
-    let mut experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 1, 2, 50]);
-    let mut gain: sdcom::Input<sdcom::State<f64>> = Vector::splat(Vector::splat(0.0));
-    gain.delta_e.alpha = -3.0;
-    gain.delta_e.pitch_rate = -1.0;
     let actuator = Actuator {
         bandwidth: 20.0,
         rate: 0.5,
         bounds: Bounds::new(0.15, 0.22),
     };
-    let mut actuators = Vector::splat(None);
-    let place: &mut sdcom::Input<_> = &mut actuators;
-    place.delta_e = Some(actuator);
     let reference = sdcom::State {
         alpha: 0.01,
         ..STATE
     };
-    experiment.feedback = Some(Feedback {
-        state: reference,
-        rate: sdcom::State::splat(0.0),
-        input: INPUT,
-        gain,
-        actuators,
-    });
-    let points = experiment.trajectory(2, 1).expect("it goes");
+    let gains = [("alpha", -3.0), ("pitch_rate", -1.0)];
+    let points = trajectory(&about(
+        reference,
+        sdcom::State::splat(0.0),
+        &gains,
+        actuator,
+    ));
     assert_eq!(points.len(), 51);
     let mut position = INPUT.delta_e;
     for (before, after) in points.iter().zip(&points[1..]) {
-        let command = INPUT.delta_e + 3.0 * (before.state.alpha - 0.01) + before.state.pitch_rate;
+        let x: sdcom::State<f64> = vector(&before.state);
+        let command = INPUT.delta_e + 3.0 * (x.alpha - 0.01) + x.pitch_rate;
         position = actuator.moved(position, command, 1e-3).0;
-        assert_relative_eq!(after.input.delta_e, position, max_relative = 1e-12);
-        assert_eq!(after.input.phi, INPUT.phi);
+        assert_relative_eq!(after.input[ELEVATOR], position, max_relative = 1e-12);
+        assert_eq!(after.input[0], INPUT.phi);
     }
-    assert!(
-        (points[50].input.delta_e - INPUT.delta_e).abs() > 1e-3,
-        "it moves"
-    );
+    let moved = points[50].input[ELEVATOR] - INPUT.delta_e;
+    assert!(moved.abs() > 1e-3, "it moves");
 }
 
-/// Flights that regulate the altitude by the elevator, about a reference with these rates.
-fn about_a_reference(rate: sdcom::State<f64>) -> Experiment<Sdcom> {
-    let mut experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 50]);
-    let mut gain: sdcom::Input<sdcom::State<f64>> = Vector::splat(Vector::splat(0.0));
-    gain.delta_e.altitude = 1e-2;
-    let actuator = Actuator {
-        bandwidth: 20.0,
-        rate: 5.0,
-        bounds: Bounds::new(-1.0, 1.0),
-    };
-    experiment.feedback = Some(Feedback {
-        state: STATE,
-        rate,
-        input: INPUT,
-        gain,
-        actuators: sdcom::Input {
-            delta_e: Some(actuator),
-            ..sdcom::Input::splat(None)
-        },
-    });
-    experiment
+/// What moves the elevator where the altitude is regulated.
+const QUICK: Actuator = Actuator {
+    bandwidth: 20.0,
+    rate: 5.0,
+    bounds: Bounds::new(-1.0, 1.0),
+};
+
+/// Flights that regulate the altitude, about a reference with these rates.
+fn about_a_reference(rate: sdcom::State<f64>) -> Experiment {
+    about(STATE, rate, &[("altitude", 1e-2)], QUICK)
 }
 
 #[test]
@@ -296,16 +317,13 @@ fn the_reference_moves_with_the_flight() {
         altitude: 134.0,
         ..sdcom::State::splat(0.0)
     };
-    let experiment = about_a_reference(rate);
-    let actuator = experiment.feedback.and_then(|it| it.actuators.delta_e);
-    let actuator = actuator.expect("an actuator");
-    let points = experiment.trajectory(2, 1).expect("it goes");
+    let points = trajectory(&about_a_reference(rate));
     let mut position = INPUT.delta_e;
     for (step, (before, after)) in points.iter().zip(&points[1..]).enumerate() {
         let reference = STATE.altitude + 134.0 * (step as f64 * 1e-3);
-        let command = INPUT.delta_e - 1e-2 * (before.state.altitude - reference);
-        position = actuator.moved(position, command, 1e-3).0;
-        assert_relative_eq!(after.input.delta_e, position, max_relative = 1e-12);
+        let command = INPUT.delta_e - 1e-2 * (before.state[index("altitude")] - reference);
+        position = QUICK.moved(position, command, 1e-3).0;
+        assert_relative_eq!(after.input[ELEVATOR], position, max_relative = 1e-12);
     }
     assert!(position > INPUT.delta_e + 1e-3, "it moves");
 }
@@ -315,8 +333,8 @@ fn the_reference_moves_with_the_flight() {
 fn a_reference_that_stays_costs_no_bit() {
     let tiny = sdcom::State::splat(1e-300);
     let [still, moving] = [sdcom::State::splat(0.0), tiny].map(|rate| {
-        let points = about_a_reference(rate).trajectory(2, 1).expect("it goes");
-        points.last().map(|point| (point.state, point.input))
+        let last = trajectory(&about_a_reference(rate)).pop();
+        last.map(|point| (point.state, point.input))
     });
     assert_eq!(still, moving);
 }
@@ -329,20 +347,20 @@ fn a_reference_that_is_no_equilibrium_has_a_state_that_leaves_it() {
     let mut feedback = about_a_reference(sdcom::State::splat(0.0))
         .feedback
         .expect("a feedback");
-    (feedback.state, feedback.input) = (trim.state, trim.input);
+    (feedback.state, feedback.input) = (values(&trim.state), values(&trim.input));
     let still = feedback.unsteady(&model).expect("the altitude climbs");
     assert_eq!((still.state, still.rate), ("altitude", 0.0));
     assert_relative_eq!(still.expected, 134.42, max_relative = 1e-4);
-    feedback.rate.altitude = still.expected;
+    feedback.rate[index("altitude")] = still.expected;
     assert_eq!(feedback.unsteady(&model), None);
-    feedback.rate.velocity = 1.0;
+    feedback.rate[index("velocity")] = 1.0;
     let faster = feedback.unsteady(&model).expect("the velocity stays");
     assert_eq!(
         (faster.state, faster.rate, faster.expected),
         ("velocity", 1.0, 0.0)
     );
-    feedback.rate.velocity = 0.0;
-    feedback.state.alpha += 1e-6;
+    feedback.rate[index("velocity")] = 0.0;
+    feedback.state[index("alpha")] += 1e-6;
     assert!(feedback.unsteady(&model).is_some());
 }
 
@@ -350,17 +368,17 @@ fn a_reference_that_is_no_equilibrium_has_a_state_that_leaves_it() {
 fn members_that_are_lost_are_counted_and_touch_no_other() {
     // With deviations of 30 rad of the angle of attack the curve fits soon have no finite value.
     let mut wild = experiment(Scheme::EulerMaruyama, 0.05, vec![0, 400]);
-    wild.state[1].alpha = 30.0;
+    wild.state[1][index("alpha")] = 30.0;
     let members: Vec<u64> = (0..8).collect();
-    let seen = fly(&wild, &members).expect("it goes");
+    let seen = fly::<Sdcom>(&wild, &members).expect("it goes");
     assert!(seen.iter().any(|seen| seen.lost.is_some()), "some are lost");
     for (seen, &member) in seen.iter().zip(&members) {
-        let alone = fly(&wild, &[member]).expect("it goes");
+        let alone = fly::<Sdcom>(&wild, &[member]).expect("it goes");
         assert_eq!(alone[0].last, seen.last, "member {member}");
         assert_eq!(alone[0].lost, seen.lost);
-        assert!(seen.last.find(|value| !value.is_finite()).is_none());
+        assert!(seen.last.iter().all(|value| value.is_finite()));
     }
-    let outcome = wild.run(64, 1, &Control::default()).expect("it goes");
+    let outcome = run::<Sdcom>(&wild, 64, 1);
     assert_eq!(outcome.snapshots[0].members, 64);
     assert_eq!(outcome.snapshots[1].members, 64 - outcome.lost);
 }
@@ -368,13 +386,14 @@ fn members_that_are_lost_are_counted_and_touch_no_other() {
 #[test]
 fn the_first_step_outside_is_found() {
     let mut experiment = experiment(Scheme::EulerMaruyama, 1e-3, (0..=200).collect());
-    let mut limits = sdcom::State::splat(Bounds::new(f64::NEG_INFINITY, f64::INFINITY));
-    limits.alpha = Bounds::new(0.0255, 0.0265);
+    let (alpha, interval) = (index("alpha"), Bounds::new(0.0255, 0.0265));
+    let mut limits = vec![Bounds::new(f64::NEG_INFINITY, f64::INFINITY); 8];
+    limits[alpha] = interval;
     experiment.watched.push(limits);
-    for seen in fly(&experiment, &[0, 1, 2]).expect("it goes") {
-        let outside = |(x, _): &(sdcom::State<f64>, _)| !limits.alpha.contains(x.alpha);
+    for seen in fly::<Sdcom>(&experiment, &[0, 1, 2]).expect("it goes") {
+        let outside = |(x, _): &(Vec<f64>, _)| !interval.contains(x[alpha]);
         let first = seen.at.iter().position(outside).map(|step| step as u64);
-        assert_eq!(seen.left[1].alpha, first);
+        assert_eq!(seen.left[1][alpha], first);
         assert!(first.is_some(), "it leaves");
     }
 }
@@ -387,17 +406,17 @@ fn normal_numbers_in_single_precision_have_the_same_law() {
             mode,
             ..exact.clone()
         };
-        experiment.run(4096, 2, &Control::default())
+        run::<Sdcom>(&experiment, 4096, 2)
     };
-    let stds = |outcome: &ahv_analysis::monte_carlo::Outcome| -> Vec<Estimate> {
+    let stds = |outcome: &Outcome| -> Vec<Estimate> {
         outcome.snapshots[0]
             .states
             .iter()
             .filter_map(|state| state.std?.closed())
             .collect()
     };
-    let reference = stds(&mode(Mode::Exact).expect("it goes"));
-    let single = stds(&mode(Mode::F32Noise).expect("it goes"));
+    let reference = stds(&mode(Mode::Exact));
+    let single = stds(&mode(Mode::F32Noise));
     for (a, b) in single.iter().zip(&reference) {
         assert!(a.low < b.high && b.low < a.high, "{a:?}, {b:?}");
     }
@@ -405,7 +424,7 @@ fn normal_numbers_in_single_precision_have_the_same_law() {
 
 #[test]
 fn a_scheme_that_does_not_go_says_why() {
-    let flown = |scheme| fly(&experiment(scheme, 1e-3, vec![1]), &[0]);
+    let flown = |scheme| fly::<Sdcom>(&experiment(scheme, 1e-3, vec![1]), &[0]);
     for scheme in [Scheme::Milstein, Scheme::Sra1] {
         assert!(matches!(flown(scheme), Err(MonteCarloError::Scheme { .. })));
     }
@@ -413,19 +432,21 @@ fn a_scheme_that_does_not_go_says_why() {
     // No state of it is coloured noise.
     let deterministic = held::<dcom::Model<f64>>(&dcom::NOMINAL, Scheme::Splitting, 1e-3, vec![1]);
     assert_eq!(
-        fly(&deterministic, &[0]).err(),
+        fly::<dcom::Model<f64>>(&deterministic, &[0]).err(),
         Some(MonteCarloError::NoColouredNoise { model: "dcom" })
     );
     // Every model goes by every scheme that is for its noise.
     let gust = held::<sdcom_gust::Model<f64>>(&sdcom::NOMINAL, Scheme::Heun, 1e-3, vec![1]);
-    assert!(fly(&gust, &[0]).is_ok());
+    assert!(fly::<sdcom_gust::Model<f64>>(&gust, &[0]).is_ok());
 }
 
 #[test]
 fn what_is_stopped_tells_of_what_was_flown() {
     let control = Control::default();
     control.stop.store(true, Ordering::Relaxed);
-    let stopped = experiment(Scheme::Heun, 1e-3, vec![10]).run(100, 1, &control);
+    let experiment = experiment(Scheme::Heun, 1e-3, vec![10]);
+    let engine = experiment.engine::<Sdcom>().expect("the scheme goes");
+    let stopped = engine.run(100, 1, &control);
     assert_eq!(stopped.err(), Some(MonteCarloError::Stopped));
 }
 
@@ -444,19 +465,16 @@ fn a_stopped_run_is_a_run_of_the_members_that_were_flown() {
                 }
                 control.stop.store(true, Ordering::Relaxed);
             });
-            experiment.run_and_list(1_000_000, 2, &control, |first, seen| {
-                listed.extend(
-                    (first..)
-                        .zip(seen)
-                        .map(|(member, seen)| (member, seen.last)),
-                );
+            let engine = experiment.engine::<Sdcom>().expect("the scheme goes");
+            engine.run_and_list(1_000_000, 2, &control, |first, seen| {
+                let seen = (first..).zip(seen);
+                listed.extend(seen.map(|(member, seen)| (member, seen.last.clone())));
             })
         });
         let stopped = stopped.expect("some are flown");
         assert!((enough - in_flight..1_000_000).contains(&stopped.members));
         assert_eq!((stopped.asked, stopped.members % 8), (1_000_000, 0));
-        let whole = experiment.run(stopped.members, 1, &Control::default());
-        let whole = whole.expect("it goes");
+        let whole = run::<Sdcom>(&experiment, stopped.members, 1);
         assert_eq!(stopped.digest, whole.digest);
         assert_eq!(stopped.member_steps, stopped.members * steps);
         for (a, b) in stopped.snapshots.iter().zip(&whole.snapshots) {
@@ -471,7 +489,7 @@ fn a_stopped_run_is_a_run_of_the_members_that_were_flown() {
         let last = members.len() - 1;
         assert_eq!(
             listed[last].1,
-            fly(&experiment, &members[last..]).expect("it goes")[0].last
+            fly::<Sdcom>(&experiment, &members[last..]).expect("it goes")[0].last
         );
     }
 }
@@ -495,15 +513,15 @@ fn held<M: GeneratedModel>(
     scheme: Scheme,
     dt: f64,
     snapshots: Vec<u64>,
-) -> Experiment<M> {
+) -> Experiment {
     let rest = trim(&M::with_parameters(parameters), &level::<M>()).expect("it trims");
     Experiment {
-        parameters: *parameters,
+        parameters: values(parameters),
         dispersion: None,
-        state: [rest.state, Vector::splat(0.0)],
-        input: [rest.input, Vector::splat(0.0)],
+        state: [values(&rest.state), vec![0.0; M::State::LEN]],
+        input: [values(&rest.input), vec![0.0; M::Input::LEN]],
         feedback: None,
-        watched: vec![M::STATE_BOUNDS],
+        watched: vec![values(&M::STATE_BOUNDS)],
         scheme,
         mode: Mode::Exact,
         dt,
@@ -517,30 +535,31 @@ fn held<M: GeneratedModel>(
 fn a_model_without_noise_is_flown_from_dispersed_starts() {
     let (dt, steps) = (1e-3, 200);
     let mut experiment = held::<com::Model<f64>>(&com::NOMINAL, Scheme::Heun, dt, vec![0, steps]);
-    let calm = fly(&experiment, &[0, 1]).expect("it goes");
+    let calm = fly::<com::Model<f64>>(&experiment, &[0, 1]).expect("it goes");
     assert_eq!(calm[0].last, calm[1].last);
-    experiment.state[1].alpha = 1e-3;
-    experiment.state[1].velocity = 10.0;
+    experiment.state[1][index("alpha")] = 1e-3;
+    experiment.state[1][index("velocity")] = 10.0;
     let members: Vec<u64> = (0..8).collect();
     let model = com::Model::new(&com::NOMINAL);
-    for seen in fly(&experiment, &members).expect("it goes") {
-        let (start, input) = seen.at[0];
-        assert_ne!(start, experiment.state[0]);
-        assert_eq!(start.altitude, experiment.state[0].altitude);
-        let (mut x, calm) = (start, com::Noise::splat(0.0));
+    for seen in fly::<com::Model<f64>>(&experiment, &members).expect("it goes") {
+        let (start, input) = &seen.at[0];
+        assert_ne!(start, &experiment.state[0]);
+        let altitude = index("altitude");
+        assert_eq!(start[altitude], experiment.state[0][altitude]);
+        let (mut x, input): (com::State<f64>, com::Input<f64>) = (vector(start), vector(input));
+        let calm = com::Noise::splat(0.0);
         for _ in 0..steps {
             ItoHeun::new(dt)
                 .step(&model, &mut x, &input, &calm)
                 .expect("finite");
         }
-        assert_eq!(seen.last, x);
+        assert_eq!(seen.last, values(&x));
     }
-    let outcome = experiment
-        .run(2000, 2, &Control::default())
-        .expect("it goes");
+    let outcome = run::<com::Model<f64>>(&experiment, 2000, 2);
     assert_eq!(outcome.lost, 0);
-    let alpha = com::State::<f64>::index_of("alpha").expect("a state");
-    let start = outcome.snapshots[0].states[alpha].std.expect("a deviation");
+    let start = outcome.snapshots[0].states[index("alpha")]
+        .std
+        .expect("a deviation");
     let std = start.closed().expect("many members").value;
     // Five standard errors of a normal deviation.
     assert!(
@@ -561,7 +580,7 @@ fn a_flexible_mode_and_its_coloured_noise_have_their_stationary_variances() {
     let fly_by = |scheme| held::<flexible_mode::Model<f64>>(&p, scheme, dt, vec![steps]);
     // One Wiener process moves both: they cannot be stepped one after the other.
     assert_eq!(
-        fly(&fly_by(Scheme::Splitting), &[0]).err(),
+        fly::<flexible_mode::Model<f64>>(&fly_by(Scheme::Splitting), &[0]).err(),
         Some(MonteCarloError::Scheme {
             scheme: "splitting",
             reason: NoiseError::SharedChannel {
@@ -572,8 +591,8 @@ fn a_flexible_mode_and_its_coloured_noise_have_their_stationary_variances() {
     );
     for scheme in [Scheme::Heun, Scheme::Sra1] {
         let experiment = fly_by(scheme);
-        let outcome = experiment.run(MEMBERS, 2, &Control::default());
-        let snapshot = &outcome.expect("it goes").snapshots[0];
+        let outcome = run::<flexible_mode::Model<f64>>(&experiment, MEMBERS, 2);
+        let snapshot = &outcome.snapshots[0];
         let rate = p.sigma * p.sigma / (4.0 * p.zeta * p.omega);
         let stiffness = p.omega * p.omega;
         let coloured = p.zeta * p.sigma * p.sigma / (2.0 * p.omega * stiffness);

@@ -7,8 +7,8 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use ahv_analysis::covariance::{CovarianceError, Flight, Spreading};
-use ahv_analysis::erased::Experiment;
-use ahv_analysis::monte_carlo::{Control, Mode, Scheme, Snapshot};
+use ahv_analysis::monte_carlo::{Experiment, Mode, Scheme, Snapshot};
+use ahv_analysis::ordered::Control;
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
 
@@ -106,7 +106,7 @@ struct Outcome<'a> {
     /// State and input of the trim.
     start: [Vec<f64>; 2],
     scheme: Scheme,
-    linear: Vec<Spreading<Vec<f64>>>,
+    linear: Vec<Spreading>,
     /// Members that were flown.
     members: u64,
     sampled: Vec<Snapshot>,
@@ -235,9 +235,9 @@ fn sample(
     control: &Control,
 ) -> Result<(u64, Vec<Snapshot>), Failure> {
     let threads = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let outcome = vehicle
-        .model
-        .run_and_list(experiment, members, threads, control, None)
+    let engine = vehicle.model.engine(experiment);
+    let outcome = engine
+        .and_then(|engine| engine.run(members, threads, control))
         .map_err(|error| Failure::Numeric(format!("{}: {error}", vehicle.name())))?;
     if outcome.members < members.min(FEWEST) {
         return Err(Failure::Interrupted(format!(

@@ -5,8 +5,8 @@ pub(crate) mod feedback;
 use std::num::NonZeroUsize;
 
 use ahv_analysis::disperse::{Distribution, Draws};
-use ahv_analysis::erased::Experiment;
-use ahv_analysis::monte_carlo::{Control, LANES, Mode, MonteCarloError, Scheme};
+use ahv_analysis::monte_carlo::{Experiment, LANES, Mode, MonteCarloError, Scheme};
+use ahv_analysis::ordered::Control;
 use ahv_analysis::trim::SteadyState;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};

@@ -10,8 +10,7 @@ mod trajectories;
 
 use std::path::PathBuf;
 
-use ahv_analysis::erased::{List, Seen};
-use ahv_analysis::monte_carlo::Outcome;
+use ahv_analysis::monte_carlo::{Outcome, Seen};
 use ahv_core::Bounds;
 use clap::Args;
 
@@ -118,16 +117,13 @@ impl Arguments {
         let threads = ready.threads(self.members);
         let mut kept = Kept::default();
         let outcome = watched(progress, |control| {
-            let (model, experiment) = (ready.vehicle.model, &ready.experiment);
-            let mut add = |first, seen: &[Seen]| {
+            let engine = ready.vehicle.model.engine(&ready.experiment)?;
+            engine.run_and_list(self.members, threads, control, |first, seen: &[Seen]| {
                 kept.add(&ready, first, seen);
                 if let Some(list) = &mut list {
                     list.add(first, seen);
                 }
-            };
-            let wanted = folder.is_some() || experiment.dispersion.is_some();
-            let list = wanted.then_some(&mut add as List<'_>);
-            model.run_and_list(experiment, self.members, threads, control, list)
+            })
         })?;
         let complete = outcome.members == outcome.asked;
         let listed = list.map_or(Ok(()), |list| list.finish(complete));

@@ -7,7 +7,7 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use ahv_analysis::monte_carlo::Control;
+use ahv_analysis::ordered::Control;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::failure::complain;

@@ -81,7 +81,8 @@ impl Arguments {
         });
         let threads = ready.threads(self.effort);
         let found = watched(progress, |control| {
-            match model.first_passage(&ready.experiment, &event, threads, control) {
+            let engine = model.engine(&ready.experiment)?;
+            match engine.first_passage(&event, threads, control) {
                 Err(MonteCarloError::Rare(error)) => Ok(Err(error)),
                 other => other.map(Ok),
             }

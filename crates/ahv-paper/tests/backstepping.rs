@@ -1,7 +1,7 @@
 //! Backstepping: what (C9) and (C10) say of its decays and of its margin.
 #![forbid(unsafe_code)]
 
-use ahv_analysis::monte_carlo::Control;
+use ahv_analysis::ordered::Control;
 use ahv_analysis::trim::{SteadyState, trim};
 use ahv_core::{ColouredNoise, GeneratedModel, Vector};
 use ahv_models::dcom::{NOMINAL, Parameters};

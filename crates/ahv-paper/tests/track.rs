@@ -4,7 +4,7 @@
 #[path = "common/closed_loop.rs"]
 mod closed_loop;
 
-use ahv_analysis::monte_carlo::Control;
+use ahv_analysis::ordered::Control;
 use ahv_core::{DifferentiableModel, Vector};
 use ahv_models::dcom::{self, NOMINAL, Parameters};
 use ahv_models::sdcom;

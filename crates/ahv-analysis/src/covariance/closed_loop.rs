@@ -1,12 +1,13 @@
 //! A flight and its linear closed loop: state and inputs together, with the root of their covariance.
 
-use ahv_core::{DifferentiableModel, GeneratedModel, ModeOfMotion, StochasticModel, Vector};
+use ahv_core::{DifferentiableModel, GeneratedModel, ModeOfMotion, Model, StochasticModel, Vector};
 use ahv_integrate::LinearTransition;
 use nalgebra::{DMatrix, DVector};
 
 use super::{CovarianceError, check, column, lyapunov, noise_intensity};
 use crate::linearize::LinearSystem;
 use crate::poles::poles;
+use crate::values::vector;
 
 /// States and inputs that a transition is made for.
 const MOST: usize = 16;
@@ -17,46 +18,46 @@ const ROUNDING: f64 = -1e-10;
 
 /// A state feedback through actuators without limits: u̇ = b (input − K (x − state − rate t) − u).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Regulation<X, U> {
+pub struct Regulation {
     /// State that it leads to at time 0.
-    pub state: X,
+    pub state: Vec<f64>,
     /// Rate at which that state moves, in its unit per s.
-    pub rate: X,
+    pub rate: Vec<f64>,
     /// Input at that state.
-    pub input: U,
+    pub input: Vec<f64>,
     /// K, inputs by states.
     pub gain: DMatrix<f64>,
     /// b, bandwidths of the actuators in rad/s; an input of bandwidth 0 is held.
-    pub bandwidth: U,
+    pub bandwidth: Vec<f64>,
 }
 
 /// A flight with held or regulated inputs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Flight<X, U> {
+pub struct Flight {
     /// State at time 0.
-    pub start: X,
+    pub start: Vec<f64>,
     /// Input at time 0.
-    pub input: U,
+    pub input: Vec<f64>,
     /// Covariance of states and inputs at time 0, states first.
     pub initial: DMatrix<f64>,
     /// What moves the inputs; without it they are held.
-    pub feedback: Option<Regulation<X, U>>,
+    pub feedback: Option<Regulation>,
     /// Longest step, in s.
     pub dt: f64,
 }
 
 /// A state on a flight, with the covariance of the deviations from it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Spreading<X> {
+pub struct Spreading {
     /// Time, in s.
     pub time: f64,
     /// The state without noise.
-    pub state: X,
+    pub state: Vec<f64>,
     /// Covariance of the states, in the units of the states over one another.
     pub covariance: DMatrix<f64>,
 }
 
-impl<X> Spreading<X> {
+impl Spreading {
     /// Standard deviation of each state, in its own unit.
     pub fn std(&self) -> Vec<f64> {
         let variances = self.covariance.diagonal();
@@ -74,10 +75,10 @@ struct Linear {
     intensity: DMatrix<f64>,
 }
 
-impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
+impl Flight {
     /// A flight from a state that is known exactly, with held inputs.
-    pub fn new(start: X, input: U, dt: f64) -> Self {
-        let size = X::LEN + U::LEN;
+    pub fn new(start: Vec<f64>, input: Vec<f64>, dt: f64) -> Self {
+        let size = start.len() + input.len();
         Self {
             start,
             input,
@@ -97,17 +98,13 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
     ///
     /// [`CovarianceError::Times`], [`CovarianceError::StepTooLong`], [`CovarianceError::Diverged`], [`CovarianceError::Indefinite`],
     /// [`CovarianceError::TooLarge`].
-    pub fn covariance<M>(
-        &self,
-        model: &M,
-        times: &[f64],
-    ) -> Result<Vec<Spreading<X>>, CovarianceError>
+    pub fn covariance<M>(&self, model: &M, times: &[f64]) -> Result<Vec<Spreading>, CovarianceError>
     where
-        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
+        M: DifferentiableModel<Scalar = f64> + StochasticModel,
     {
         let steps = self.steps(times)?;
-        let mut root = self.root()?;
-        let mut z = self.joint();
+        let mut root = self.root::<M>()?;
+        let mut z = self.joint::<M>();
         let mut trajectory = Vec::with_capacity(times.len());
         let mut before = 0.0;
         for (&time, (count, dt)) in times.iter().zip(steps) {
@@ -119,10 +116,10 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
             let covariance = &root * root.transpose();
             let spreading = Spreading {
                 time,
-                state: part(&z, 0),
-                covariance: covariance.view((0, 0), (X::LEN, X::LEN)).into_owned(),
+                state: z.iter().take(M::State::LEN).copied().collect(),
+                covariance: of_states::<M>(&covariance),
             };
-            spreading.check()?;
+            spreading.check(M::State::NAMES)?;
             trajectory.push(spreading);
         }
         Ok(trajectory)
@@ -135,7 +132,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
     /// [`CovarianceError::NotAtRest`], [`CovarianceError::UndampedMode`] for a mode that does not decay, those of [`lyapunov`].
     pub fn stationary<M>(&self, model: &M) -> Result<DMatrix<f64>, CovarianceError>
     where
-        M: GeneratedModel<StateOf<f64> = X, InputOf<f64> = U>,
+        M: GeneratedModel,
     {
         self.stationary_among(model, M::MODES)
     }
@@ -151,18 +148,19 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
         modes: &[ModeOfMotion],
     ) -> Result<DMatrix<f64>, CovarianceError>
     where
-        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
+        M: DifferentiableModel<Scalar = f64> + StochasticModel,
     {
-        let z = self.joint();
+        let z = self.joint::<M>();
         let linear = self.linear(model, &z, 0.0);
-        let names: Vec<&'static str> = X::NAMES.iter().chain(U::NAMES).copied().collect();
+        let names = names::<M>();
         for ((&name, &rate), &value) in names.iter().zip(linear.rate.iter()).zip(z.iter()) {
             let rests = rate.abs() <= REST * f64::max(1.0, value.abs());
             if !rests {
                 return Err(CovarianceError::NotAtRest { name, rate });
             }
         }
-        let moves = |&index: &usize| index < X::LEN || self.bandwidth(index - X::LEN) > 0.0;
+        let moves =
+            |&index: &usize| index < M::State::LEN || self.bandwidth(index - M::State::LEN) > 0.0;
         let moved: Vec<usize> = (0..names.len()).filter(moves).collect();
         let among = |matrix: &DMatrix<f64>| matrix.select_rows(&moved).select_columns(&moved);
         let system = LinearSystem {
@@ -190,35 +188,41 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
             });
         }
         let covariance = lyapunov(&system.a, &among(&linear.intensity))?;
-        Ok(covariance.view((0, 0), (X::LEN, X::LEN)).into_owned())
+        Ok(of_states::<M>(&covariance))
     }
 
-    fn joint(&self) -> Joint {
-        let both = [column(&self.start), column(&self.input)];
-        Joint::from_iterator(X::LEN + U::LEN, both.iter().flatten().copied())
+    fn joint<M: Model<Scalar = f64>>(&self) -> Joint {
+        let (x, u): (M::State, M::Input) = (vector(&self.start), vector(&self.input));
+        let both = [column(&x), column(&u)];
+        Joint::from_iterator(
+            M::State::LEN + M::Input::LEN,
+            both.iter().flatten().copied(),
+        )
     }
 
     /// Bandwidth of an input's actuator; 0 where it is held.
     fn bandwidth(&self, input: usize) -> f64 {
         let feedback = self.feedback.as_ref();
         let bandwidth = feedback.and_then(|feedback| feedback.bandwidth.get(input));
-        bandwidth.unwrap_or(0.0)
+        bandwidth.copied().unwrap_or(0.0)
     }
 
     fn linear<M>(&self, model: &M, z: &Joint, time: f64) -> Linear
     where
-        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
+        M: DifferentiableModel<Scalar = f64> + StochasticModel,
     {
-        let (x, u): (X, U) = (part(z, 0), part(z, X::LEN));
-        let (n, size) = (X::LEN, X::LEN + U::LEN);
+        let (n, size) = (M::State::LEN, M::State::LEN + M::Input::LEN);
+        let (x, u): (M::State, M::Input) = (part(z, 0), part(z, n));
         let (drift, by_state, by_input) = model.drift_and_jacobians(&x, &u);
         let mut a = DMatrix::zeros(size, size);
         for row in 0..n {
             for column in 0..size {
                 let entry = if column < n {
-                    by_state.get(row).and_then(|it: X| it.get(column))
+                    by_state.get(row).and_then(|it: M::State| it.get(column))
                 } else {
-                    by_input.get(row).and_then(|it: U| it.get(column - n))
+                    by_input
+                        .get(row)
+                        .and_then(|it: M::Input| it.get(column - n))
                 };
                 a[(row, column)] = entry.unwrap_or(0.0);
             }
@@ -226,11 +230,11 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
         let mut rate = Joint::zeros(size);
         rate.rows_mut(0, n).copy_from(&column(&drift));
         if let Some(feedback) = &self.feedback {
-            let moved = feedback.rate.map(|rate| rate * time);
-            let reference = feedback.state.zip_with(moved, |rest, moved| rest + moved);
-            let deviation = column(&x.zip_with(reference, |x, reference| x - reference));
-            let command = column(&feedback.input) - &feedback.gain * deviation;
-            for input in 0..U::LEN {
+            let [state, moved]: [M::State; 2] = [vector(&feedback.state), vector(&feedback.rate)];
+            let reference = column(&state) + column(&moved) * time;
+            let command: M::Input = vector(&feedback.input);
+            let command = column(&command) - &feedback.gain * (column(&x) - reference);
+            for input in 0..M::Input::LEN {
                 let (row, bandwidth) = (n + input, self.bandwidth(input));
                 rate[row] = bandwidth * (command[input] - z[row]);
                 a[(row, row)] = -bandwidth;
@@ -254,7 +258,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
         time: f64,
     ) -> Result<(Joint, DMatrix<f64>), CovarianceError>
     where
-        M: DifferentiableModel<Scalar = f64, State = X, Input = U> + StochasticModel,
+        M: DifferentiableModel<Scalar = f64> + StochasticModel,
     {
         let size = z.len();
         let start = self.linear(model, z, at);
@@ -270,7 +274,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
         // Half a step by the implicit Euler method: no mode decays too fast for it.
         let slope = implicit(&start.a)?.solve(&start.rate);
         let middle = z + slope.ok_or(CovarianceError::StepTooLong { time, dt })? * half;
-        finite::<X, U>(time, &middle)?;
+        finite::<M>(time, &middle)?;
         let linear = self.linear(model, &middle, at + half);
         implicit(&linear.a)?;
         let padded = |matrix: &DMatrix<f64>| -> [[f64; MOST]; MOST] {
@@ -286,7 +290,7 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
         };
         let constant = linear.rate + linear.a * (z - &middle);
         let next = z + trimmed(transition.forced()) * constant;
-        finite::<X, U>(time, &next)?;
+        finite::<M>(time, &next)?;
         // [Φ L, L_Q] times its transpose is Φ P Φᵀ + Q; the triangle of its QR decomposition is a root of that.
         let mut roots = DMatrix::zeros(2 * size, size);
         let carried = trimmed(transition.transition()) * root;
@@ -300,8 +304,8 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
     }
 
     /// A root of the initial covariance. Its correlations are factored, for units differ.
-    fn root(&self) -> Result<DMatrix<f64>, CovarianceError> {
-        let size = X::LEN + U::LEN;
+    fn root<M: Model<Scalar = f64>>(&self) -> Result<DMatrix<f64>, CovarianceError> {
+        let size = M::State::LEN + M::Input::LEN;
         if size > MOST {
             return Err(CovarianceError::TooLarge {
                 found: size,
@@ -343,13 +347,13 @@ impl<X: Vector<f64>, U: Vector<f64>> Flight<X, U> {
     }
 }
 
-impl<X: Vector<f64>> Spreading<X> {
-    fn check(&self) -> Result<(), CovarianceError> {
-        let variance = |index: usize| self.covariance.get((index, index)).copied();
-        let variances = X::from_fn(|index| variance(index).unwrap_or(f64::NAN));
-        match variances.find(|value| !value.is_finite()) {
+impl Spreading {
+    fn check(&self, names: &[&'static str]) -> Result<(), CovarianceError> {
+        let variances = self.covariance.diagonal();
+        let mut named = names.iter().zip(variances.iter());
+        match named.find(|(_, value)| !value.is_finite()) {
             None => Ok(()),
-            Some((name, value)) => Err(CovarianceError::Diverged {
+            Some((&name, &value)) => Err(CovarianceError::Diverged {
                 time: self.time,
                 what: "variance",
                 name,
@@ -359,17 +363,28 @@ impl<X: Vector<f64>> Spreading<X> {
     }
 }
 
+/// Names of states and inputs.
+fn names<M: Model<Scalar = f64>>() -> Vec<&'static str> {
+    let names = M::State::NAMES.iter().chain(M::Input::NAMES);
+    names.copied().collect()
+}
+
+/// The part of the states of a matrix.
+fn of_states<M: Model<Scalar = f64>>(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let states = (M::State::LEN, M::State::LEN);
+    matrix.view((0, 0), states).into_owned()
+}
+
 /// The components of a vector that begin at `first`.
 fn part<V: Vector<f64>>(z: &Joint, first: usize) -> V {
     V::from_fn(|index| z.get(first + index).copied().unwrap_or(f64::NAN))
 }
 
-fn finite<X: Vector<f64>, U: Vector<f64>>(time: f64, z: &Joint) -> Result<(), CovarianceError> {
-    let infinite = |value: f64| !value.is_finite();
-    let state = part::<X>(z, 0).find(infinite);
-    match state.or_else(|| part::<U>(z, X::LEN).find(infinite)) {
+fn finite<M: Model<Scalar = f64>>(time: f64, z: &Joint) -> Result<(), CovarianceError> {
+    let mut named = names::<M>().into_iter().zip(z.iter());
+    match named.find(|(_, value)| !value.is_finite()) {
         None => Ok(()),
-        Some((name, value)) => Err(CovarianceError::Diverged {
+        Some((name, &value)) => Err(CovarianceError::Diverged {
             time,
             what: "value",
             name,

@@ -5,15 +5,13 @@ use std::marker::PhantomData;
 use ahv_core::{Bounds, GeneratedModel, ModeOfMotion, Table, TrimProblem, Vector};
 use nalgebra::DMatrix;
 
-use super::flights::{Experiment, Feedback, Point, Seen};
 use super::steppers::{self, Advance, Calm, StepperError};
-use super::{AnyModel, Components, List, ParameterValues, values, vector};
-use crate::covariance::{CovarianceError, Flight, Regulation, Spreading};
+use super::{AnyModel, Components, ParameterValues, values, vector};
+use crate::covariance::{CovarianceError, Flight, Spreading};
 use crate::disperse::{self, Draws, Member, Nominal, Slopes, SolutionError};
 use crate::linearize::{LinearSystem, LinearizeError, with_outputs};
-use crate::monte_carlo::{
-    Control, MonteCarloError, Outcome, RareEstimate, RareEvent, Scheme, Unsteady,
-};
+use crate::monte_carlo::{Engine, Experiment, Feedback, MonteCarloError, Scheme, Unsteady};
+use crate::ordered::Control;
 use crate::trim::{SteadyState, Trim, TrimError, trim};
 
 /// The model `M` behind the interface.
@@ -35,23 +33,6 @@ fn matrix<Row: Vector<f64>, Rows: Vector<Row>>(rows: &Rows) -> DMatrix<f64> {
         let row: Option<Row> = rows.get(row);
         row.and_then(|row| row.get(column)).unwrap_or(0.0)
     })
-}
-
-fn typed<X: Vector<f64>, U: Vector<f64>>(flight: &Flight<Vec<f64>, Vec<f64>>) -> Flight<X, U> {
-    let feedback = flight.feedback.as_ref().map(|it| Regulation {
-        state: vector(&it.state),
-        rate: vector(&it.rate),
-        input: vector(&it.input),
-        gain: it.gain.clone(),
-        bandwidth: vector(&it.bandwidth),
-    });
-    Flight {
-        start: vector(&flight.start),
-        input: vector(&flight.input),
-        initial: flight.initial.clone(),
-        feedback,
-        dt: flight.dt,
-    }
 }
 
 impl<M: GeneratedModel> AnyModel for Erased<M> {
@@ -170,24 +151,14 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
     fn covariance(
         &self,
         p: &[f64],
-        flight: &Flight<Vec<f64>, Vec<f64>>,
+        flight: &Flight,
         times: &[f64],
-    ) -> Result<Vec<Spreading<Vec<f64>>>, CovarianceError> {
-        let spread = typed::<M::State, M::Input>(flight).covariance(&model::<M>(p), times)?;
-        let spread = spread.into_iter().map(|it| Spreading {
-            time: it.time,
-            state: values(&it.state),
-            covariance: it.covariance,
-        });
-        Ok(spread.collect())
+    ) -> Result<Vec<Spreading>, CovarianceError> {
+        flight.covariance(&model::<M>(p), times)
     }
 
-    fn stationary(
-        &self,
-        p: &[f64],
-        flight: &Flight<Vec<f64>, Vec<f64>>,
-    ) -> Result<DMatrix<f64>, CovarianceError> {
-        typed(flight).stationary(&model::<M>(p))
+    fn stationary(&self, p: &[f64], flight: &Flight) -> Result<DMatrix<f64>, CovarianceError> {
+        flight.stationary(&model::<M>(p))
     }
 
     fn nominal(&self, p: &[f64], steady: SteadyState) -> Result<Nominal, SolutionError> {
@@ -209,11 +180,11 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
     }
 
     fn default_scheme(&self, p: &[f64]) -> Scheme {
-        Scheme::default_for::<M>(&vector(p))
+        Scheme::default_for::<M>(p)
     }
 
     fn unsteady(&self, p: &[f64], feedback: &Feedback) -> Option<Unsteady> {
-        feedback.typed::<M>().unsteady(&model::<M>(p))
+        feedback.unsteady(&model::<M>(p))
     }
 
     fn calm(&self, p: &[f64], stepper: Calm) -> Result<Advance, StepperError> {
@@ -224,46 +195,7 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
         steppers::noisy(scheme, model::<M>(p), seed)
     }
 
-    fn run_and_list(
-        &self,
-        experiment: &Experiment,
-        members: u64,
-        threads: usize,
-        control: &Control,
-        mut list: Option<List<'_>>,
-    ) -> Result<Outcome, MonteCarloError> {
-        let experiment = experiment.typed::<M>();
-        experiment.run_and_list(members, threads, control, |first, seen| {
-            if let Some(list) = &mut list {
-                let seen: Vec<Seen> = seen.iter().map(Seen::of).collect();
-                list(first, &seen);
-            }
-        })
-    }
-
-    fn trajectory(
-        &self,
-        experiment: &Experiment,
-        member: u64,
-    ) -> Result<Vec<Point>, MonteCarloError> {
-        let points = experiment.typed::<M>().trajectory(member, 1)?;
-        let points = points.iter().map(|point| Point {
-            time: point.time,
-            state: values(&point.state),
-            input: values(&point.input),
-        });
-        Ok(points.collect())
-    }
-
-    fn first_passage(
-        &self,
-        experiment: &Experiment,
-        event: &RareEvent,
-        threads: usize,
-        control: &Control,
-    ) -> Result<RareEstimate, MonteCarloError> {
-        experiment
-            .typed::<M>()
-            .first_passage(event, threads, control)
+    fn engine<'e>(&self, experiment: &'e Experiment) -> Result<Engine<'e>, MonteCarloError> {
+        experiment.engine::<M>()
     }
 }

@@ -3,17 +3,14 @@
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
-use ahv_core::{Bounds, GeneratedModel, Real, Vector};
+use ahv_core::{GeneratedModel, Real};
 use ahv_integrate::{NormalLanes, Precision, StepError};
 
 use super::arithmetic::{Arithmetic, Called};
 use super::feedback::Law;
-use super::lanes::{LANES, Packed};
-use super::rare::Passage;
+use super::lanes::{LANES, Packed, of_lane};
+use super::observe::Observer;
 use super::scheme::{MOST_NORMALS, Steps};
-
-/// A number of steps that none has reached.
-pub(super) const NEVER: u64 = u64::MAX;
 
 /// How a member ended before its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,91 +90,12 @@ pub(super) struct Batch<'c, F: GeneratedModel, S: Copy> {
     pub(super) lost: [Option<Loss>; LANES],
     /// Last states of those that are lost.
     last: F::StateOf<Packed>,
-    /// The box of validity, and the limits if there are any.
-    pub(super) watches: Vec<Watch<F>>,
-    /// What a search for rare events looks for.
-    pub(super) passage: Option<Passage<F>>,
-}
-
-/// Intervals of the states, and when each was left first.
-pub(super) struct Watch<F: GeneratedModel> {
-    intervals: F::StateOf<Interval>,
-}
-
-/// An interval of one state.
-#[derive(Clone, Copy)]
-struct Interval {
-    /// Ends; for a member that has left it, infinite.
-    min: Packed,
-    max: Packed,
-    /// Steps after which the state first was outside.
-    left: [u64; LANES],
-}
-
-impl Interval {
-    /// Looks at this lane no more.
-    fn close(&mut self, lane: usize) {
-        self.min.0[lane] = f64::NEG_INFINITY;
-        self.max.0[lane] = f64::INFINITY;
-    }
-}
-
-impl<F: GeneratedModel> Watch<F> {
-    pub(super) fn new(bounds: F::StateOf<Bounds>) -> Self {
-        let intervals = F::map_state(&bounds, |bounds| Interval {
-            min: Packed::splat(bounds.min),
-            max: Packed::splat(bounds.max),
-            left: [NEVER; LANES],
-        });
-        Self { intervals }
-    }
-
-    /// Steps after which a member first was outside, state by state.
-    pub(super) fn left(&self, lane: usize) -> F::StateOf<Option<u64>> {
-        F::map_state(&self.intervals, |interval| {
-            Some(interval.left[lane]).filter(|&step| step != NEVER)
-        })
-    }
-
-    /// Looks at the states after `step` steps.
-    #[inline(always)]
-    fn look(&mut self, x: &F::StateOf<Packed>, step: u64) {
-        let mut any = false;
-        for lane in 0..LANES {
-            let mut outside = false;
-            F::zip_state(x, &self.intervals, |x, interval| {
-                outside |= x.0[lane] < interval.min.0[lane];
-                outside |= x.0[lane] > interval.max.0[lane];
-            });
-            any |= outside;
-        }
-        if any {
-            self.note(x, step);
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn note(&mut self, x: &F::StateOf<Packed>, step: u64) {
-        F::update_state(&mut self.intervals, *x, |interval, x| {
-            for (lane, value) in x.0.into_iter().enumerate() {
-                if value < interval.min.0[lane] || value > interval.max.0[lane] {
-                    interval.left[lane] = step;
-                    interval.close(lane);
-                }
-            }
-        });
-    }
-
-    fn close(&mut self, lane: usize) {
-        let all = F::StateOf::splat(lane);
-        F::update_state(&mut self.intervals, all, Interval::close);
-    }
 }
 
 /// Steps a batch with the instructions of the machine that it runs on.
 struct Advance<'b, 'c, F: GeneratedModel, S: Copy, A> {
     batch: &'b mut Batch<'c, F, S>,
+    observer: &'b mut dyn Observer<F>,
     /// Step to stop before.
     until: u64,
     /// Fast, and for what is stepped again.
@@ -211,7 +129,7 @@ where
 
     #[inline(always)]
     fn with_simd<V: pulp::Simd>(self, _: V) {
-        let batch = self.batch;
+        let (batch, observer) = (self.batch, self.observer);
         let dt = batch.dt;
         // Known to hold from here on, it costs nothing in the loop.
         if !(dt > 0.0 && dt.is_finite()) {
@@ -242,16 +160,11 @@ where
                 sound &= sum == 0.0;
             }
             if !sound {
-                batch.repair::<Called<E>>(&x, &u, &normals, &mut next);
+                batch.repair::<Called<E>>((&x, &u, &normals), &mut next, observer);
             }
             x = next;
             batch.step += 1;
-            for watch in &mut batch.watches {
-                watch.look(&x, batch.step);
-            }
-            if let Some(passage) = &mut batch.passage {
-                passage.look(&x, &u, batch.step);
-            }
+            observer.after_step(&x, &u, batch.step);
         }
         (batch.x, batch.u) = (x, u);
     }
@@ -285,7 +198,6 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
         dt: f64,
         noise: Noise,
         law: Option<Law<F>>,
-        watches: Vec<Watch<F>>,
     ) -> Self {
         Self {
             dynamics,
@@ -298,8 +210,6 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
             start: x,
             lost: [None; LANES],
             last: x,
-            watches,
-            passage: None,
         }
     }
 
@@ -308,7 +218,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
     /// On x86 without AVX2 and FMA members are stepped one by one: a second copy of every loop for machines of the past would
     /// double the time that it takes to compile this.
     #[inline(never)]
-    pub(super) fn advance<A, E>(&mut self, until: u64)
+    pub(super) fn advance<A, E>(&mut self, until: u64, observer: &mut dyn Observer<F>)
     where
         A: Member<F>,
         E: Member<F>,
@@ -320,6 +230,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
                 machine,
                 Advance {
                     batch: self,
+                    observer,
                     until,
                     arithmetic: PhantomData::<(A, E)>,
                 },
@@ -327,6 +238,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
             _ => pulp::WithSimd::with_simd(
                 Advance {
                     batch: self,
+                    observer,
                     until,
                     arithmetic: PhantomData::<(Called<E>, E)>,
                 },
@@ -336,16 +248,19 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
         pulp::Arch::new().dispatch(Advance {
             batch: self,
+            observer,
             until,
             arithmetic: PhantomData::<(A, E)>,
         });
     }
 
     /// The state of a member, and whether it still flies; else it is the last one that was finite.
-    pub(super) fn member(&self, lane: usize) -> (F::StateOf<f64>, bool) {
+    pub(super) fn member(&self, lane: usize) -> (Vec<f64>, bool) {
         let flies = self.lost.get(lane).is_some_and(Option::is_none);
-        let x = if flies { self.x } else { self.last };
-        (F::map_state(&x, |numbers| numbers.0[lane]), flies)
+        (
+            of_lane(if flies { &self.x } else { &self.last }, lane),
+            flies,
+        )
     }
 
     /// Steps members again whose result is not finite: exactly, they may have one. Those that have none are lost.
@@ -353,10 +268,13 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
     #[inline(never)]
     fn repair<E>(
         &mut self,
-        x: &F::StateOf<Packed>,
-        u: &F::InputOf<Packed>,
-        normals: &[Packed; MOST_NORMALS],
+        (x, u, normals): (
+            &F::StateOf<Packed>,
+            &F::InputOf<Packed>,
+            &[Packed; MOST_NORMALS],
+        ),
         next: &mut F::StateOf<Packed>,
+        observer: &mut dyn Observer<F>,
     ) where
         E: Member<F>,
         S: Steps<E::Model>,
@@ -375,6 +293,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
                 }),
                 Err(error) => {
                     self.lose(lane, x, error);
+                    observer.close(lane);
                     // The lane flies on from where it is safe, unseen.
                     F::update_state(next, self.start, |place, value| {
                         place.0[lane] = value.0[lane];
@@ -392,7 +311,6 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
                 state: "",
                 rule: Some(rule),
             });
-            self.watches.iter_mut().for_each(|watch| watch.close(lane));
         }
     }
 
@@ -409,10 +327,6 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
             state,
             rule: None,
         });
-        self.watches.iter_mut().for_each(|watch| watch.close(lane));
-        if let Some(passage) = &mut self.passage {
-            passage.close(lane);
-        }
         F::update_state(&mut self.last, *x, |place, value| {
             place.0[lane] = value.0[lane];
         });

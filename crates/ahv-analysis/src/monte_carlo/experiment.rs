@@ -1,35 +1,32 @@
 //! Which members are flown, and how.
 
-use std::sync::atomic::{AtomicBool, AtomicU64};
-
-use ahv_core::{Bounds, GeneratedModel};
+use ahv_core::Bounds;
 use ahv_integrate::NormalStream;
 
 use super::Loss;
 use super::arithmetic::Mode;
 use super::feedback::Feedback;
-use super::rare::Particle;
 use super::scheme::Scheme;
 use crate::disperse::Draws;
 
 /// Added to the seed of the noise, it is the seed of what members start from.
 const START_SEED: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// Members of a model, each with noise of its own.
-#[derive(Clone)]
-pub struct Experiment<F: GeneratedModel> {
+/// Members of a model, each with noise of its own. Vectors are in the order of the model's names.
+#[derive(Clone, Debug)]
+pub struct Experiment {
     /// Parameters.
-    pub parameters: F::ParametersOf<f64>,
+    pub parameters: Vec<f64>,
     /// Parameters drawn for each member, in the place of those.
     pub dispersion: Option<Draws>,
     /// State at the start, and the standard deviation of a normal distribution about it.
-    pub state: [F::StateOf<f64>; 2],
+    pub state: [Vec<f64>; 2],
     /// Input, and the standard deviation of a normal distribution about it: held, or where actuators start.
-    pub input: [F::InputOf<f64>; 2],
+    pub input: [Vec<f64>; 2],
     /// What moves the inputs.
-    pub feedback: Option<Feedback<F>>,
+    pub feedback: Option<Feedback>,
     /// Intervals of the states that are watched: the box of validity, and limits of one's own.
-    pub watched: Vec<F::StateOf<Bounds>>,
+    pub watched: Vec<Vec<Bounds>>,
     /// Stepper.
     pub scheme: Scheme,
     /// Arithmetic.
@@ -42,48 +39,54 @@ pub struct Experiment<F: GeneratedModel> {
     pub seed: u64,
 }
 
+/// A member on its way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Particle {
+    /// Number of the member whose noise it has from here on.
+    pub member: u64,
+    /// Number of the member whose parameters it has.
+    pub origin: u64,
+    /// Steps since the start.
+    pub step: u64,
+    /// State.
+    pub x: Vec<f64>,
+    /// Input.
+    pub u: Vec<f64>,
+}
+
 /// What was seen of a member.
-#[derive(Clone)]
-pub struct Seen<F: GeneratedModel> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
     /// State and input at each snapshot that it lived to see.
-    pub at: Vec<(F::StateOf<f64>, F::InputOf<f64>)>,
+    pub at: Vec<(Vec<f64>, Vec<f64>)>,
     /// Its last finite state.
-    pub last: F::StateOf<f64>,
+    pub last: Vec<f64>,
     /// How it ended before its time.
     pub lost: Option<Loss>,
     /// Steps after which each state was first outside its interval, for each set of intervals.
-    pub left: Vec<F::StateOf<Option<u64>>>,
+    pub left: Vec<Vec<Option<u64>>>,
 }
 
-/// Counts steps, and stops the work when asked to.
-#[derive(Debug, Default)]
-pub struct Control {
-    /// Steps of members that are done.
-    pub done: AtomicU64,
-    /// Whether to stop.
-    pub stop: AtomicBool,
-}
-
-impl<F: GeneratedModel> Experiment<F> {
+impl Experiment {
     /// Steps of a whole flight.
     pub fn steps(&self) -> u64 {
         self.snapshots.last().copied().unwrap_or(0)
     }
 
     /// A member at the start.
-    pub(super) fn particle(&self, member: u64) -> Particle<F> {
+    pub(super) fn particle(&self, member: u64) -> Particle {
         let seed = self.seed.wrapping_add(START_SEED);
-        let normal = |channel: usize| NormalStream::new(seed, member, channel as u64).normal(0);
-        let ([mut x, x_std], [mut u, u_std]) = (self.state, self.input);
-        let mut channel = 0;
-        let mut about = |value: &mut f64, std: f64| {
-            if std != 0.0 {
-                *value += std * normal(channel);
+        let mut channels = 0..;
+        let mut about = |(&mean, &std): (&f64, &f64)| {
+            let channel = channels.next().unwrap_or(0);
+            if std == 0.0 {
+                return mean;
             }
-            channel += 1;
+            mean + std * NormalStream::new(seed, member, channel).normal(0)
         };
-        F::update_state(&mut x, x_std, &mut about);
-        F::update_input(&mut u, u_std, &mut about);
+        let ([x, x_std], [u, u_std]) = (&self.state, &self.input);
+        let x = x.iter().zip(x_std).map(&mut about).collect();
+        let u = u.iter().zip(u_std).map(&mut about).collect();
         Particle {
             member,
             origin: member,

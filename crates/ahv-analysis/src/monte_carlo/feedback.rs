@@ -1,11 +1,12 @@
 //! State feedback through actuators, for all members of a batch at once.
 
-use ahv_core::{DifferentiableModel, GeneratedModel, Real, Vector};
+use ahv_core::{GeneratedModel, Real, Vector};
 use nalgebra::DMatrix;
 
 use super::lanes::{LANES, Packed};
 use crate::actuator::{Actuator, ActuatorStep};
 use crate::covariance::Regulation;
+use crate::values::vector;
 
 /// Largest rate of a state that stays, as a share of the terms of its drift, to first order.
 const STEADY: f64 = 1e-9;
@@ -13,18 +14,18 @@ const STEADY: f64 = 1e-9;
 /// u = input − gain (x − state − rate t), through actuators; t counts from the start of the flight.
 ///
 /// Inputs without actuator are held.
-#[derive(Clone, Copy)]
-pub struct Feedback<F: GeneratedModel> {
+#[derive(Clone, Debug)]
+pub struct Feedback {
     /// State of the trim at the start.
-    pub state: F::StateOf<f64>,
+    pub state: Vec<f64>,
     /// Rate of the trim, per second: of a climb that of the altitude, else 0.
-    pub rate: F::StateOf<f64>,
+    pub rate: Vec<f64>,
     /// Input of the trim.
-    pub input: F::InputOf<f64>,
-    /// Gain, row by row; the unit of an entry is that of the input over that of the state.
-    pub gain: F::InputOf<F::StateOf<f64>>,
+    pub input: Vec<f64>,
+    /// Gain, inputs by states; the unit of an entry is that of the input over that of the state.
+    pub gain: DMatrix<f64>,
     /// What moves each input.
-    pub actuators: F::InputOf<Option<Actuator>>,
+    pub actuators: Vec<Option<Actuator>>,
 }
 
 /// A state that does not follow its reference.
@@ -59,66 +60,58 @@ pub(super) struct Law<F: GeneratedModel> {
     rows: F::InputOf<Option<Row<F>>>,
 }
 
-impl<F: GeneratedModel> Feedback<F> {
+impl Feedback {
     /// The first state of `model` that does not follow the reference: the states that move in a trim move on, and all
     /// others stay.
-    pub fn unsteady<M>(&self, model: &M) -> Option<Unsteady>
-    where
-        M: DifferentiableModel<Scalar = f64, State = F::StateOf<f64>, Input = F::InputOf<f64>>,
-    {
-        let drift = model.drift(&self.state, &self.input);
-        let (by_state, by_input) = model.jacobians(&self.state, &self.input);
-        F::StateOf::<f64>::NAMES
-            .iter()
-            .enumerate()
-            .find_map(|(index, &state)| {
-                let (rate, own) = (drift.get(index)?, self.rate.get(index)?);
-                let moves = F::TRIM.moving.contains(&state);
-                let expected = if moves { rate } else { 0.0 };
-                let row: F::StateOf<f64> = by_state.get(index)?;
-                let terms = size(&row, &self.state) + size(&by_input.get(index)?, &self.input);
-                let follows = |rate: f64| (rate - expected).abs() <= STEADY * terms;
-                let rate = if follows(rate) { own } else { rate };
-                let unsteady = Unsteady {
-                    state,
-                    rate,
-                    expected,
-                };
-                (!follows(rate)).then_some(unsteady)
-            })
+    pub fn unsteady<M: GeneratedModel>(&self, model: &M) -> Option<Unsteady> {
+        let (x, u): (M::State, M::Input) = (vector(&self.state), vector(&self.input));
+        let (drift, by_state, by_input) = model.drift_and_jacobians(&x, &u);
+        let rates = self.rate.iter().zip(M::State::NAMES).enumerate();
+        let mut followed = rates.filter_map(|(index, (&own, &state))| {
+            let rate = drift.get(index)?;
+            let moves = M::TRIM.moving.contains(&state);
+            let expected = if moves { rate } else { 0.0 };
+            let row: M::State = by_state.get(index)?;
+            let terms = size(&row, &x) + size(&by_input.get(index)?, &u);
+            let follows = |rate: f64| (rate - expected).abs() <= STEADY * terms;
+            let rate = if follows(rate) { own } else { rate };
+            let unsteady = Unsteady {
+                state,
+                rate,
+                expected,
+            };
+            (!follows(rate)).then_some(unsteady)
+        });
+        followed.next()
     }
 
     /// The same law for a linear covariance: it acts all the time, and the actuators have no limits.
-    pub fn regulation(&self) -> Regulation<F::StateOf<f64>, F::InputOf<f64>> {
-        let (inputs, states) = (F::InputOf::<f64>::LEN, F::StateOf::<f64>::LEN);
-        let gain = |input, state| self.gain.get(input)?.get(state);
+    pub fn regulation(&self) -> Regulation {
+        let bandwidth = |actuator: &Option<Actuator>| actuator.map_or(0.0, |it| it.bandwidth);
         Regulation {
-            state: self.state,
-            rate: self.rate,
-            input: self.input,
-            gain: DMatrix::from_fn(inputs, states, |input, state| {
-                gain(input, state).unwrap_or(0.0)
-            }),
-            bandwidth: F::map_input(&self.actuators, |actuator| {
-                actuator.map_or(0.0, |actuator| actuator.bandwidth)
-            }),
+            state: self.state.clone(),
+            rate: self.rate.clone(),
+            input: self.input.clone(),
+            gain: self.gain.clone(),
+            bandwidth: self.actuators.iter().map(bandwidth).collect(),
         }
     }
 
     /// The law over steps of `dt`, for members that have flown some steps.
-    pub(super) fn over(&self, dt: f64, flown: [u64; LANES]) -> Law<F> {
+    pub(super) fn over<F: GeneratedModel>(&self, dt: f64, flown: [u64; LANES]) -> Law<F> {
+        let gain = |at: (usize, usize)| self.gain.get(at).map_or(0.0, |gain: &f64| *gain);
         let rows = F::InputOf::from_fn(|index| {
-            let actuator = self.actuators.get(index)??;
+            let actuator = self.actuators.get(index).copied()??;
             Some(Row {
-                input: self.input.get(index)?,
-                gain: self.gain.get(index)?,
+                input: *self.input.get(index)?,
+                gain: F::StateOf::from_fn(|state| gain((index, state))),
                 actuator: actuator.over(dt),
             })
         });
         Law {
-            state: self.state,
-            rate: self.rate,
-            moves: self.rate.find(|rate| rate != 0.0).is_some(),
+            state: vector(&self.state),
+            rate: vector(&self.rate),
+            moves: self.rate.iter().any(|&rate| rate != 0.0),
             dt,
             flown,
             rows,
@@ -172,7 +165,7 @@ mod tests {
     use ahv_core::{Bounds, Vector};
     use ahv_models::sdcom::{Input, Model, State};
 
-    use super::{Actuator, Feedback, LANES, Packed, Real};
+    use super::{Actuator, DMatrix, Feedback, LANES, Packed, Real};
 
     /// A member that flies on from step 40 sees the reference of step 40.
     #[test]
@@ -182,24 +175,19 @@ mod tests {
             rate: 1.0,
             bounds: Bounds::new(-1.0, 1.0),
         };
-        let mut gain: Input<State<f64>> = Vector::splat(Vector::splat(0.0));
-        gain.delta_e.altitude = 1e-3;
-        let feedback = Feedback::<Model<f64>> {
-            state: State::splat(0.0),
-            rate: State {
-                altitude: 134.0,
-                ..State::splat(0.0)
-            },
-            input: Input::splat(0.0),
+        // The second state is the altitude, the second input the elevator.
+        let mut gain = DMatrix::zeros(3, 8);
+        gain[(1, 1)] = 1e-3;
+        let feedback = Feedback {
+            state: vec![0.0; 8],
+            rate: vec![0.0, 134.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            input: vec![0.0; 3],
             gain,
-            actuators: Input {
-                delta_e: Some(actuator),
-                ..Input::splat(None)
-            },
+            actuators: vec![None, Some(actuator), None],
         };
         let moved = |flown: [u64; LANES], step| {
             let mut u = Input::splat(Packed::ZERO);
-            let law = feedback.over(0.01, flown);
+            let law = feedback.over::<Model<f64>>(0.01, flown);
             law.apply(&State::splat(Packed::ZERO), &mut u, step);
             u.delta_e.0
         };

@@ -1,39 +1,17 @@
 //! What many members show together.
 
-use std::ops::Range;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use ahv_core::{GeneratedModel, Vector};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::experiment::{Control, Experiment, Seen};
-use super::lanes::LANES;
-use super::propagator::Propagator;
+use super::Loss;
+use super::experiment::{Experiment, Seen};
 use super::spread::{Bin, QUANTILES, Spread};
-use super::{Loss, MonteCarloError};
-use crate::ordered::in_order;
 use crate::statistics::{Estimate, OpenEstimate, mean_and_std};
 
-/// Members whose flights are in memory at a time.
-const GROUP: u64 = 2048;
-/// Steps of a member that are worth a task of their own.
-const TASK_STEPS: u64 = 1000;
-/// Most batches of [`LANES`] members that one task flies.
-const MOST_BATCHES: u64 = 8;
 /// Losses that are told one by one.
 const TOLD: usize = 20;
-
-/// A member at one time.
-#[derive(Clone, Copy)]
-pub struct Point<F: GeneratedModel> {
-    /// Time, in s.
-    pub time: f64,
-    /// State.
-    pub state: F::StateOf<f64>,
-    /// Input.
-    pub input: F::InputOf<f64>,
-}
 
 /// What members show together.
 #[derive(Clone, Debug)]
@@ -95,113 +73,9 @@ pub struct StateSpread {
 /// Bins of the histograms that are told.
 const TOLD_BINS: usize = 60;
 
-impl<F: GeneratedModel> Experiment<F> {
-    /// Flies members 0 to `members` − 1 on `threads` threads.
-    ///
-    /// The same numbers whatever the threads. Stopped by `control`, it reports the members that were flown so far, 0 to some
-    /// number, with the bits of a run of so many.
-    ///
-    /// # Errors
-    ///
-    /// [`MonteCarloError`].
-    pub fn run(
-        &self,
-        members: u64,
-        threads: usize,
-        control: &Control,
-    ) -> Result<Outcome, MonteCarloError> {
-        self.run_and_list(members, threads, control, |_, _| ())
-    }
-
-    /// As [`Self::run`]; `list` is given what was seen of the members, in their order and many at a time, after the number of
-    /// the first.
-    ///
-    /// # Errors
-    ///
-    /// [`MonteCarloError`].
-    pub fn run_and_list(
-        &self,
-        members: u64,
-        threads: usize,
-        control: &Control,
-        mut list: impl FnMut(u64, &[Seen<F>]),
-    ) -> Result<Outcome, MonteCarloError> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
-        let started = Instant::now();
-        let propagator = self.propagator()?;
-        let mut collector = Collector::<F>::new(self);
-        let mut next = 0;
-        while next < members {
-            let end = members.min(next + GROUP);
-            let fly = || group(&*propagator, next..end, self.steps(), control);
-            let seen = pool.install(fly)?;
-            let flown = next + seen.len() as u64;
-            if flown > next {
-                list(next, &seen);
-                pool.install(|| collector.add(next, seen));
-                next = flown;
-            }
-            if flown < end {
-                break;
-            }
-        }
-        if next == 0 {
-            return Err(MonteCarloError::Stopped);
-        }
-        Ok(collector.outcome(members, started.elapsed()))
-    }
-
-    /// State and input of one member at the start and after every `stride` steps, as long as it is not lost.
-    /// The bits are those that the member has among others.
-    ///
-    /// # Errors
-    ///
-    /// [`MonteCarloError`].
-    pub fn trajectory(&self, member: u64, stride: u64) -> Result<Vec<Point<F>>, MonteCarloError> {
-        let alone = Self {
-            snapshots: (0..=self.steps()).step_by(stride.max(1) as usize).collect(),
-            ..self.clone()
-        };
-        let propagator = alone.propagator()?;
-        let seen = propagator.fly(&[member], &Control::default())?;
-        let at = seen.into_iter().flatten().next().map(|seen| seen.at);
-        let timed = alone.snapshots.iter().zip(at.unwrap_or_default());
-        let point = |(&step, (state, input)): (&u64, _)| Point {
-            time: step as f64 * self.dt,
-            state,
-            input,
-        };
-        Ok(timed.map(point).collect())
-    }
-}
-
-/// Flies members; stopped, it returns those before the first that was not flown.
-fn group<F: GeneratedModel>(
-    propagator: &dyn Propagator<F>,
-    members: Range<u64>,
-    steps: u64,
-    control: &Control,
-) -> Result<Vec<Seen<F>>, MonteCarloError> {
-    let batches = (TASK_STEPS / steps.max(1)).clamp(1, MOST_BATCHES);
-    let task = batches * LANES as u64;
-    let end = members.end;
-    let parts = in_order(members.step_by(task as usize), |first| {
-        let members: Vec<u64> = (first..end.min(first + task)).collect();
-        let batches = members.chunks(LANES);
-        let flown = batches.map(|batch| propagator.fly(batch, control));
-        // Of a task all members or none.
-        let flown: Option<Vec<_>> = flown.collect::<Result<_, MonteCarloError>>()?;
-        Ok::<_, MonteCarloError>(flown.map(|seen| seen.into_iter().flatten().collect::<Vec<_>>()))
-    })?;
-    Ok(parts.into_iter().flatten().collect())
-}
-
 /// Sums over members, in their order.
-struct Collector<'e, F: GeneratedModel> {
-    experiment: &'e Experiment<F>,
+pub(super) struct Collector<'e> {
+    experiment: &'e Experiment,
     sums: Vec<Sums>,
     members: u64,
     lost: u64,
@@ -294,13 +168,9 @@ impl PowerSums {
     }
 }
 
-fn components<T: Copy>(x: &impl Vector<T>, len: usize) -> Vec<T> {
-    (0..len).filter_map(|index| x.get(index)).collect()
-}
-
-impl<'e, F: GeneratedModel> Collector<'e, F> {
-    fn new(experiment: &'e Experiment<F>) -> Self {
-        let states = F::StateOf::<f64>::LEN;
+impl<'e> Collector<'e> {
+    pub(super) fn new(experiment: &'e Experiment) -> Self {
+        let states = experiment.state[0].len();
         let sums = experiment.snapshots.iter().map(|_| Sums {
             count: 0,
             states: Vec::new(),
@@ -322,10 +192,9 @@ impl<'e, F: GeneratedModel> Collector<'e, F> {
     }
 
     /// Members from number `first` on.
-    fn add(&mut self, first: u64, seen: Vec<Seen<F>>) {
-        let states = F::StateOf::<f64>::LEN;
-        for (member, seen) in (first..).zip(&seen) {
-            for value in components(&seen.last, states) {
+    pub(super) fn add(&mut self, first: u64, seen: &[Seen]) {
+        for (member, seen) in (first..).zip(seen) {
+            for value in &seen.last {
                 self.hash.update(value.to_le_bytes());
             }
             if let Some(loss) = seen.lost {
@@ -340,20 +209,20 @@ impl<'e, F: GeneratedModel> Collector<'e, F> {
         let sums = self.sums.par_iter_mut().zip(steps).enumerate();
         sums.for_each(|(index, (sums, &step))| {
             let at = seen.iter().filter_map(|seen| seen.at.get(index));
-            let values: Vec<_> = at.map(|(x, _)| components(x, states)).collect();
+            let values: Vec<&[f64]> = at.map(|(x, _)| &**x).collect();
             sums.add(&values);
             let (mut flying, mut stayed) = (values.iter(), Vec::new());
-            for seen in &seen {
-                let left = sums.leave::<F>(&seen.left, step);
+            for seen in seen {
+                let left = sums.leave(&seen.left, step);
                 // Those that are lost before have no values.
                 let values = seen.at.get(index).and_then(|_| flying.next());
-                stayed.extend(values.filter(|_| !left));
+                stayed.extend(values.copied().filter(|_| !left));
             }
             sums.stay(&stayed);
         });
     }
 
-    fn outcome(self, asked: u64, elapsed: Duration) -> Outcome {
+    pub(super) fn outcome(self, asked: u64, elapsed: Duration) -> Outcome {
         let dt = self.experiment.dt;
         let snapshots = self.sums.into_iter().zip(&self.experiment.snapshots);
         Outcome {
@@ -378,13 +247,15 @@ impl<'e, F: GeneratedModel> Collector<'e, F> {
 
 impl Sums {
     /// Counts what a member has left after so many steps; whether it has left the first of the sets.
-    fn leave<F: GeneratedModel>(&mut self, left: &[F::StateOf<Option<u64>>], step: u64) -> bool {
+    fn leave(&mut self, left: &[Vec<Option<u64>>], step: u64) -> bool {
         let mut first = None;
         let sets = left.iter().zip(&mut self.left).zip(&mut self.left_any);
         for ((left, counts), any) in sets {
             let mut some = false;
             for (state, count) in counts.iter_mut().enumerate() {
-                let by_then = left.get(state).flatten().is_some_and(|left| left <= step);
+                let by_then = left
+                    .get(state)
+                    .is_some_and(|left| left.is_some_and(|left| left <= step));
                 *count += u64::from(by_then);
                 some |= by_then;
             }
@@ -395,7 +266,7 @@ impl Sums {
     }
 
     /// Members that have stayed in the first of the sets.
-    fn stay(&mut self, members: &[&Vec<f64>]) {
+    fn stay(&mut self, members: &[&[f64]]) {
         if members.is_empty() {
             return;
         }
@@ -406,7 +277,7 @@ impl Sums {
         self.stayed += members.len() as u64;
     }
 
-    fn add(&mut self, members: &[Vec<f64>]) {
+    fn add(&mut self, members: &[&[f64]]) {
         // Members that are lost before leave nothing to begin with.
         let Some(first) = members.first() else {
             return;
@@ -421,7 +292,7 @@ impl Sums {
             self.spreads = columns.into_iter().map(Spread::new).collect();
         } else {
             for x in members {
-                for (spread, &value) in self.spreads.iter_mut().zip(x) {
+                for (spread, &value) in self.spreads.iter_mut().zip(*x) {
                     spread.add(value);
                 }
             }

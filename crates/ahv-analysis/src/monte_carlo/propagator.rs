@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 
-use ahv_core::{Bounds, CountVisitor, GeneratedModel, Outlined, Real, Straight, Vector};
+use ahv_core::{Bounds, CountVisitor, GeneratedModel, Outlined, Straight};
 use ahv_integrate::{
     Checked, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, ItoStrangSplitting,
     SdeScheme, StratonovichHeun,
@@ -12,11 +12,14 @@ use ahv_integrate::{
 
 use super::MonteCarloError;
 use super::arithmetic::{Called, In, Mode};
-use super::batch::{Batch, Dynamics, Member, Noise, Watch};
-use super::experiment::{Control, Experiment, Seen};
-use super::lanes::{LANES, Packed, packed};
-use super::rare::{Goal, Particle, Passed, pass};
+use super::batch::{Batch, Dynamics, Member, Noise};
+use super::experiment::{Experiment, Particle, Seen};
+use super::lanes::{self, LANES, Packed, of_lane, packed};
+use super::observe::{Observer, Watch};
+use super::passage::{Goal, Passage, Passed, pass};
 use super::scheme::{MOST_NORMALS, OneByOne, Scheme, Steps};
+use crate::ordered::Control;
+use crate::values::vector;
 
 /// Steps between two looks at whether to stop.
 const PATIENCE: u64 = 1024;
@@ -24,8 +27,9 @@ const PATIENCE: u64 = 1024;
 const FRACTION: f64 = 0.618;
 
 /// Propagates members of an experiment.
-pub trait Propagator<F: GeneratedModel>: Send + Sync {
-    /// Flies members, at most [`LANES`]; `None` if the work was stopped.
+pub(super) trait Propagator: Send + Sync {
+    /// Flies members, at most [`LANES`], and tells their states after each of these numbers of steps, which ascend; `None` if
+    /// the work was stopped.
     ///
     /// # Errors
     ///
@@ -33,8 +37,9 @@ pub trait Propagator<F: GeneratedModel>: Send + Sync {
     fn fly(
         &self,
         members: &[u64],
+        snapshots: &[u64],
         control: &Control,
-    ) -> Result<Option<Vec<Seen<F>>>, MonteCarloError>;
+    ) -> Result<Option<Vec<Seen>>, MonteCarloError>;
 
     /// Flies members, at most [`LANES`], from where they are until they pass the goal or time is over; `None` if the work was
     /// stopped.
@@ -44,37 +49,30 @@ pub trait Propagator<F: GeneratedModel>: Send + Sync {
     /// As [`Self::fly`].
     fn pass(
         &self,
-        flying: &[Particle<F>],
+        flying: &[Particle],
         goal: &Goal,
         control: &Control,
-    ) -> Result<Option<Vec<Passed<F>>>, MonteCarloError>;
+    ) -> Result<Option<Vec<Passed>>, MonteCarloError>;
 }
 
-impl<F: GeneratedModel> Experiment<F> {
-    /// The propagator of the members, with the scheme that is asked for.
-    ///
-    /// # Errors
-    ///
-    /// [`MonteCarloError::Scheme`] for a scheme that is not for this model's noise, [`MonteCarloError::StepSize`],
-    /// [`MonteCarloError::Normals`].
-    pub fn propagator(&self) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError> {
-        match self.scheme {
-            Scheme::Splitting => F::coloured(BySplitting(self))
-                .unwrap_or(Err(MonteCarloError::NoColouredNoise { model: F::NAME })),
-            Scheme::Heun => side_by_side::<F, ItoHeun>(self),
-            Scheme::EulerMaruyama => side_by_side::<F, ItoEulerMaruyama>(self),
-            Scheme::StratonovichHeun => one_by_one::<F, StratonovichHeun>(self),
-            Scheme::Milstein => one_by_one::<F, Checked<ItoMilstein>>(self),
-            Scheme::Sra1 => one_by_one::<F, Checked<ItoSra1>>(self),
-            Scheme::Dri1 => one_by_one::<F, ItoDri1>(self),
-        }
+/// The propagator of the members, with the scheme that is asked for.
+pub(super) fn propagator<F: GeneratedModel>(
+    experiment: &Experiment,
+) -> Result<Box<dyn Propagator + '_>, MonteCarloError> {
+    match experiment.scheme {
+        Scheme::Splitting => F::coloured(BySplitting::<F>(experiment, PhantomData))
+            .unwrap_or(Err(MonteCarloError::NoColouredNoise { model: F::NAME })),
+        Scheme::Heun => side_by_side::<F, ItoHeun>(experiment),
+        Scheme::EulerMaruyama => side_by_side::<F, ItoEulerMaruyama>(experiment),
+        Scheme::StratonovichHeun => one_by_one::<F, StratonovichHeun>(experiment),
+        Scheme::Milstein => one_by_one::<F, Checked<ItoMilstein>>(experiment),
+        Scheme::Sra1 => one_by_one::<F, Checked<ItoSra1>>(experiment),
+        Scheme::Dri1 => one_by_one::<F, ItoDri1>(experiment),
     }
 }
 
 /// Members by vector instructions.
-fn side_by_side<F, S>(
-    experiment: &Experiment<F>,
-) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError>
+fn side_by_side<F, S>(experiment: &Experiment) -> Result<Box<dyn Propagator + '_>, MonteCarloError>
 where
     F: GeneratedModel,
     S: SdeScheme<F::With<Packed>>
@@ -86,9 +84,7 @@ where
 }
 
 /// Members one after the other, all schemes in one loop.
-fn one_by_one<F, S>(
-    experiment: &Experiment<F>,
-) -> Result<Box<dyn Propagator<F> + '_>, MonteCarloError>
+fn one_by_one<F, S>(experiment: &Experiment) -> Result<Box<dyn Propagator + '_>, MonteCarloError>
 where
     F: GeneratedModel,
     S: SdeScheme<F::With<Packed>> + Into<OneByOne>,
@@ -99,8 +95,8 @@ where
 impl Scheme {
     /// The scheme where none is asked for: the splitting, which steps coloured noise exactly, where the model of these
     /// parameters has coloured noise with channels of its own; else Heun's.
-    pub fn default_for<F: GeneratedModel>(parameters: &F::ParametersOf<f64>) -> Self {
-        match F::coloured(Splits::<F>(parameters)) {
+    pub fn default_for<F: GeneratedModel>(parameters: &[f64]) -> Self {
+        match F::coloured(Splits::<F>(vector(parameters))) {
             Some(true) => Self::Splitting,
             _ => Self::Heun,
         }
@@ -108,23 +104,23 @@ impl Scheme {
 }
 
 /// Whether the model of these parameters can be split.
-struct Splits<'p, F: GeneratedModel>(&'p F::ParametersOf<f64>);
+struct Splits<F: GeneratedModel>(F::ParametersOf<f64>);
 
-impl<F: GeneratedModel> CountVisitor for Splits<'_, F> {
+impl<F: GeneratedModel> CountVisitor for Splits<F> {
     type Output = bool;
 
     fn visit<const N: usize>(self) -> bool {
         let (x, u) = generic_point::<F>();
-        let model = F::with_parameters(self.0);
+        let model = F::with_parameters(&self.0);
         ItoStrangSplitting::<f64, N>::new(&model, &x, &u, 1.0).is_ok()
     }
 }
 
 /// An experiment by the splitting.
-struct BySplitting<'e, F: GeneratedModel>(&'e Experiment<F>);
+struct BySplitting<'e, F>(&'e Experiment, PhantomData<fn() -> F>);
 
 impl<'e, F: GeneratedModel> CountVisitor for BySplitting<'e, F> {
-    type Output = Result<Box<dyn Propagator<F> + 'e>, MonteCarloError>;
+    type Output = Result<Box<dyn Propagator + 'e>, MonteCarloError>;
 
     fn visit<const N: usize>(self) -> Self::Output {
         side_by_side::<F, ItoStrangSplitting<Packed, N>>(self.0)
@@ -132,14 +128,11 @@ impl<'e, F: GeneratedModel> CountVisitor for BySplitting<'e, F> {
 }
 
 /// Sets up a scheme of the form `S` for the parameters of a batch.
-type SetUp<F, S> = fn(
-    &Experiment<F>,
-    &[<F as GeneratedModel>::ParametersOf<f64>; LANES],
-) -> Result<Dynamics<F, S>, MonteCarloError>;
+type SetUp<F, S> = fn(&Experiment, [&[f64]; LANES]) -> Result<Dynamics<F, S>, MonteCarloError>;
 
 /// A propagator with a scheme `S`, fast in the arithmetic `A` and again in `E` where that has no result.
 struct BatchPropagator<'e, F: GeneratedModel, S, A, E> {
-    experiment: &'e Experiment<F>,
+    experiment: &'e Experiment,
     /// The model of the experiment's own parameters.
     shared: Dynamics<F, S>,
     /// Makes those of dispersed parameters.
@@ -170,7 +163,7 @@ fn generic_members<F: GeneratedModel>() -> (F::StateOf<Packed>, F::InputOf<Packe
 
 /// The scheme `S` for a model of this experiment.
 fn set_up<F: GeneratedModel, S: SdeScheme<F::With<Packed>>>(
-    experiment: &Experiment<F>,
+    experiment: &Experiment,
     model: &F::With<Packed>,
 ) -> Result<S, MonteCarloError> {
     let (x, u) = generic_members::<F>();
@@ -182,8 +175,8 @@ fn set_up<F: GeneratedModel, S: SdeScheme<F::With<Packed>>>(
 
 /// The model of these parameters, and the scheme for it, which is `Own` in the form `S`.
 fn dynamics<F: GeneratedModel, Own: SdeScheme<F::With<Packed>> + Into<S>, S>(
-    experiment: &Experiment<F>,
-    parameters: &[F::ParametersOf<f64>; LANES],
+    experiment: &Experiment,
+    parameters: [&[f64]; LANES],
 ) -> Result<Dynamics<F, S>, MonteCarloError> {
     let model = packed::<F>(parameters);
     let scheme = set_up::<F, Own>(experiment, &model)?.into();
@@ -202,17 +195,15 @@ where
         clippy::new_ret_no_self,
         reason = "callers need no more than the trait"
     )]
-    fn new<Own>(
-        experiment: &'e Experiment<F>,
-    ) -> Result<Box<dyn Propagator<F> + 'e>, MonteCarloError>
+    fn new<Own>(experiment: &'e Experiment) -> Result<Box<dyn Propagator + 'e>, MonteCarloError>
     where
         Own: SdeScheme<F::With<Packed>> + Into<S>,
     {
         if !(experiment.dt > 0.0 && experiment.dt.is_finite()) {
             return Err(MonteCarloError::StepSize(experiment.dt));
         }
-        let shared = dynamics::<F, Own, S>(experiment, &[experiment.parameters; LANES])?;
-        let scheme: Own = set_up(experiment, &shared.model)?;
+        let shared = dynamics::<F, Own, S>(experiment, [&*experiment.parameters; LANES])?;
+        let scheme: Own = set_up::<F, Own>(experiment, &shared.model)?;
         let normals = scheme.normals();
         if normals > MOST_NORMALS {
             return Err(MonteCarloError::Normals { normals });
@@ -228,37 +219,39 @@ where
         }))
     }
 
-    /// The batch of members that fly on from where they are; its steps count from there.
-    fn batch(&self, flying: &[Particle<F>]) -> Result<Batch<'_, F, S>, MonteCarloError> {
+    /// The batch of members that fly on from where they are; its steps count from there. `observer` looks away from those whose
+    /// parameters break a rule.
+    fn batch(
+        &self,
+        flying: &[Particle],
+        observer: &mut dyn Observer<F>,
+    ) -> Result<Batch<'_, F, S>, MonteCarloError> {
         let experiment = self.experiment;
         // Lanes without member repeat the last one.
-        let last = flying
-            .last()
-            .copied()
-            .unwrap_or_else(|| experiment.particle(0));
-        let flying: [Particle<F>; LANES] =
-            std::array::from_fn(|lane| flying.get(lane).copied().unwrap_or(last));
+        let first = experiment.particle(0);
+        let last = flying.last().unwrap_or(&first);
+        let flying: [&Particle; LANES] =
+            std::array::from_fn(|lane| flying.get(lane).unwrap_or(last));
         let mut broken = [None; LANES];
         let dynamics = match &experiment.dispersion {
             None => Cow::Borrowed(&self.shared),
             Some(draws) => {
-                let mut parameters = flying.map(|particle| draws.member(particle.origin));
+                let mut parameters = flying.map(|particle| draws.member_values(particle.origin));
                 for (parameters, broken) in parameters.iter_mut().zip(&mut broken) {
-                    *broken = F::broken_rule(parameters);
+                    *broken = F::broken_rule(&vector(parameters));
                     // The lane flies all the same, unseen.
                     if broken.is_some() {
-                        *parameters = experiment.parameters;
+                        parameters.clone_from(&experiment.parameters);
                     }
                 }
-                Cow::Owned((self.dynamics)(experiment, &parameters)?)
+                Cow::Owned((self.dynamics)(
+                    experiment,
+                    parameters.each_ref().map(|it| &**it),
+                )?)
             }
         };
-        let mut x = F::StateOf::splat(Packed::ZERO);
-        let mut u = F::InputOf::splat(Packed::ZERO);
-        for (lane, particle) in flying.iter().enumerate() {
-            F::update_state(&mut x, particle.x, |numbers, value| numbers.0[lane] = value);
-            F::update_input(&mut u, particle.u, |numbers, value| numbers.0[lane] = value);
-        }
+        let x = lanes::side_by_side(flying.map(|particle| &*particle.x));
+        let u = lanes::side_by_side(flying.map(|particle| &*particle.u));
         let members = flying.map(|particle| particle.member);
         let single = experiment.mode == Mode::F32Noise;
         let noise = Noise::new(experiment.seed, members, &self.used, single);
@@ -266,19 +259,18 @@ where
             .feedback
             .as_ref()
             .map(|feedback| feedback.over(experiment.dt, flying.map(|particle| particle.step)));
-        let watches = experiment.watched.iter();
-        let watches = watches.map(|&bounds| Watch::new(bounds)).collect();
-        let mut batch = Batch::new(dynamics, (x, u), experiment.dt, noise, law, watches);
+        let mut batch = Batch::new(dynamics, (x, u), experiment.dt, noise, law);
         for (lane, rule) in broken.into_iter().enumerate() {
             if let Some(rule) = rule {
                 batch.ground(lane, rule.reason);
+                observer.close(lane);
             }
         }
         Ok(batch)
     }
 }
 
-impl<F, S, A, E> Propagator<F> for BatchPropagator<'_, F, S, A, E>
+impl<F, S, A, E> Propagator for BatchPropagator<'_, F, S, A, E>
 where
     F: GeneratedModel,
     A: Member<F>,
@@ -288,30 +280,33 @@ where
     fn fly(
         &self,
         members: &[u64],
+        snapshots: &[u64],
         control: &Control,
-    ) -> Result<Option<Vec<Seen<F>>>, MonteCarloError> {
+    ) -> Result<Option<Vec<Seen>>, MonteCarloError> {
         let experiment = self.experiment;
         let flying: Vec<_> = members
             .iter()
             .map(|&member| experiment.particle(member))
             .collect();
-        let mut batch = self.batch(&flying)?;
+        let mut watches: Vec<Watch<F>> =
+            experiment.watched.iter().map(|it| Watch::new(it)).collect();
+        let mut batch = self.batch(&flying, &mut watches)?;
         let count = members.len().min(LANES);
         let mut at: Vec<Vec<_>> = vec![Vec::new(); count];
-        for &snapshot in &experiment.snapshots {
+        for &snapshot in snapshots {
             while batch.step < snapshot {
                 if control.stop.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
                 let (from, until) = (batch.step, snapshot.min(batch.step + PATIENCE));
-                batch.advance::<A, E>(until);
+                batch.advance::<A, E>(until, &mut watches);
                 control
                     .done
                     .fetch_add((until - from) * count as u64, Ordering::Relaxed);
             }
             for (lane, at) in at.iter_mut().enumerate() {
                 if let (x, true) = batch.member(lane) {
-                    at.push((x, F::map_input(&batch.u, |numbers| numbers.0[lane])));
+                    at.push((x, of_lane(&batch.u, lane)));
                 }
             }
         }
@@ -319,24 +314,20 @@ where
             at,
             last: batch.member(lane).0,
             lost: batch.lost[lane],
-            left: batch.watches.iter().map(|watch| watch.left(lane)).collect(),
+            left: watches.iter().map(|watch| watch.left(lane)).collect(),
         });
         Ok(Some(seen.collect()))
     }
 
     fn pass(
         &self,
-        flying: &[Particle<F>],
+        flying: &[Particle],
         goal: &Goal,
         control: &Control,
-    ) -> Result<Option<Vec<Passed<F>>>, MonteCarloError> {
-        let batch = self.batch(flying)?;
-        Ok(pass::<F, S, A, E>(
-            batch,
-            self.experiment.steps(),
-            flying,
-            goal,
-            control,
-        ))
+    ) -> Result<Option<Vec<Passed>>, MonteCarloError> {
+        let steps = self.experiment.steps();
+        let mut passage = Passage::new(goal, steps, flying);
+        let batch = self.batch(flying, &mut passage)?;
+        Ok(pass::<F, S, A, E>(batch, passage, flying, control))
     }
 }

@@ -6,18 +6,16 @@
 //! levels that were chosen beforehand. Here a pilot chooses them, as quantiles of how far its members come (Cérou and Guyader
 //! 2007), and its members are not counted. Independent repetitions give the interval.
 
-mod passage;
-
-use ahv_core::{GeneratedModel, Shown, Vector};
+use ahv_core::Shown;
 use ahv_integrate::NormalStream;
 use rayon::prelude::*;
 
-pub(super) use passage::{Goal, Particle, Passage, Passed, pass};
-
 use super::MonteCarloError;
-use super::experiment::{Control, Experiment};
+use super::engine::{Engine, pool};
+use super::experiment::{Experiment, Particle};
 use super::lanes::LANES;
-use super::propagator::Propagator;
+use super::passage::{Goal, Passed};
+use crate::ordered::Control;
 use crate::statistics::{Estimate, Z_95, mean_and_std, student_95};
 
 /// Fewest repetitions: from there on, Student's quantile is right to four digits.
@@ -86,14 +84,9 @@ pub enum RareError {
         /// How many.
         repetitions: u64,
     },
-    /// A flight that does not go anywhere.
-    #[error("a flight of {steps} steps of {} s is none", Shown(*dt))]
-    Flight {
-        /// Steps.
-        steps: u64,
-        /// Step size, in s.
-        dt: f64,
-    },
+    /// A flight of no steps.
+    #[error("a flight of no steps goes nowhere")]
+    Flight,
     /// Members that do not come nearer to the limit.
     #[error("the members come no nearer to the limit than {}; more members from each level may", Shown(*level))]
     OutOfReach {
@@ -151,7 +144,7 @@ pub struct RareEstimate {
     pub lost: u64,
 }
 
-impl<F: GeneratedModel> Experiment<F> {
+impl Engine<'_> {
     /// The probability that a state passes a limit before the flight ends, on `threads` threads.
     ///
     /// The same numbers whatever the threads. The limit may be some standard deviations away, and the probability 10⁻¹⁰: the
@@ -167,16 +160,12 @@ impl<F: GeneratedModel> Experiment<F> {
         control: &Control,
     ) -> Result<RareEstimate, MonteCarloError> {
         let heights = event.check(self)?;
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| MonteCarloError::Threads(error.to_string()))?;
+        let pool = pool(threads)?;
         let mut search = Search {
-            experiment: self,
-            propagator: self.propagator()?,
+            engine: self,
             event,
             control,
-            goal: event.goal(self),
+            goal: event.goal(self.experiment),
             next: 0,
             member_steps: 0,
             lost: 0,
@@ -198,12 +187,12 @@ impl<F: GeneratedModel> Experiment<F> {
 
 impl RareEvent {
     /// Where the members start, in the mean.
-    fn start<F: GeneratedModel>(&self, experiment: &Experiment<F>) -> Option<f64> {
-        experiment.state[0].get(self.state)
+    fn start(&self, experiment: &Experiment) -> Option<f64> {
+        experiment.state[0].get(self.state).copied()
     }
 
     /// The limit.
-    fn goal<F: GeneratedModel>(&self, experiment: &Experiment<F>) -> Goal {
+    fn goal(&self, experiment: &Experiment) -> Goal {
         let start = self.start(experiment).unwrap_or(0.0);
         let sign = if self.limit > start { 1.0 } else { -1.0 };
         Goal {
@@ -214,15 +203,11 @@ impl RareEvent {
     }
 
     /// Heights of the levels that are given, that of the limit included.
-    fn check<F: GeneratedModel>(
-        &self,
-        experiment: &Experiment<F>,
-    ) -> Result<Option<Vec<f64>>, RareError> {
-        let (steps, dt) = (experiment.steps(), experiment.dt);
-        if steps == 0 || !(dt > 0.0 && dt.is_finite()) {
-            return Err(RareError::Flight { steps, dt });
+    fn check(&self, engine: &Engine<'_>) -> Result<Option<Vec<f64>>, RareError> {
+        let (experiment, names) = (engine.experiment, engine.states);
+        if experiment.steps() == 0 {
+            return Err(RareError::Flight);
         }
-        let names = F::StateOf::<f64>::NAMES;
         let Some((start, name)) = self.start(experiment).zip(names.get(self.state)) else {
             return Err(RareError::State {
                 state: self.state,
@@ -286,9 +271,8 @@ impl Count {
 }
 
 /// Splitting at work.
-struct Search<'e, F: GeneratedModel> {
-    experiment: &'e Experiment<F>,
-    propagator: Box<dyn Propagator<F> + 'e>,
+struct Search<'e> {
+    engine: &'e Engine<'e>,
     event: &'e RareEvent,
     control: &'e Control,
     /// The limit.
@@ -299,7 +283,7 @@ struct Search<'e, F: GeneratedModel> {
     lost: u64,
 }
 
-impl<F: GeneratedModel> Search<'_, F> {
+impl Search<'_> {
     /// Heights of levels that a fair share of the members passes, that of the limit included.
     ///
     /// Members fly twice with the same noise: to find the level, and to pass it.
@@ -309,7 +293,7 @@ impl<F: GeneratedModel> Search<'_, F> {
             height: limit,
             ..
         } = self.goal;
-        let start = self.event.start(self.experiment).unwrap_or(0.0);
+        let start = self.event.start(self.engine.experiment).unwrap_or(0.0);
         let mut last = sign * start;
         let mut flying = self.starts();
         while heights.len() < MOST_LEVELS {
@@ -326,7 +310,7 @@ impl<F: GeneratedModel> Search<'_, F> {
             if height <= last {
                 break;
             }
-            let entrances = entrances(&self.fly(&flying, height)?);
+            let entrances = entrances(self.fly(&flying, height)?);
             // Copies that came no further than where they started share one height.
             if entrances.is_empty() {
                 break;
@@ -372,7 +356,7 @@ impl<F: GeneratedModel> Search<'_, F> {
         let (mut value, mut counts) = (1.0, Vec::new());
         let mut flying = self.starts();
         for &height in heights {
-            let entrances = entrances(&self.fly(&flying, height)?);
+            let entrances = entrances(self.fly(&flying, height)?);
             let count = Count {
                 started: flying.len() as u64,
                 passed: entrances.len() as u64,
@@ -416,7 +400,7 @@ impl<F: GeneratedModel> Search<'_, F> {
             levels,
             repetitions: values.len() as u64,
             member_steps: self.member_steps,
-            plain_member_steps: flights * self.experiment.steps() as f64,
+            plain_member_steps: flights * self.engine.experiment.steps() as f64,
             lost: self.lost,
         })
     }
@@ -436,19 +420,19 @@ impl<F: GeneratedModel> Search<'_, F> {
     }
 
     /// Members at the start.
-    fn starts(&mut self) -> Vec<Particle<F>> {
+    fn starts(&mut self) -> Vec<Particle> {
         let first = self.next;
         self.next += self.event.effort;
         (first..self.next)
-            .map(|member| self.experiment.particle(member))
+            .map(|member| self.engine.experiment.particle(member))
             .collect()
     }
 
     /// As many members as start from a level, each from one of the entrances: from every one equally many, but for rounding,
     /// which one number decides for all (systematic resampling).
-    fn copies(&mut self, entrances: &[Particle<F>]) -> Vec<Particle<F>> {
+    fn copies(&mut self, entrances: &[Particle]) -> Vec<Particle> {
         let effort = self.event.effort;
-        let normal = NormalStream::new(self.experiment.seed, self.next, 0).normal(0);
+        let normal = NormalStream::new(self.engine.experiment.seed, self.next, 0).normal(0);
         let uniform = 0.5 * libm::erfc(-normal / std::f64::consts::SQRT_2);
         let first = self.next + 1;
         self.next = first + effort;
@@ -458,25 +442,21 @@ impl<F: GeneratedModel> Search<'_, F> {
             let entrance = entrances.get(place.min(entrances.len() - 1))?;
             Some(Particle {
                 member: first + index,
-                ..*entrance
+                ..entrance.clone()
             })
         };
         (0..effort).filter_map(copy).collect()
     }
 
     /// Flies members until they pass this height.
-    fn fly(
-        &mut self,
-        flying: &[Particle<F>],
-        height: f64,
-    ) -> Result<Vec<Passed<F>>, MonteCarloError> {
+    fn fly(&mut self, flying: &[Particle], height: f64) -> Result<Vec<Passed>, MonteCarloError> {
         let goal = Goal {
             height,
             ..self.goal
         };
-        let flown: Vec<Option<Vec<Passed<F>>>> = flying
+        let flown: Vec<Option<Vec<Passed>>> = flying
             .par_chunks(LANES)
-            .map(|batch| self.propagator.pass(batch, &goal, self.control))
+            .map(|batch| self.engine.propagator.pass(batch, &goal, self.control))
             .collect::<Result<_, _>>()?;
         let flown: Option<Vec<Vec<_>>> = flown.into_iter().collect();
         let flown: Vec<_> = flown
@@ -491,8 +471,8 @@ impl<F: GeneratedModel> Search<'_, F> {
 }
 
 /// Where a level was passed, by time: those that fly on side by side then have about as long to go.
-fn entrances<F: GeneratedModel>(flown: &[Passed<F>]) -> Vec<Particle<F>> {
-    let mut entrances: Vec<_> = flown.iter().filter_map(|passed| passed.at).collect();
+fn entrances(flown: Vec<Passed>) -> Vec<Particle> {
+    let mut entrances: Vec<_> = flown.into_iter().filter_map(|passed| passed.at).collect();
     entrances.sort_by_key(|entrance| entrance.step);
     entrances
 }

@@ -85,7 +85,7 @@ pub(super) fn stds(snapshot: &Snapshot) -> Vec<Option<OpenEstimate>> {
 }
 
 impl Outcome<'_> {
-    pub(super) fn pairs(&self) -> impl Iterator<Item = (&Spreading<Vec<f64>>, &Snapshot)> {
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (&Spreading, &Snapshot)> {
         self.linear.iter().zip(&self.sampled)
     }
 
@@ -158,7 +158,7 @@ impl Outcome<'_> {
 
     pub(super) fn json(&self) -> Json<'_> {
         let states = self.vehicle.states;
-        let at = |(linear, sampled): (&Spreading<Vec<f64>>, &Snapshot)| {
+        let at = |(linear, sampled): (&Spreading, &Snapshot)| {
             let ratios = linear.std().into_iter().zip(stds(sampled));
             let ratios = ratios.map(|(linear, std)| ratio(linear, std));
             JsonTime {

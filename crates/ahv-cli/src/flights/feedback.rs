@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use ahv_analysis::actuator::Actuator;
-use ahv_analysis::erased::Feedback;
+use ahv_analysis::monte_carlo::Feedback;
 use ahv_analysis::trim::SteadyState;
 use clap::{Args, ValueEnum};
 use nalgebra::DMatrix;

@@ -1,6 +1,6 @@
 //! Which drawn parameters the lost members, and the states at the end, have to do with.
 
-use ahv_analysis::erased::Seen;
+use ahv_analysis::monte_carlo::Seen;
 use ahv_analysis::statistics::{chance_of_rank_correlation, rank_correlation};
 use serde::Serialize;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ahv_analysis::erased::Seen;
+use ahv_analysis::monte_carlo::Seen;
 
 use super::tables::COMPLETE;
 use crate::csv_file::CsvFile;

@@ -12,6 +12,7 @@ use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::labels::Labels;
 use crate::number::{cell, time};
+use ahv_analysis::monte_carlo::MonteCarloError;
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -68,14 +69,15 @@ pub(super) fn write(told: &Told<'_>, folder: &Path) -> Result<(), Failure> {
         columns: vec![Vec::new(); names.len()],
         names,
     };
+    let numeric = |error: MonteCarloError| Failure::Numeric(error.to_string());
+    let engine = vehicle.model.engine(&told.ready.experiment);
+    let engine = engine.map_err(numeric)?;
     // Of a part of the members, those that were flown.
     for &member in chosen
         .iter()
         .filter(|member| **member < told.outcome.members)
     {
-        let flight = vehicle.model.trajectory(&told.ready.experiment, member);
-        let flight = flight.map_err(|error| Failure::Numeric(error.to_string()))?;
-        for point in flight {
+        for point in engine.trajectory(member, 1).map_err(numeric)? {
             // Members are fewer than 10^9.
             table.members.push(member as i64);
             let values = std::iter::once(time(point.time))

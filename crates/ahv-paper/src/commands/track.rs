@@ -6,7 +6,7 @@ mod tables;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use ahv_analysis::monte_carlo::Control;
+use ahv_analysis::ordered::Control;
 use ahv_cli::failure::{Failure, print};
 use ahv_cli::number::Shown;
 use ahv_cli::output;

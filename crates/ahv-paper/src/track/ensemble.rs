@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use ahv_analysis::actuator::{Actuator, Limits};
-use ahv_analysis::monte_carlo::Control;
+use ahv_analysis::ordered::Control;
 use ahv_analysis::ordered::in_order;
 use ahv_analysis::trim::{SteadyState, Trim, TrimError, trim};
 use ahv_core::{GeneratedModel, Outside, first_outside};

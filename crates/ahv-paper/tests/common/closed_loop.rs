@@ -2,7 +2,7 @@
 
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::deviations;
-use ahv_analysis::monte_carlo::Control;
+use ahv_analysis::ordered::Control;
 use ahv_analysis::trim::{SteadyState, trim};
 use ahv_core::{Bounds, GeneratedModel, Vector};
 use ahv_integrate::WienerSource;

@@ -2,35 +2,22 @@
 
 use std::sync::atomic::Ordering;
 
-use ahv_core::{GeneratedModel, Vector};
+use ahv_core::{GeneratedModel, Real, Vector};
 
-use super::super::arithmetic::Called;
-use super::super::batch::{Batch, Member, NEVER};
-use super::super::experiment::Control;
-use super::super::lanes::{LANES, Packed};
-use super::super::scheme::Steps;
+use super::arithmetic::Called;
+use super::batch::{Batch, Member};
+use super::experiment::Particle;
+use super::lanes::{LANES, Packed, of_lane};
+use super::observe::{NEVER, Observer};
+use super::scheme::Steps;
+use crate::ordered::Control;
 
 /// Steps between two looks at whether members still have to fly.
 const STRETCH: u64 = 16;
 
-/// A member on its way.
-#[derive(Clone, Copy)]
-pub struct Particle<F: GeneratedModel> {
-    /// Number of the member whose noise it has from here on.
-    pub(in super::super) member: u64,
-    /// Number of the member whose parameters it has.
-    pub(in super::super) origin: u64,
-    /// Steps since the start.
-    pub(in super::super) step: u64,
-    /// State.
-    pub(in super::super) x: F::StateOf<f64>,
-    /// Input.
-    pub(in super::super) u: F::InputOf<f64>,
-}
-
 /// A level of a state, passed where `sign` times the state is beyond `height`.
 #[derive(Clone, Copy)]
-pub struct Goal {
+pub(super) struct Goal {
     /// Number of the state.
     pub(super) state: usize,
     /// 1 for a level that is passed upwards, −1 downwards.
@@ -40,12 +27,12 @@ pub struct Goal {
 }
 
 /// What became of a member.
-#[derive(Clone, Copy)]
-pub struct Passed<F: GeneratedModel> {
+#[derive(Clone)]
+pub(super) struct Passed {
     /// Greatest height until it passed the goal, was lost, or time was over.
     pub(super) most: f64,
     /// Where it passed the goal.
-    pub(super) at: Option<Particle<F>>,
+    pub(super) at: Option<Particle>,
     /// Whether it was lost before.
     pub(super) lost: bool,
     /// Steps that it was computed for, beyond its passage included.
@@ -53,7 +40,7 @@ pub struct Passed<F: GeneratedModel> {
 }
 
 /// Where the lanes of a batch pass a goal.
-pub(in super::super) struct Passage<F: GeneratedModel> {
+pub(super) struct Passage<F: GeneratedModel> {
     goal: Goal,
     /// Step from which on nothing is looked for: time is over, or the lane is done.
     until: [u64; LANES],
@@ -64,15 +51,8 @@ pub(in super::super) struct Passage<F: GeneratedModel> {
     u: F::InputOf<Packed>,
 }
 
-impl<F: GeneratedModel> Passage<F> {
-    /// Looks at the states after `step` steps. Not inlined, so that flights without a goal step as if there were none.
-    #[inline(never)]
-    pub(in super::super) fn look(
-        &mut self,
-        x: &F::StateOf<Packed>,
-        u: &F::InputOf<Packed>,
-        step: u64,
-    ) {
+impl<F: GeneratedModel> Observer<F> for Passage<F> {
+    fn after_step(&mut self, x: &F::StateOf<Packed>, u: &F::InputOf<Packed>, step: u64) {
         let Some(values) = x.get(self.goal.state) else {
             return;
         };
@@ -94,9 +74,26 @@ impl<F: GeneratedModel> Passage<F> {
         }
     }
 
-    /// Looks at this lane no more.
-    pub(in super::super) fn close(&mut self, lane: usize) {
+    fn close(&mut self, lane: usize) {
         self.until[lane] = 0;
+    }
+}
+
+impl<F: GeneratedModel> Passage<F> {
+    /// Before a flight of `steps`, of which these have flown a part.
+    pub(super) fn new(goal: &Goal, steps: u64, flying: &[Particle]) -> Self {
+        let mut until = [0; LANES];
+        for (until, particle) in until.iter_mut().zip(flying) {
+            *until = steps.saturating_sub(particle.step) + 1;
+        }
+        Self {
+            goal: *goal,
+            until,
+            most: [f64::NEG_INFINITY; LANES],
+            step: [NEVER; LANES],
+            x: F::StateOf::splat(Packed::ZERO),
+            u: F::InputOf::splat(Packed::ZERO),
+        }
     }
 
     /// Last step that is looked at.
@@ -105,52 +102,35 @@ impl<F: GeneratedModel> Passage<F> {
     }
 }
 
-/// Flies the members of a batch until each has passed the goal or its time of `steps` is over; `None` if the work was stopped.
+/// Flies the members of a batch until each has passed the goal or its time is over; `None` if the work was stopped.
 ///
 /// Who is beyond the goal already passes it at once: a step may lead past several levels.
-pub(in super::super) fn pass<F, S, A, E>(
+pub(super) fn pass<F, S, A, E>(
     mut batch: Batch<'_, F, S>,
-    steps: u64,
-    flying: &[Particle<F>],
-    goal: &Goal,
+    mut passage: Passage<F>,
+    flying: &[Particle],
     control: &Control,
-) -> Option<Vec<Passed<F>>>
+) -> Option<Vec<Passed>>
 where
     F: GeneratedModel,
     A: Member<F>,
     E: Member<F>,
     S: Steps<A::Model> + Steps<<Called<E> as Member<F>>::Model>,
 {
-    let mut until = [0; LANES];
-    for (until, particle) in until.iter_mut().zip(flying) {
-        *until = steps.saturating_sub(particle.step) + 1;
-    }
-    let mut passage = Passage {
-        goal: *goal,
-        until,
-        most: [f64::NEG_INFINITY; LANES],
-        step: [NEVER; LANES],
-        x: batch.x,
-        u: batch.u,
-    };
-    passage.look(&batch.x, &batch.u, 0);
+    passage.after_step(&batch.x, &batch.u, 0);
     let count = flying.len().min(LANES) as u64;
     let mut end = passage.end();
-    batch.passage = Some(passage);
     while batch.step < end {
         if control.stop.load(Ordering::Relaxed) {
             return None;
         }
         let (from, until) = (batch.step, end.min(batch.step + STRETCH));
-        batch.advance::<A, E>(until);
+        batch.advance::<A, E>(until, &mut passage);
         control
             .done
             .fetch_add((until - from) * count, Ordering::Relaxed);
-        end = batch.passage.as_ref().map_or(0, Passage::end);
+        end = passage.end();
     }
-    let Some(passage) = batch.passage else {
-        return Some(Vec::new());
-    };
     let passed = flying
         .iter()
         .take(LANES)
@@ -160,10 +140,11 @@ where
             Passed {
                 most: passage.most[lane],
                 at: step.map(|step| Particle {
+                    member: particle.member,
+                    origin: particle.origin,
                     step: particle.step + step,
-                    x: F::map_state(&passage.x, |numbers| numbers.0[lane]),
-                    u: F::map_input(&passage.u, |numbers| numbers.0[lane]),
-                    ..*particle
+                    x: of_lane(&passage.x, lane),
+                    u: of_lane(&passage.u, lane),
                 }),
                 lost: step.is_none() && batch.lost[lane].is_some(),
                 steps: batch.step,

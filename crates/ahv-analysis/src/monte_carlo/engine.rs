@@ -1,0 +1,171 @@
+//! Flies the members of an experiment, whatever the model.
+
+use std::ops::Range;
+use std::time::Instant;
+
+use ahv_core::{GeneratedModel, Vector};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::MonteCarloError;
+use super::experiment::{Experiment, Seen};
+use super::lanes::LANES;
+use super::outcome::{Collector, Outcome};
+use super::propagator::{Propagator, propagator};
+use crate::ordered::{Control, in_order};
+
+/// Members whose flights are in memory at a time.
+const GROUP: u64 = 2048;
+/// Steps of a member that are worth a task of their own.
+const TASK_STEPS: u64 = 1000;
+/// Most batches of [`LANES`] members that one task flies.
+const MOST_BATCHES: u64 = 8;
+/// A member at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Time, in s.
+    pub time: f64,
+    /// State.
+    pub state: Vec<f64>,
+    /// Input.
+    pub input: Vec<f64>,
+}
+
+/// An experiment with what flies its members.
+pub struct Engine<'e> {
+    pub(super) experiment: &'e Experiment,
+    pub(super) propagator: Box<dyn Propagator + 'e>,
+    /// Names of the states.
+    pub(super) states: &'static [&'static str],
+}
+
+impl Experiment {
+    /// What flies its members as those of the model `F`.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError::Scheme`], [`MonteCarloError::NoColouredNoise`] for a scheme that is not for this model's noise,
+    /// [`MonteCarloError::StepSize`], [`MonteCarloError::Normals`].
+    pub fn engine<F: GeneratedModel>(&self) -> Result<Engine<'_>, MonteCarloError> {
+        Ok(Engine {
+            experiment: self,
+            propagator: propagator::<F>(self)?,
+            states: F::StateOf::<f64>::NAMES,
+        })
+    }
+}
+
+/// So many threads.
+pub(super) fn pool(threads: usize) -> Result<ThreadPool, MonteCarloError> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| MonteCarloError::Threads(error.to_string()))
+}
+
+impl<'e> Engine<'e> {
+    /// Flies members 0 to `members` − 1 on `threads` threads.
+    ///
+    /// The same numbers whatever the threads. Stopped by `control`, it reports the members that were flown so far, 0 to some
+    /// number, with the bits of a run of so many.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError`].
+    pub fn run(
+        &self,
+        members: u64,
+        threads: usize,
+        control: &Control,
+    ) -> Result<Outcome, MonteCarloError> {
+        self.run_and_list(members, threads, control, |_, _| ())
+    }
+
+    /// As [`Self::run`]; `list` is given what was seen of the members, in their order and many at a time, after the number of
+    /// the first.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError`].
+    pub fn run_and_list(
+        &self,
+        members: u64,
+        threads: usize,
+        control: &Control,
+        mut list: impl FnMut(u64, &[Seen]),
+    ) -> Result<Outcome, MonteCarloError> {
+        let pool = pool(threads)?;
+        let started = Instant::now();
+        let mut collector = Collector::new(self.experiment);
+        let mut next = 0;
+        while next < members {
+            let end = members.min(next + GROUP);
+            let fly = || self.group(next..end, control);
+            let seen = pool.install(fly)?;
+            let flown = next + seen.len() as u64;
+            if flown > next {
+                list(next, &seen);
+                pool.install(|| collector.add(next, &seen));
+                next = flown;
+            }
+            if flown < end {
+                break;
+            }
+        }
+        if next == 0 {
+            return Err(MonteCarloError::Stopped);
+        }
+        Ok(collector.outcome(members, started.elapsed()))
+    }
+
+    /// Flies members, at most [`LANES`]; `None` if the work was stopped.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError::Scheme`] for drawn parameters that the scheme is not for.
+    pub fn fly(
+        &self,
+        members: &[u64],
+        control: &Control,
+    ) -> Result<Option<Vec<Seen>>, MonteCarloError> {
+        let snapshots = &self.experiment.snapshots;
+        self.propagator.fly(members, snapshots, control)
+    }
+
+    /// State and input of one member at the start and after every `stride` steps, as long as it is not lost.
+    /// The bits are those that the member has among others.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError`].
+    pub fn trajectory(&self, member: u64, stride: u64) -> Result<Vec<Point>, MonteCarloError> {
+        let steps: Vec<u64> = (0..=self.experiment.steps())
+            .step_by(stride.max(1) as usize)
+            .collect();
+        let seen = self
+            .propagator
+            .fly(&[member], &steps, &Control::default())?;
+        let at = seen.into_iter().flatten().next().map(|seen| seen.at);
+        let timed = steps.iter().zip(at.unwrap_or_default());
+        let point = |(&step, (state, input)): (&u64, _)| Point {
+            time: step as f64 * self.experiment.dt,
+            state,
+            input,
+        };
+        Ok(timed.map(point).collect())
+    }
+
+    /// Flies members; stopped, it returns those before the first that was not flown.
+    fn group(&self, members: Range<u64>, control: &Control) -> Result<Vec<Seen>, MonteCarloError> {
+        let batches = (TASK_STEPS / self.experiment.steps().max(1)).clamp(1, MOST_BATCHES);
+        let task = batches * LANES as u64;
+        let end = members.end;
+        let parts = in_order(members.step_by(task as usize), |first| {
+            let members: Vec<u64> = (first..end.min(first + task)).collect();
+            let batches = members.chunks(LANES);
+            let flown = batches.map(|batch| self.fly(batch, control));
+            // Of a task all members or none.
+            let flown: Option<Vec<_>> = flown.collect::<Result<_, MonteCarloError>>()?;
+            let flown = flown.map(|seen| seen.into_iter().flatten().collect::<Vec<_>>());
+            Ok::<_, MonteCarloError>(flown)
+        })?;
+        Ok(parts.into_iter().flatten().collect())
+    }
+}
