@@ -1,7 +1,6 @@
 //! Weak error against time: the step of the splitting that is as accurate as Euler–Maruyama at 1 ms.
 
 use ahv_analysis::monte_carlo::{Experiment, Mode, Scheme};
-use ahv_models::sdcom::Model;
 use rayon::ThreadPool;
 use serde::Serialize;
 

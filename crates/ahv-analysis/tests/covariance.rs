@@ -276,7 +276,6 @@ impl StochasticModel for Pair {
     }
 }
 
-
 /// Var x = g²(1 − e^(−2at))/(2a) and Var y = g²/a² (t − 2(1 − e^(−at))/a + (1 − e^(−2at))/(2a)): a step as long as one likes.
 #[test]
 fn coloured_noise_and_its_integral_have_their_closed_form_however_stiff() {

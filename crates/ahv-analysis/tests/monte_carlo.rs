@@ -391,8 +391,9 @@ fn the_first_step_outside_is_found() {
     limits[alpha] = interval;
     experiment.watched.push(limits);
     for seen in fly::<Sdcom>(&experiment, &[0, 1, 2]).expect("it goes") {
-        let outside = |(x, _): &(Vec<f64>, _)| !interval.contains(x[alpha]);
-        let first = seen.at.iter().position(outside).map(|step| step as u64);
+        let outside = |x: &[f64]| !interval.contains(x[alpha]);
+        let first = seen.states.chunks(8).position(outside);
+        let first = first.map(|step| step as u64);
         assert_eq!(seen.left[1][alpha], first);
         assert!(first.is_some(), "it leaves");
     }
@@ -542,11 +543,12 @@ fn a_model_without_noise_is_flown_from_dispersed_starts() {
     let members: Vec<u64> = (0..8).collect();
     let model = com::Model::new(&com::NOMINAL);
     for seen in fly::<com::Model<f64>>(&experiment, &members).expect("it goes") {
-        let (start, input) = &seen.at[0];
-        assert_ne!(start, &experiment.state[0]);
+        let start = seen.state(0).expect("the start");
+        assert_ne!(start, experiment.state[0]);
         let altitude = index("altitude");
         assert_eq!(start[altitude], experiment.state[0][altitude]);
-        let (mut x, input): (com::State<f64>, com::Input<f64>) = (vector(start), vector(input));
+        let (mut x, input): (com::State<f64>, com::Input<f64>) =
+            (vector(start), vector(&seen.inputs[..3]));
         let calm = com::Noise::splat(0.0);
         for _ in 0..steps {
             ItoHeun::new(dt)

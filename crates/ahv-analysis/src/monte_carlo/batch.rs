@@ -9,7 +9,7 @@ use ahv_integrate::{NormalLanes, Precision, StepError};
 use super::arithmetic::{Arithmetic, Called};
 use super::feedback::Law;
 use super::lanes::{LANES, Packed, of_lane};
-use super::observe::Observer;
+use super::observe::Observers;
 use super::scheme::{MOST_NORMALS, Steps};
 
 /// How a member ended before its time.
@@ -93,9 +93,9 @@ pub(super) struct Batch<'c, F: GeneratedModel, S: Copy> {
 }
 
 /// Steps a batch with the instructions of the machine that it runs on.
-struct Advance<'b, 'c, F: GeneratedModel, S: Copy, A> {
+struct Advance<'b, 'c, 'o, F: GeneratedModel, S: Copy, A> {
     batch: &'b mut Batch<'c, F, S>,
-    observer: &'b mut dyn Observer<F>,
+    observers: &'b mut Observers<'o, F>,
     /// Step to stop before.
     until: u64,
     /// Fast, and for what is stepped again.
@@ -118,7 +118,7 @@ pub(super) trait Member<F: GeneratedModel>: Copy {
     fn model(model: &F::With<Packed>, lane: usize) -> Self::Model;
 }
 
-impl<F, S, A, E> pulp::WithSimd for Advance<'_, '_, F, S, (A, E)>
+impl<F, S, A, E> pulp::WithSimd for Advance<'_, '_, '_, F, S, (A, E)>
 where
     F: GeneratedModel,
     A: Member<F>,
@@ -129,7 +129,7 @@ where
 
     #[inline(always)]
     fn with_simd<V: pulp::Simd>(self, _: V) {
-        let (batch, observer) = (self.batch, self.observer);
+        let (batch, observers) = (self.batch, self.observers);
         let dt = batch.dt;
         // Known to hold from here on, it costs nothing in the loop.
         if !(dt > 0.0 && dt.is_finite()) {
@@ -160,11 +160,11 @@ where
                 sound &= sum == 0.0;
             }
             if !sound {
-                batch.repair::<Called<E>>((&x, &u, &normals), &mut next, observer);
+                batch.repair::<Called<E>>((&x, &u, &normals), &mut next, observers);
             }
             x = next;
             batch.step += 1;
-            observer.after_step(&x, &u, batch.step);
+            observers.after_step(&x, &u, batch.step);
         }
         (batch.x, batch.u) = (x, u);
     }
@@ -218,7 +218,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
     /// On x86 without AVX2 and FMA members are stepped one by one: a second copy of every loop for machines of the past would
     /// double the time that it takes to compile this.
     #[inline(never)]
-    pub(super) fn advance<A, E>(&mut self, until: u64, observer: &mut dyn Observer<F>)
+    pub(super) fn advance<A, E>(&mut self, until: u64, observers: &mut Observers<'_, F>)
     where
         A: Member<F>,
         E: Member<F>,
@@ -230,7 +230,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
                 machine,
                 Advance {
                     batch: self,
-                    observer,
+                    observers,
                     until,
                     arithmetic: PhantomData::<(A, E)>,
                 },
@@ -238,7 +238,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
             _ => pulp::WithSimd::with_simd(
                 Advance {
                     batch: self,
-                    observer,
+                    observers,
                     until,
                     arithmetic: PhantomData::<(Called<E>, E)>,
                 },
@@ -248,19 +248,16 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
         pulp::Arch::new().dispatch(Advance {
             batch: self,
-            observer,
+            observers,
             until,
             arithmetic: PhantomData::<(A, E)>,
         });
     }
 
-    /// The state of a member, and whether it still flies; else it is the last one that was finite.
-    pub(super) fn member(&self, lane: usize) -> (Vec<f64>, bool) {
+    /// The state of a member; of one that is lost the last that was finite.
+    pub(super) fn last(&self, lane: usize) -> Vec<f64> {
         let flies = self.lost.get(lane).is_some_and(Option::is_none);
-        (
-            of_lane(if flies { &self.x } else { &self.last }, lane),
-            flies,
-        )
+        of_lane(if flies { &self.x } else { &self.last }, lane).collect()
     }
 
     /// Steps members again whose result is not finite: exactly, they may have one. Those that have none are lost.
@@ -274,7 +271,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
             &[Packed; MOST_NORMALS],
         ),
         next: &mut F::StateOf<Packed>,
-        observer: &mut dyn Observer<F>,
+        observers: &mut Observers<'_, F>,
     ) where
         E: Member<F>,
         S: Steps<E::Model>,
@@ -293,7 +290,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
                 }),
                 Err(error) => {
                     self.lose(lane, x, error);
-                    observer.close(lane);
+                    observers.close(lane);
                     // The lane flies on from where it is safe, unseen.
                     F::update_state(next, self.start, |place, value| {
                         place.0[lane] = value.0[lane];

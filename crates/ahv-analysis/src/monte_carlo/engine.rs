@@ -7,7 +7,7 @@ use ahv_core::{GeneratedModel, Vector};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::MonteCarloError;
-use super::experiment::{Experiment, Seen};
+use super::experiment::{Experiment, Seen, row};
 use super::lanes::LANES;
 use super::outcome::{Collector, Outcome};
 use super::propagator::{Propagator, propagator};
@@ -142,14 +142,18 @@ impl<'e> Engine<'e> {
         let seen = self
             .propagator
             .fly(&[member], &steps, &Control::default())?;
-        let at = seen.into_iter().flatten().next().map(|seen| seen.at);
-        let timed = steps.iter().zip(at.unwrap_or_default());
-        let point = |(&step, (state, input)): (&u64, _)| Point {
-            time: step as f64 * self.experiment.dt,
-            state,
-            input,
+        let Some(seen) = seen.into_iter().flatten().next() else {
+            return Ok(Vec::new());
         };
-        Ok(timed.map(point).collect())
+        let inputs = self.experiment.input[0].len();
+        let points = (0..).zip(steps).map_while(|(index, step)| {
+            Some(Point {
+                time: step as f64 * self.experiment.dt,
+                state: seen.state(index)?.to_vec(),
+                input: row(&seen.inputs, inputs, index)?.to_vec(),
+            })
+        });
+        Ok(points.collect())
     }
 
     /// Flies members; stopped, it returns those before the first that was not flown.

@@ -57,14 +57,28 @@ pub struct Particle {
 /// What was seen of a member.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
-    /// State and input at each snapshot that it lived to see.
-    pub at: Vec<(Vec<f64>, Vec<f64>)>,
+    /// States at the snapshots that it lived to see, one after the other.
+    pub states: Vec<f64>,
+    /// Inputs at the same.
+    pub inputs: Vec<f64>,
     /// Its last finite state.
     pub last: Vec<f64>,
     /// How it ended before its time.
     pub lost: Option<Loss>,
     /// Steps after which each state was first outside its interval, for each set of intervals.
     pub left: Vec<Vec<Option<u64>>>,
+}
+
+impl Seen {
+    /// State at a snapshot; `None` if it did not live to see it.
+    pub fn state(&self, snapshot: usize) -> Option<&[f64]> {
+        row(&self.states, self.last.len(), snapshot)
+    }
+}
+
+/// Row number `index` of a matrix of so many columns.
+pub(super) fn row(rows: &[f64], columns: usize, index: usize) -> Option<&[f64]> {
+    rows.get(index * columns..(index + 1) * columns)
 }
 
 impl Experiment {

@@ -2,8 +2,6 @@
 
 use ahv_core::{GeneratedModel, Lanes, Vector};
 
-use crate::values::values;
-
 /// Members that are flown side by side.
 pub const LANES: usize = 8;
 
@@ -11,9 +9,11 @@ pub const LANES: usize = 8;
 pub type Packed = Lanes<f64, LANES>;
 
 /// The numbers of one member.
-pub(super) fn of_lane<V: Vector<Packed>>(vector: &V, lane: usize) -> Vec<f64> {
-    let numbers = values(vector).into_iter();
-    numbers.map(|numbers: Packed| numbers.0[lane]).collect()
+pub(super) fn of_lane<V: Vector<Packed>>(
+    vector: &V,
+    lane: usize,
+) -> impl Iterator<Item = f64> + use<'_, V> {
+    (0..V::LEN).filter_map(move |index| Some(vector.get(index)?.0[lane]))
 }
 
 /// The numbers of [`LANES`] members side by side; 0 for those that are missing.

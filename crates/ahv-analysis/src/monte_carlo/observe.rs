@@ -8,6 +8,35 @@ use crate::values::values;
 /// A number of steps that none has reached.
 pub(super) const NEVER: u64 = u64::MAX;
 
+/// Who looks at the members of a batch after each step.
+pub(super) struct Observers<'o, F: GeneratedModel> {
+    /// The box of validity, and the limits if there are any: they are looked at within the loop over steps.
+    pub(super) watches: &'o mut [Watch<F>],
+    /// Whatever else.
+    pub(super) other: Option<&'o mut dyn Observer<F>>,
+}
+
+impl<F: GeneratedModel> Observers<'_, F> {
+    /// As [`Observer::after_step`].
+    #[inline(always)]
+    pub(super) fn after_step(&mut self, x: &F::StateOf<Packed>, u: &F::InputOf<Packed>, step: u64) {
+        for watch in &mut *self.watches {
+            watch.look(x, step);
+        }
+        if let Some(other) = &mut self.other {
+            other.after_step(x, u, step);
+        }
+    }
+
+    /// As [`Observer::close`].
+    pub(super) fn close(&mut self, lane: usize) {
+        self.watches.iter_mut().for_each(|watch| watch.close(lane));
+        if let Some(other) = &mut self.other {
+            other.close(lane);
+        }
+    }
+}
+
 /// Looks at the members of a batch.
 pub(super) trait Observer<F: GeneratedModel> {
     /// Looks at states and inputs after `step` steps.
@@ -97,15 +126,5 @@ impl<F: GeneratedModel> Watch<F> {
     fn close(&mut self, lane: usize) {
         let all = F::StateOf::splat(lane);
         F::update_state(&mut self.intervals, all, Interval::close);
-    }
-}
-
-impl<F: GeneratedModel> Observer<F> for Vec<Watch<F>> {
-    fn after_step(&mut self, x: &F::StateOf<Packed>, _: &F::InputOf<Packed>, step: u64) {
-        self.iter_mut().for_each(|watch| watch.look(x, step));
-    }
-
-    fn close(&mut self, lane: usize) {
-        self.iter_mut().for_each(|watch| watch.close(lane));
     }
 }

@@ -208,14 +208,13 @@ impl<'e> Collector<'e> {
         let steps = self.experiment.snapshots.par_iter();
         let sums = self.sums.par_iter_mut().zip(steps).enumerate();
         sums.for_each(|(index, (sums, &step))| {
-            let at = seen.iter().filter_map(|seen| seen.at.get(index));
-            let values: Vec<&[f64]> = at.map(|(x, _)| &**x).collect();
+            let values: Vec<&[f64]> = seen.iter().filter_map(|seen| seen.state(index)).collect();
             sums.add(&values);
             let (mut flying, mut stayed) = (values.iter(), Vec::new());
             for seen in seen {
                 let left = sums.leave(&seen.left, step);
                 // Those that are lost before have no values.
-                let values = seen.at.get(index).and_then(|_| flying.next());
+                let values = seen.state(index).and_then(|_| flying.next());
                 stayed.extend(values.copied().filter(|_| !left));
             }
             sums.stay(&stayed);

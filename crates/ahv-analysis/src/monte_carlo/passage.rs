@@ -8,7 +8,7 @@ use super::arithmetic::Called;
 use super::batch::{Batch, Member};
 use super::experiment::Particle;
 use super::lanes::{LANES, Packed, of_lane};
-use super::observe::{NEVER, Observer};
+use super::observe::{NEVER, Observer, Observers};
 use super::scheme::Steps;
 use crate::ordered::Control;
 
@@ -125,7 +125,11 @@ where
             return None;
         }
         let (from, until) = (batch.step, end.min(batch.step + STRETCH));
-        batch.advance::<A, E>(until, &mut passage);
+        let mut observers = Observers {
+            watches: &mut [],
+            other: Some(&mut passage),
+        };
+        batch.advance::<A, E>(until, &mut observers);
         control
             .done
             .fetch_add((until - from) * count, Ordering::Relaxed);
@@ -143,8 +147,8 @@ where
                     member: particle.member,
                     origin: particle.origin,
                     step: particle.step + step,
-                    x: of_lane(&passage.x, lane),
-                    u: of_lane(&passage.u, lane),
+                    x: of_lane(&passage.x, lane).collect(),
+                    u: of_lane(&passage.u, lane).collect(),
                 }),
                 lost: step.is_none() && batch.lost[lane].is_some(),
                 steps: batch.step,

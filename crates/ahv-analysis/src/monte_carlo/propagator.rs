@@ -15,7 +15,7 @@ use super::arithmetic::{Called, In, Mode};
 use super::batch::{Batch, Dynamics, Member, Noise};
 use super::experiment::{Experiment, Particle, Seen};
 use super::lanes::{self, LANES, Packed, of_lane, packed};
-use super::observe::{Observer, Watch};
+use super::observe::{Observers, Watch};
 use super::passage::{Goal, Passage, Passed, pass};
 use super::scheme::{MOST_NORMALS, OneByOne, Scheme, Steps};
 use crate::ordered::Control;
@@ -219,12 +219,12 @@ where
         }))
     }
 
-    /// The batch of members that fly on from where they are; its steps count from there. `observer` looks away from those whose
+    /// The batch of members that fly on from where they are; its steps count from there. `observers` look away from those whose
     /// parameters break a rule.
     fn batch(
         &self,
         flying: &[Particle],
-        observer: &mut dyn Observer<F>,
+        observers: &mut Observers<'_, F>,
     ) -> Result<Batch<'_, F, S>, MonteCarloError> {
         let experiment = self.experiment;
         // Lanes without member repeat the last one.
@@ -263,7 +263,7 @@ where
         for (lane, rule) in broken.into_iter().enumerate() {
             if let Some(rule) = rule {
                 batch.ground(lane, rule.reason);
-                observer.close(lane);
+                observers.close(lane);
             }
         }
         Ok(batch)
@@ -290,29 +290,36 @@ where
             .collect();
         let mut watches: Vec<Watch<F>> =
             experiment.watched.iter().map(|it| Watch::new(it)).collect();
-        let mut batch = self.batch(&flying, &mut watches)?;
+        let mut observers = Observers {
+            watches: &mut watches,
+            other: None,
+        };
+        let mut batch = self.batch(&flying, &mut observers)?;
         let count = members.len().min(LANES);
-        let mut at: Vec<Vec<_>> = vec![Vec::new(); count];
+        let mut at = vec![(Vec::new(), Vec::new()); count];
         for &snapshot in snapshots {
             while batch.step < snapshot {
                 if control.stop.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
                 let (from, until) = (batch.step, snapshot.min(batch.step + PATIENCE));
-                batch.advance::<A, E>(until, &mut watches);
+                batch.advance::<A, E>(until, &mut observers);
                 control
                     .done
                     .fetch_add((until - from) * count as u64, Ordering::Relaxed);
             }
-            for (lane, at) in at.iter_mut().enumerate() {
-                if let (x, true) = batch.member(lane) {
-                    at.push((x, of_lane(&batch.u, lane)));
+            for (lane, (states, inputs)) in at.iter_mut().enumerate() {
+                if batch.lost[lane].is_none() {
+                    states.extend(of_lane(&batch.x, lane));
+                    inputs.extend(of_lane(&batch.u, lane));
                 }
             }
         }
-        let seen = at.into_iter().enumerate().map(|(lane, at)| Seen {
-            at,
-            last: batch.member(lane).0,
+        let at = at.into_iter().enumerate();
+        let seen = at.map(|(lane, (states, inputs))| Seen {
+            states,
+            inputs,
+            last: batch.last(lane),
             lost: batch.lost[lane],
             left: watches.iter().map(|watch| watch.left(lane)).collect(),
         });
@@ -327,7 +334,11 @@ where
     ) -> Result<Option<Vec<Passed>>, MonteCarloError> {
         let steps = self.experiment.steps();
         let mut passage = Passage::new(goal, steps, flying);
-        let batch = self.batch(flying, &mut passage)?;
+        let mut observers = Observers {
+            watches: &mut [],
+            other: Some(&mut passage),
+        };
+        let batch = self.batch(flying, &mut observers)?;
         Ok(pass::<F, S, A, E>(batch, passage, flying, control))
     }
 }
