@@ -119,10 +119,7 @@ fn experiment_of(scheme: Scheme, dt: f64, seed: u64) -> Experiment {
     }
 }
 
-fn moments_of(
-    experiment: &Experiment,
-    threads: &ThreadPool,
-) -> Result<Vec<f64>, String> {
+fn moments_of(experiment: &Experiment, threads: &ThreadPool) -> Result<Vec<f64>, String> {
     let ends = fly(experiment, FLIGHTS, threads)?;
     Ok(moments::of_members::<STATES>(&ends))
 }
