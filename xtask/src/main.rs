@@ -117,6 +117,7 @@ fn coverage(seeds: u32) -> Result<(), String> {
     test.args(["test", "--release", "--package", "ahv-analysis"]);
     test.args([
         "--test",
+        "ensembles",
         "coverage",
         "--",
         "--nocapture",

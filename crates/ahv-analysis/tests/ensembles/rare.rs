@@ -1,10 +1,8 @@
 //! Rare events against the transition kernel of a process, and against plain sampling.
-#![forbid(unsafe_code)]
-
-mod common;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use crate::common::level;
 use ahv_analysis::actuator::Actuator;
 use ahv_analysis::disperse::{Distribution, Draws};
 use ahv_analysis::erased::values;
@@ -19,7 +17,6 @@ use ahv_analysis::trim::{Trim, trim};
 use ahv_core::{Bounds, ColouredNoise, GeneratedModel, StochasticModel, Vector};
 use ahv_models::sdcom::{INPUT_BOUNDS, Input, NOMINAL, Noise, Parameters, State};
 use approx::assert_relative_eq;
-use common::level;
 
 type Model = ahv_models::sdcom::Model<f64>;
 

@@ -1,10 +1,8 @@
 //! The engine against the steppers of `ahv-integrate`, member by member, and against laws that are known.
-#![forbid(unsafe_code)]
-
-mod common;
 
 use std::sync::atomic::Ordering;
 
+use crate::common::level;
 use ahv_analysis::actuator::Actuator;
 use ahv_analysis::erased::{values, vector};
 use ahv_analysis::monte_carlo::{
@@ -20,7 +18,6 @@ use ahv_integrate::{
 };
 use ahv_models::{com, dcom, flexible_mode, sdcom, sdcom_gust};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use common::level;
 use nalgebra::DMatrix;
 
 type Sdcom = sdcom::Model<f64>;

@@ -1,10 +1,8 @@
 //! Covariances against closed forms, SciPy, quadrature and flights.
-#![forbid(unsafe_code)]
-
-mod common;
 
 use std::marker::PhantomData;
 
+use crate::common::level;
 use ahv_analysis::covariance::{
     CovarianceError, Flight, Regulation, Spreading, lyapunov, noise_intensity,
 };
@@ -18,7 +16,6 @@ use ahv_analysis::trim::trim;
 use ahv_core::{DifferentiableModel, GeneratedModel, Model, Pattern, StochasticModel, Vector};
 use ahv_models::{dcom, sdcom, sdcom_gust, sdcom_printed};
 use approx::assert_relative_eq;
-use common::level;
 use nalgebra::DMatrix;
 
 fn matrix(rows: &[&[f64]]) -> DMatrix<f64> {

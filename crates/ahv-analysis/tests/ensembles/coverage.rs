@@ -2,12 +2,10 @@
 //!
 //! `AHV_COVERAGE_SEEDS` is the number of seeds: few in the gate, 400 in `cargo xtask audit`. The bounds follow from it. With
 //! `--nocapture` the tables are printed as the document has them.
-#![forbid(unsafe_code)]
-
-mod common;
 
 use std::collections::BTreeMap;
 
+use crate::common::level;
 use ahv_analysis::disperse::{Distribution, Draws};
 use ahv_analysis::erased::values;
 use ahv_analysis::monte_carlo::{Experiment, Mode, QUANTILES, Scheme, StateSpread};
@@ -17,7 +15,6 @@ use ahv_analysis::trim::trim;
 use ahv_core::{GeneratedModel, Vector};
 use ahv_integrate::NormalStream;
 use ahv_models::{dcom, sdcom};
-use common::level;
 
 /// Seeds unless others are asked for.
 const SEEDS: u64 = 40;

@@ -1,0 +1,11 @@
+//! Many flights: the engine, what is computed of its outcomes, and the linear covariance beside them.
+//!
+//! One program, because the engine takes long to compile for a model.
+#![forbid(unsafe_code)]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod covariance;
+mod coverage;
+mod monte_carlo;
+mod rare;
