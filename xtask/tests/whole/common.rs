@@ -16,34 +16,27 @@ pub(crate) struct Answer {
 
 /// A project to break.
 pub(crate) struct Scratch {
-    root: PathBuf,
     /// Removed at the end.
-    _folder: Option<TempDir>,
+    folder: TempDir,
 }
 
 impl Scratch {
-    /// In a temporary folder.
+    /// The tables and the generated package, in a temporary folder.
     pub(crate) fn new() -> Self {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        for part in ["generator/tables", "generated"] {
-            copy(&repository().join(part), &folder.path().join(part));
-        }
-        Self {
-            root: folder.path().to_owned(),
-            _folder: Some(folder),
-        }
+        Self::of(&["generator/tables", "generated"])
     }
 
-    /// One that is there.
-    pub(crate) fn at(root: PathBuf) -> Self {
-        Self {
-            root,
-            _folder: None,
+    /// These parts of the repository.
+    pub(crate) fn of(parts: &[&str]) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for part in parts {
+            copy(&repository().join(part), &folder.path().join(part));
         }
+        Self { folder }
     }
 
     pub(crate) fn path(&self, relative: &str) -> PathBuf {
-        self.root.join(relative)
+        self.folder.path().join(relative)
     }
 
     pub(crate) fn edit(&self, relative: &str, from: &str, to: &str) {
@@ -67,7 +60,7 @@ impl Scratch {
         command
             .arg("generate")
             .args(line)
-            .current_dir(&self.root)
+            .current_dir(&self.folder)
             .env_remove("AHV_PYTHON");
         command
     }

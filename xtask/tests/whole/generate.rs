@@ -1,6 +1,6 @@
 //! `cargo xtask generate` as a person meets it: the real derivation, exit codes, and messages.
 
-use crate::common::{Scratch, copy, repository};
+use crate::common::Scratch;
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
@@ -402,20 +402,7 @@ fn a_read_only_place_is_named() {
 /// The command that messages name works when `generated/` is no package at all.
 #[test]
 fn xtask_builds_and_mends_when_generated_does_not() {
-    // In one place, so that what cargo built for it is there the next time; the first time, what `cargo xtask` was built from.
-    let mend = repository().join("target/mend");
-    let built = mend.join("debug");
-    if !built.exists() {
-        for part in [".fingerprint", "build", "deps"] {
-            copy(
-                &repository().join("target/xtask/debug").join(part),
-                &built.join(part),
-            );
-        }
-    }
-    let project = mend.join("project");
-    let _ = fs::remove_dir_all(&project);
-    for part in [
+    let scratch = Scratch::of(&[
         "Cargo.toml",
         "Cargo.lock",
         "crates",
@@ -423,25 +410,16 @@ fn xtask_builds_and_mends_when_generated_does_not() {
         "generator",
         "templates",
         "xtask",
-    ] {
-        copy(&repository().join(part), &project.join(part));
-    }
-    let scratch = Scratch::at(project);
+    ]);
     let before = scratch.snapshot();
+    // The program is that of the same sources: what could keep cargo from building it is a workspace that does not load.
     let mends = |damage: &str| {
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.args([
-            "run",
-            "--quiet",
-            "--locked",
-            "--manifest-path",
-            "xtask/Cargo.toml",
-        ]);
-        cargo
-            .arg("--target-dir")
-            .arg(&mend)
-            .args(["--", "generate"]);
-        let answer = crate::common::answer(cargo.current_dir(scratch.path("")));
+        cargo.args(["metadata", "--offline", "--locked", "--format-version", "1"]);
+        cargo.args(["--manifest-path", "xtask/Cargo.toml"]);
+        let loaded = crate::common::answer(cargo.current_dir(scratch.path("")));
+        assert_eq!(loaded.code, 0, "{damage}: {}", loaded.stderr);
+        let answer = scratch.generate(&[]);
         assert_eq!(answer.code, 0, "{damage}: {}", answer.stderr);
         assert!(before == scratch.snapshot(), "{damage}");
     };
