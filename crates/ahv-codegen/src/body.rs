@@ -7,7 +7,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use crate::dag::{Dag, Id, Kind, Node};
 use crate::format::{ADDENDS, SECTION, TRAILING};
 use crate::ir;
-use crate::names::describe;
+use crate::names::Names;
 use crate::prepared::Prepared;
 use crate::print::{Cost, definition};
 
@@ -80,12 +80,18 @@ pub(crate) struct Scope<'a> {
     model: &'a ir::Model,
     prepared: Option<&'a Prepared>,
     bound: HashMap<Id, String>,
+    /// What nodes are called in names: the fields of `Prepared`, and what is bound.
+    spelled: HashMap<Id, String>,
     taken: HashSet<String>,
     uses: HashMap<Id, usize>,
     visited: HashSet<Id>,
     statements: Vec<Statement>,
     section: String,
     owner: String,
+    /// The value that is written, the owner's.
+    whole: Option<Id>,
+    /// Positions of the quantities that the derivation of the function goes through; `None` for all.
+    home: Option<HashSet<usize>>,
 }
 
 impl<'a> Scope<'a> {
@@ -103,12 +109,15 @@ impl<'a> Scope<'a> {
             model,
             prepared,
             bound: HashMap::new(),
+            spelled: prepared.map_or_else(HashMap::new, |it| it.names().clone()),
             taken: HashSet::new(),
             uses: HashMap::new(),
             visited: HashSet::new(),
             statements: Vec::new(),
             section: String::new(),
             owner: String::new(),
+            whole: None,
+            home: None,
         }
     }
 
@@ -124,19 +133,31 @@ impl<'a> Scope<'a> {
 
     /// Whether a node is a quantity that an equation defines; derivatives have none.
     pub(crate) fn is_defined(&self, id: Id) -> bool {
-        let name = self.dag.name(id);
-        name.is_some_and(|position| !self.model.quantities[position].equation.is_empty())
+        let quantity = self.names().quantity(id);
+        quantity.is_some_and(|position| !self.model.quantities[position].equation.is_empty())
+    }
+
+    fn names(&self) -> Names<'_> {
+        Names {
+            dag: self.dag,
+            model: self.model,
+            home: self.home.as_ref(),
+            known: &self.spelled,
+        }
     }
 
     /// Binds everything that the roots need and returns the statements.
     pub(crate) fn write(&mut self, owner: &str, roots: &[Id]) -> Vec<Statement> {
+        let functions = &mut self.model.functions.iter();
+        let function = functions.find(|function| function.name == owner);
+        self.home = function.map(|function| self.model.derivation(function));
         let mut counted = HashSet::new();
         for &root in roots {
             self.count(root, &mut counted);
         }
         let mut needed: Vec<(usize, Id)> = counted
             .iter()
-            .filter_map(|&id| Some((self.dag.name(id)?, id)))
+            .filter_map(|&id| Some((self.names().quantity(id)?, id)))
             .collect();
         needed.sort_unstable();
         for (position, id) in needed {
@@ -145,11 +166,13 @@ impl<'a> Scope<'a> {
             }
             let quantity = &self.model.quantities[position];
             self.owner.clone_from(&quantity.name);
+            self.whole = Some(id);
             self.enter(&quantity.section, &quantity.equation);
             self.visit(id);
         }
         self.owner = owner.to_owned();
         for &root in roots {
+            self.whole = Some(root).filter(|_| roots.len() == 1);
             self.visit(root);
         }
         std::mem::take(&mut self.statements)
@@ -198,7 +221,7 @@ impl<'a> Scope<'a> {
         }
         let shared = self.uses.get(&id).is_some_and(|&uses| uses > 1);
         let costly = matches!(self.dag.node(id), Node::Call(..) | Node::Power(..));
-        if self.dag.name(id).is_some() || shared || costly {
+        if !self.dag.quantities(id).is_empty() || shared || costly {
             self.bind(id);
         }
     }
@@ -212,8 +235,8 @@ impl<'a> Scope<'a> {
         }
         let value = definition(self, id);
         let unit = self
-            .dag
-            .name(id)
+            .names()
+            .quantity(id)
             .map(|position| self.model.quantities[position].unit.clone());
         let name = self.take_name(id);
         self.statements.push(Statement::Let {
@@ -224,8 +247,10 @@ impl<'a> Scope<'a> {
     }
 
     fn take_name(&mut self, id: Id) -> String {
-        let described =
-            describe(self.dag, self.model, id).filter(|name| !self.taken.contains(name));
+        let described = self.names().describe(id);
+        let share = || self.names().describe_share(id, &self.owner, self.whole?);
+        let described = described.or_else(share);
+        let described = described.filter(|name| !self.taken.contains(name));
         let name = described.unwrap_or_else(|| {
             (1..)
                 .map(|k| format!("{}_term_{k}", self.owner))
@@ -234,6 +259,7 @@ impl<'a> Scope<'a> {
         });
         self.taken.insert(name.clone());
         self.bound.insert(id, name.clone());
+        self.spelled.insert(id, name.clone());
         name
     }
 }

@@ -69,8 +69,8 @@ type Term = (f64, Id);
 pub(crate) struct Dag {
     nodes: Vec<Node>,
     index: HashMap<Key, Id>,
-    /// The quantity that a node is, by position in the model.
-    names: Vec<Option<usize>>,
+    /// The quantities that a node is, by position in the model: those of different functions may be equal.
+    names: Vec<Vec<usize>>,
     parametric: Vec<bool>,
     /// Named products with their factors, by the first of these, to be found again inside larger ones.
     named_products: HashMap<Factor, Vec<(Id, Vec<Factor>)>>,
@@ -99,9 +99,11 @@ impl Dag {
         for (position, quantity) in model.quantities.iter().enumerate() {
             let id = dag.build(&quantity.expr, &quantity.name)?;
             let nameable = !matches!(dag.nodes[id], Node::Number(_) | Node::Leaf(..));
-            if nameable && dag.names[id].is_none() {
-                dag.names[id] = Some(position);
-                dag.note_named_product(id);
+            if nameable {
+                if dag.names[id].is_empty() {
+                    dag.note_named_product(id);
+                }
+                dag.names[id].push(position);
             }
             dag.symbols.insert(quantity.name.clone(), id);
         }
@@ -120,9 +122,9 @@ impl Dag {
         &self.nodes[id]
     }
 
-    /// The quantity that a node is, by position in the model.
-    pub(crate) fn name(&self, id: Id) -> Option<usize> {
-        self.names[id]
+    /// The quantities that a node is, by position in the model; it stays whole if there are any.
+    pub(crate) fn quantities(&self, id: Id) -> &[usize] {
+        &self.names[id]
     }
 
     /// Whether a node depends on parameters alone.
@@ -257,7 +259,7 @@ impl Dag {
         };
         let id = self.nodes.len();
         self.nodes.push(node);
-        self.names.push(None);
+        self.names.push(Vec::new());
         self.parametric.push(parametric);
         self.index.insert(key, id);
         id
@@ -273,7 +275,7 @@ impl Dag {
 
     /// The numeric multiple and the powers that a factor consists of; named quantities stay whole.
     fn factors_of(&self, id: Id, exponent: i32, found: &mut Vec<Factor>) -> f64 {
-        if self.names[id].is_none() {
+        if self.names[id].is_empty() {
             match &self.nodes[id] {
                 Node::Number(value) => return value.powi(exponent),
                 Node::Power(base, k) => return self.factors_of(*base, k * exponent, found),
@@ -353,7 +355,7 @@ impl Dag {
     }
 
     fn add_term(&mut self, coefficient: f64, id: Id, flat: &mut Vec<Term>) {
-        if self.names[id].is_none() {
+        if self.names[id].is_empty() {
             match self.nodes[id].clone() {
                 Node::Sum(inner) => {
                     for (c, part) in inner {

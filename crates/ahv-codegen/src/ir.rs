@@ -1,7 +1,7 @@
 //! The intermediate representation: what the derivation hands to the emitter, as JSON.
 
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt;
 use std::str::FromStr;
 
@@ -538,6 +538,28 @@ impl Document {
 }
 
 impl Model {
+    /// Positions of the quantities that the derivation of a function goes through.
+    pub(crate) fn derivation(&self, function: &Function) -> HashSet<usize> {
+        let quantities = self.quantities.iter().zip(0..);
+        let places: HashMap<&str, usize> = quantities.map(|(q, at)| (&*q.name, at)).collect();
+        let entries = function.outputs.iter().flat_map(|it| &it.entries);
+        let mut open: Vec<&Expr> = entries.map(|entry| &entry.expr).collect();
+        let mut found = HashSet::new();
+        while let Some(expr) = open.pop() {
+            match expr {
+                Expr::Number(_) => {}
+                Expr::Name(name) => {
+                    let place = places.get(&**name).copied();
+                    let new = place.filter(|&place| found.insert(place));
+                    open.extend(new.map(|place| &self.quantities[place].expr));
+                }
+                // The first is the operation.
+                Expr::Apply(items) => open.extend(items.iter().skip(1)),
+            }
+        }
+        found
+    }
+
     /// Name, what it is, and from which equations.
     pub(crate) fn heading(&self) -> String {
         let name = self.name.to_uppercase();

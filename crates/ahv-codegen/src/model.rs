@@ -310,10 +310,8 @@ impl<'a> ModelEmitter<'a> {
         let mut fields = Vec::new();
         for field in &self.prepared.fields {
             let value = reference(&mut scope, field.id);
-            let quantity = scope
-                .dag
-                .name(field.id)
-                .map(|position| &self.model.quantities[position]);
+            let quantity = scope.dag.quantities(field.id).first();
+            let quantity = quantity.map(|&position| &self.model.quantities[position]);
             let doc = match (quantity, scope.dag.node(field.id)) {
                 (Some(q), _) => described(&q.doc, &q.unit),
                 (None, Node::Leaf(_, name)) => parameter_doc(self.document, name),

@@ -1,91 +1,177 @@
 //! Names for values that the derivation did not name, told from what they are.
 
+use std::collections::{HashMap, HashSet};
+
 use crate::dag::{Call, Dag, Id, Kind, Node};
 use crate::ir;
 
 /// Longer names are not read; such a value is numbered under the quantity that it belongs to.
-const LONGEST: usize = 40;
+const LONGEST: usize = 60;
 
-/// A name that describes a node, or `None` where it would be too long.
-pub(crate) fn describe(dag: &Dag, model: &ir::Model, id: Id) -> Option<String> {
-    let name = spell(dag, model, id)?;
-    (dag.name(id).is_some() || name.len() <= LONGEST).then_some(name)
+/// What the nodes of a graph are called in a function.
+pub(crate) struct Names<'a> {
+    pub(crate) dag: &'a Dag,
+    pub(crate) model: &'a ir::Model,
+    /// Positions of the quantities that the function's own derivation goes through; `None` for all. A name of another
+    /// function's derivation would tell a reader of something that is not there.
+    pub(crate) home: Option<&'a HashSet<usize>>,
+    /// What nodes are called already.
+    pub(crate) known: &'a HashMap<Id, String>,
 }
 
-fn spell(dag: &Dag, model: &ir::Model, id: Id) -> Option<String> {
-    if let Some(position) = dag.name(id) {
-        return Some(model.quantities[position].name.clone());
+impl Names<'_> {
+    /// The quantity that a node is here, by position in the model.
+    ///
+    /// Its name may be of another function's derivation where it is what the value would be called anyway: a derivation that
+    /// has the cosine as the derivative of the sine has it as the cosine too.
+    pub(crate) fn quantity(&self, id: Id) -> Option<usize> {
+        let at_home = |position: &usize| self.home.is_none_or(|home| home.contains(position));
+        let called = |position: &usize| {
+            self.spell_call(id)
+                .is_some_and(|name| name == self.model.quantities[*position].name)
+        };
+        let mut quantities = self.dag.quantities(id).iter().copied();
+        quantities.find(|position| at_home(position) || called(position))
     }
-    match dag.node(id) {
-        Node::Number(_) => None,
-        Node::Leaf(Kind::Noise, name) => Some(format!("d{name}")),
-        Node::Leaf(_, name) => Some(name.clone()),
-        Node::Power(base, exponent) => {
-            let base = spell(dag, model, *base)?;
-            Some(match exponent {
-                -1 => format!("inv_{base}"),
-                k if *k < 0 => format!("inv_{base}_{}", -k),
-                k => format!("{base}_{k}"),
-            })
+
+    /// A name that describes a node, or `None` where it would be too long.
+    pub(crate) fn describe(&self, id: Id) -> Option<String> {
+        let name = self.spell(id)?;
+        (self.quantity(id).is_some() || name.len() <= LONGEST).then_some(name)
+    }
+
+    /// A name for what is left of the value `whole`, called `owner`, without its other factors: "lift_over_s".
+    pub(crate) fn describe_share(&self, id: Id, owner: &str, whole: Id) -> Option<String> {
+        let Node::Product(coefficient, factors) = self.dag.node(whole) else {
+            return None;
+        };
+        let others: Vec<Id> = factors.iter().copied().filter(|&it| it != id).collect();
+        if *coefficient != 1.0 || others.is_empty() || others.len() == factors.len() {
+            return None;
         }
-        Node::Call(call, argument) => {
-            let argument = spell(dag, model, *argument)?;
-            let function = match call {
-                Call::Sin => "sin",
-                Call::Cos => "cos",
-                Call::Exp => "exp",
-                Call::Sqrt => "sqrt",
+        let others = self.spell_product(1.0, &others)?;
+        let is_plain = !is_sum(&others) && !others.contains("over_") && !others.contains("inv_");
+        let name = format!("{owner}_over_{others}");
+        (is_plain && name.len() <= LONGEST).then_some(name)
+    }
+
+    fn spell(&self, id: Id) -> Option<String> {
+        if let Some(position) = self.quantity(id) {
+            return Some(self.model.quantities[position].name.clone());
+        }
+        let known = self.known.get(&id);
+        if let Some(name) = known.filter(|name| !is_numbered(name)) {
+            return Some(name.clone());
+        }
+        Some(match self.dag.node(id) {
+            Node::Number(_) => return None,
+            Node::Leaf(Kind::Noise, name) => format!("d{name}"),
+            Node::Leaf(_, name) => name.clone(),
+            Node::Power(base, exponent) => {
+                let text = self.spell(*base)?;
+                match (exponent, self.is_open_sum(*base)) {
+                    (-1, false) => format!("inv_{text}"),
+                    (-1, true) => format!("inv_of_{text}"),
+                    (k, true) if *k < 0 => format!("inv_power_{}_of_{text}", -k),
+                    (k, true) => format!("power_{k}_of_{text}"),
+                    (k, false) if *k < 0 => format!("inv_{text}_{}", -k),
+                    (k, false) => format!("{text}_{k}"),
+                }
+            }
+            Node::Call(..) => self.spell_call(id)?,
+            Node::Product(coefficient, factors) => self.spell_product(*coefficient, factors)?,
+            Node::Sum(terms) => self.spell_sum(terms)?,
+        })
+    }
+
+    fn spell_call(&self, id: Id) -> Option<String> {
+        let Node::Call(call, argument) = *self.dag.node(id) else {
+            return None;
+        };
+        let function = match call {
+            Call::Sin => "sin",
+            Call::Cos => "cos",
+            Call::Exp => "exp",
+            Call::Sqrt => "sqrt",
+        };
+        let of = if self.is_open_sum(argument) {
+            "_of"
+        } else {
+            ""
+        };
+        Some(format!("{function}{of}_{}", self.spell(argument)?))
+    }
+
+    /// Whether a node is spelled as a sum: what stands beside it must not read as a part of its last addend.
+    fn is_open_sum(&self, id: Id) -> bool {
+        self.spell(id).is_some_and(|name| is_sum(&name))
+    }
+
+    fn spell_sum(&self, terms: &[(f64, Id)]) -> Option<String> {
+        let mut text = String::new();
+        for (position, &(coefficient, id)) in terms.iter().enumerate() {
+            text += match (position, coefficient < 0.0) {
+                (0, false) => "",
+                (0, true) => "minus_",
+                (_, false) => "_plus_",
+                (_, true) => "_minus_",
             };
-            Some(format!("{function}_{argument}"))
-        }
-        Node::Product(coefficient, factors) => spell_product(dag, model, *coefficient, factors),
-        Node::Sum(terms) => {
-            let mut text = String::new();
-            for (position, &(coefficient, id)) in terms.iter().enumerate() {
-                let joint = if coefficient < 0.0 {
-                    "_minus_"
-                } else {
-                    "_plus_"
-                };
-                if position > 0 || coefficient < 0.0 {
-                    text += joint.trim_start_matches(if position == 0 { "_" } else { "" });
-                }
-                if coefficient.abs() != 1.0 {
-                    text += &format!("{}_", number_word(coefficient.abs())?);
-                }
-                text += &if dag.is_one(id) {
-                    "one".to_owned()
-                } else {
-                    spell(dag, model, id)?
-                };
+            if coefficient.abs() != 1.0 {
+                text += &format!("{}_", number_word(coefficient.abs())?);
             }
-            Some(text)
+            text += &if self.dag.is_one(id) {
+                "one".to_owned()
+            } else {
+                self.spell(id)?
+            };
+        }
+        Some(text)
+    }
+
+    fn spell_product(&self, coefficient: f64, factors: &[Id]) -> Option<String> {
+        let (mut sums, mut above, mut below) = (Vec::new(), Vec::new(), Vec::new());
+        if coefficient < 0.0 {
+            above.push("minus".to_owned());
+        }
+        if coefficient.abs() != 1.0 {
+            above.push(number_word(coefficient.abs())?);
+        }
+        for &factor in factors {
+            match self.dag.node(factor) {
+                Node::Power(base, -1) if self.quantity(factor).is_none() => {
+                    if self.is_open_sum(*base) {
+                        return None;
+                    }
+                    below.push(self.spell(*base)?);
+                }
+                _ if self.is_open_sum(factor) => sums.push(self.spell(factor)?),
+                _ => above.push(self.spell(factor)?),
+            }
+        }
+        let above = above.join("_");
+        let product = match (above.is_empty(), below.is_empty()) {
+            (_, true) => above,
+            (true, false) => format!("inv_{}", below.join("_")),
+            (false, false) => format!("{above}_over_{}", below.join("_")),
+        };
+        // Of two sums one would read as a part of the other, and a sign as one of an addend.
+        match sums.as_slice() {
+            [] => Some(product),
+            _ if coefficient < 0.0 => None,
+            [sum] if sum.contains("_times_") => Some(format!("{sum}_{product}")),
+            [sum] => Some(format!("{sum}_times_{product}")),
+            _ => None,
         }
     }
 }
 
-fn spell_product(dag: &Dag, model: &ir::Model, coefficient: f64, factors: &[Id]) -> Option<String> {
-    let (mut above, mut below) = (Vec::new(), Vec::new());
-    if coefficient < 0.0 {
-        above.push("minus".to_owned());
-    }
-    if coefficient.abs() != 1.0 {
-        above.push(number_word(coefficient.abs())?);
-    }
-    for &factor in factors {
-        match dag.node(factor) {
-            Node::Power(base, -1) if dag.name(factor).is_none() => {
-                below.push(spell(dag, model, *base)?)
-            }
-            _ => above.push(spell(dag, model, factor)?),
-        }
-    }
-    let above = above.join("_");
-    Some(match (above.is_empty(), below.is_empty()) {
-        (_, true) => above,
-        (true, false) => format!("inv_{}", below.join("_")),
-        (false, false) => format!("{above}_over_{}", below.join("_")),
-    })
+fn is_sum(name: &str) -> bool {
+    name.contains("_plus_") || name.contains("_minus_")
+}
+
+/// Whether a name only says whose part a value is.
+fn is_numbered(name: &str) -> bool {
+    name.contains("_term_") || name.contains("_constant_")
 }
 
 fn number_word(value: f64) -> Option<String> {

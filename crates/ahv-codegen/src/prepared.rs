@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::dag::{Dag, Id, Kind, Node};
 use crate::ir;
-use crate::names::describe;
+use crate::names::Names;
 use crate::passes::Pass;
 
 /// A value of `Prepared`: it depends on parameters alone.
@@ -46,6 +46,11 @@ impl Prepared {
         found
     }
 
+    /// The fields by node.
+    pub(crate) fn names(&self) -> &HashMap<Id, String> {
+        &self.names
+    }
+
     /// The field that holds a node.
     pub(crate) fn field(&self, id: Id) -> Option<&str> {
         self.names.get(&id).map(String::as_str)
@@ -67,8 +72,9 @@ impl Prepared {
             return self.insert(dag, model, id, owner);
         }
         let owner = dag
-            .name(id)
-            .map_or(owner, |position| &model.quantities[position].name);
+            .quantities(id)
+            .first()
+            .map_or(owner, |&position| &model.quantities[position].name);
         for operand in dag.operands(id) {
             self.visit(dag, model, operand, owner, seen);
         }
@@ -82,7 +88,14 @@ impl Prepared {
 
     fn unique_name(&self, dag: &Dag, model: &ir::Model, id: Id, owner: &str) -> String {
         let taken = |name: &str| self.fields.iter().any(|f| f.name == name);
-        match describe(dag, model, id) {
+        // A value of the model, whichever function needs it.
+        let names = Names {
+            dag,
+            model,
+            home: None,
+            known: &self.names,
+        };
+        match names.describe(id) {
             Some(name) if !taken(&name) => name,
             _ => (1..)
                 .map(|k| format!("{}_constant_{k}", owner.to_lowercase()))

@@ -1,11 +1,12 @@
 //! Emission as a function: what it gives for the project's own tables, and what it refuses.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{Manifest, Options, Part, Pass, Passes, Table, Tree, emit};
+use serde_json::Value;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -464,4 +465,78 @@ fn a_set_does_not_take_the_name_of_what_the_models_have() {
         );
     }
     assert!(renamed("heavy").is_ok());
+}
+
+/// Names in an expression of the IR; the first item of a list is an operation.
+fn names_in(expr: &Value, found: &mut Vec<String>) {
+    match expr {
+        Value::String(name) => found.push(name.clone()),
+        Value::Array(items) => items.iter().skip(1).for_each(|it| names_in(it, found)),
+        _ => {}
+    }
+}
+
+/// Quantities that the derivation of a function goes through.
+fn derivation(quantities: &BTreeMap<String, Value>, function: &Value) -> BTreeSet<String> {
+    let mut open = Vec::new();
+    for output in function["outputs"].as_array().unwrap() {
+        for entry in output["entries"].as_array().unwrap() {
+            names_in(&entry["expr"], &mut open);
+        }
+    }
+    let mut found = BTreeSet::new();
+    while let Some(name) = open.pop() {
+        if let Some(expr) = quantities.get(&name)
+            && found.insert(name)
+        {
+            names_in(expr, &mut open);
+        }
+    }
+    found
+}
+
+/// What the statements of a function bind.
+fn bound<'a>(code: &'a str, function: &str) -> Vec<&'a str> {
+    let start = [format!("fn {function}<"), format!("fn {function}_values<")];
+    let at = start.iter().rev().find_map(|start| code.find(start));
+    let body = code.split_at(at.unwrap_or(code.len())).1;
+    let body = body.split("\n}").next().unwrap_or_default();
+    let statements = body
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("let "));
+    let names = statements.filter_map(|statement| statement.split(" =").next());
+    names
+        .flat_map(|names| names.split([',', '(', ')', ' ']))
+        .filter(|name| !name.is_empty())
+        .collect()
+}
+
+/// A quantity's name stands only where it is part of the derivation; equal values elsewhere are named from what they are, and
+/// of that kind are the names of sines, cosines and the like.
+#[test]
+fn names_are_those_of_the_functions_own_derivation() {
+    let tree = emit(&TABLES.map(table), &irs(), &Options::default()).unwrap();
+    let mut checked = 0;
+    for table in TABLES {
+        let ir: Value = serde_json::from_str(&irs()[table]).unwrap();
+        for model in ir["models"].as_array().unwrap() {
+            let text = |it: &Value, key: &str| it[key].as_str().unwrap().to_owned();
+            let quantities = model["quantities"].as_array().unwrap().iter();
+            let quantities = quantities.map(|it| (text(it, "name"), it["expr"].clone()));
+            let quantities: BTreeMap<String, Value> = quantities.collect();
+            for function in model["functions"].as_array().unwrap() {
+                let (name, group) = (text(function, "name"), text(function, "group"));
+                let home = derivation(&quantities, function);
+                let file = format!("src/{}/{group}.rs", text(model, "name"));
+                for value in bound(&tree[&file], &name) {
+                    let is_call = ["sin_", "cos_", "exp_", "sqrt_"];
+                    let is_call = is_call.iter().any(|call| value.starts_with(call));
+                    let foreign = quantities.contains_key(value) && !home.contains(value);
+                    assert!(is_call || !foreign, "{file}: {value} in {name}");
+                    checked += usize::from(home.contains(value));
+                }
+            }
+        }
+    }
+    assert!(checked > 2000, "{checked}");
 }

@@ -147,9 +147,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
 
-    // Derivatives with respect to parameters
-    let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
-
     // Derivatives with respect to velocity
     let d2_drag_d_velocity_d_velocity = c_d * p.s * density; // lb*s^2/ft^3
     let d2_velocity_rate_d_velocity_d_velocity = -d2_drag_d_velocity_d_velocity
@@ -175,7 +172,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * d_radius_ratio_d_altitude_2
             + R::TWO * radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let d2_density_ratio_d_altitude_d_altitude = d_density_ratio_d_h_0 * p.inv_h_s; // 1/ft^2
+    let density_ratio_over_h_s = density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
     let d2_density_d_altitude_d_altitude = p.rho_0
         * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * velocity_2
@@ -297,7 +295,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + reference_force * p.two_c_bar_c_m_alpha_2; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = p.inv_effective_inertia
         * (d2_pitching_moment_d_alpha_d_alpha
-            + p.d2_pitch_acceleration_d_alpha_d_alpha_constant_1); // 1/s^2/rad
+            + p.minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2); // 1/s^2/rad
 
     // Derivatives with respect to velocity
     let d2_eta_acceleration_1_d_velocity_d_velocity = -p.psi_1

@@ -254,14 +254,12 @@ pub fn parameter_jacobian_values<R: Real>(
         - p.psi_2 * modal_load_2) * p.inv_effective_inertia; // rad/s^2
     let path_force = thrust * cos_alpha - drag; // lb/ft
 
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-
     // Derivatives with respect to parameters
     let inverse_momentum_2 = inverse_momentum * inverse_momentum;
+    let density_velocity = density * x.velocity;
+    let s_density_velocity = p.s * density_velocity;
     let d_force_turn_d_m = -(thrust * sin_alpha * inverse_momentum_2 * x.velocity
-        + c_l * d_reference_force_d_velocity * p.half_inv_m_2); // rad*ft/s/slug
+        + c_l * s_density_velocity * p.half_inv_m_2); // rad*ft/s/slug
     let d_pitch_acceleration_d_i_yy = -pitch_acceleration * p.inv_effective_inertia; // rad/s^2/slug/ft
     let d_eta_acceleration_1_d_i_yy = -p.psi_1 * d_pitch_acceleration_d_i_yy; // 1/ft^0.5/slug^0.5/s^2
     let d_eta_acceleration_2_d_i_yy = -p.psi_2 * d_pitch_acceleration_d_i_yy; // 1/ft^0.5/slug^0.5/s^2
@@ -291,10 +289,11 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_eta_acceleration_2_d_h_s = -p.psi_2 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
-    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
-        * inv_velocity;
+    let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+        * (p.earth_curvature * radius_ratio
+            * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
@@ -327,7 +326,8 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_eta_acceleration_2_d_psi_2 = -(pitch_acceleration
         + p.psi_2 * d_pitch_acceleration_d_psi_2); // 1/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+        * (radius_ratio
+            * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_eta_acceleration_1_d_n_1_alpha_2 = alpha_2
@@ -340,7 +340,8 @@ pub fn parameter_jacobian_values<R: Real>(
         + p.psi_2_2_over_effective_inertia * x.alpha; // rad
     let d_eta_acceleration_2_d_n_2_delta_e = u.delta_e
         + p.psi_2_2_over_effective_inertia * u.delta_e; // rad
-    let parameter_jacobian_term_1 = p.psi_1_psi_2_over_effective_inertia * alpha_2;
+    let psi_1_psi_2_over_effective_inertia_alpha_2 = p.psi_1_psi_2_over_effective_inertia
+        * alpha_2;
     let psi_1_psi_2_over_effective_inertia_alpha = p.psi_1_psi_2_over_effective_inertia
         * x.alpha;
 
@@ -369,7 +370,7 @@ pub fn parameter_jacobian_values<R: Real>(
         -reference_force * u.delta_e * p.inv_m,
         -reference_force * p.inv_m,
         d_force_turn_d_m,
-        c_l * d_dynamic_pressure_d_velocity * p.half_over_m,
+        c_l * density_velocity * p.half_over_m,
         c_l * p.half_s_over_m * x.velocity * density_ratio,
         d_force_turn_d_h_0,
         d_force_turn_d_h_s,
@@ -388,7 +389,7 @@ pub fn parameter_jacobian_values<R: Real>(
         turn_factor * u.delta_e,
         turn_factor,
         -d_force_turn_d_m,
-        c_l * d_dynamic_pressure_d_velocity * p.minus_half_over_m,
+        c_l * density_velocity * p.minus_half_over_m,
         c_l * p.minus_half_s_over_m * x.velocity * density_ratio,
         -d_force_turn_d_h_0,
         -d_force_turn_d_h_s,
@@ -442,13 +443,14 @@ pub fn parameter_jacobian_values<R: Real>(
         -p.psi_1_c_bar_over_effective_inertia * c_m * dynamic_pressure,
         -p.psi_1_over_effective_inertia * c_m * reference_force,
         -p.psi_1_over_effective_inertia * thrust,
-        p.parameter_jacobian_constant_1 * c_m * velocity_2 * density_ratio,
+        p.minus_half_psi_1_c_bar_s_over_effective_inertia * c_m * velocity_2
+            * density_ratio,
         d_eta_acceleration_1_d_h_0,
         d_eta_acceleration_1_d_h_s,
         d_eta_acceleration_1_d_omega_1,
         d_eta_acceleration_1_d_omega_2,
         d_eta_acceleration_1_d_zeta_1,
-        p.parameter_jacobian_constant_2 * x.eta_dot_2,
+        p.minus_two_psi_1_psi_2_omega_2_over_effective_inertia * x.eta_dot_2,
         d_eta_acceleration_1_d_psi_1,
         d_eta_acceleration_1_d_psi_2,
         -p.psi_1_z_t_over_effective_inertia * u.phi * alpha_3,
@@ -466,7 +468,7 @@ pub fn parameter_jacobian_values<R: Real>(
         d_eta_acceleration_1_d_n_1_alpha_2,
         d_eta_acceleration_1_d_n_1_alpha,
         p.d_eta_acceleration_1_d_n_1_0,
-        parameter_jacobian_term_1,
+        psi_1_psi_2_over_effective_inertia_alpha_2,
         psi_1_psi_2_over_effective_inertia_alpha,
         p.psi_1_psi_2_over_effective_inertia * u.delta_e,
         p.psi_1_psi_2_over_effective_inertia,
@@ -474,12 +476,13 @@ pub fn parameter_jacobian_values<R: Real>(
         -p.psi_2_c_bar_over_effective_inertia * c_m * dynamic_pressure,
         -p.psi_2_over_effective_inertia * c_m * reference_force,
         -p.psi_2_over_effective_inertia * thrust,
-        p.parameter_jacobian_constant_3 * c_m * velocity_2 * density_ratio,
+        p.minus_half_psi_2_c_bar_s_over_effective_inertia * c_m * velocity_2
+            * density_ratio,
         d_eta_acceleration_2_d_h_0,
         d_eta_acceleration_2_d_h_s,
         d_eta_acceleration_2_d_omega_1,
         d_eta_acceleration_2_d_omega_2,
-        p.parameter_jacobian_constant_4 * x.eta_dot_1,
+        p.minus_two_psi_2_psi_1_omega_1_over_effective_inertia * x.eta_dot_1,
         d_eta_acceleration_2_d_zeta_2,
         d_eta_acceleration_2_d_psi_1,
         d_eta_acceleration_2_d_psi_2,
@@ -495,7 +498,7 @@ pub fn parameter_jacobian_values<R: Real>(
         -p.psi_2_c_bar_over_effective_inertia * reference_force * x.alpha,
         -p.psi_2_c_bar_over_effective_inertia * reference_force * u.delta_e,
         -p.psi_2_c_bar_over_effective_inertia * reference_force,
-        parameter_jacobian_term_1,
+        psi_1_psi_2_over_effective_inertia_alpha_2,
         psi_1_psi_2_over_effective_inertia_alpha,
         p.psi_1_psi_2_over_effective_inertia,
         d_eta_acceleration_2_d_n_2_alpha_2,

@@ -199,13 +199,13 @@ pub struct Prepared<R> {
     /// `psi_1 * c_bar * inv_effective_inertia`.
     pub psi_1_c_bar_over_effective_inertia: R,
     /// `R::from_f64(-0.5) * psi_1 * c_bar * s * inv_effective_inertia`.
-    pub parameter_jacobian_constant_1: R,
+    pub minus_half_psi_1_c_bar_s_over_effective_inertia: R,
     /// Natural frequency of mode 1, rad/s.
     pub omega_1: R,
     /// `2 * psi_1_2 * inv_effective_inertia`.
     pub two_psi_1_2_over_effective_inertia: R,
     /// `R::from_f64(-2.0) * psi_1 * psi_2 * inv_effective_inertia * omega_2`.
-    pub parameter_jacobian_constant_2: R,
+    pub minus_two_psi_1_psi_2_omega_2_over_effective_inertia: R,
     /// `psi_1 * z_t * inv_effective_inertia`.
     pub psi_1_z_t_over_effective_inertia: R,
     /// `-psi_1 * z_t * inv_effective_inertia`.
@@ -220,9 +220,9 @@ pub struct Prepared<R> {
     /// `psi_2 * c_bar * inv_effective_inertia`.
     pub psi_2_c_bar_over_effective_inertia: R,
     /// `R::from_f64(-0.5) * psi_2 * c_bar * s * inv_effective_inertia`.
-    pub parameter_jacobian_constant_3: R,
+    pub minus_half_psi_2_c_bar_s_over_effective_inertia: R,
     /// `R::from_f64(-2.0) * psi_2 * psi_1 * inv_effective_inertia * omega_1`.
-    pub parameter_jacobian_constant_4: R,
+    pub minus_two_psi_2_psi_1_omega_1_over_effective_inertia: R,
     /// Natural frequency of mode 2, rad/s.
     pub omega_2: R,
     /// `2 * psi_2_2 * inv_effective_inertia`.
@@ -249,7 +249,7 @@ pub struct Prepared<R> {
     /// `2 * c_bar * c_m_alpha_2`.
     pub two_c_bar_c_m_alpha_2: R,
     /// `-2 * psi_1 * n_1_alpha_2 - 2 * psi_2 * n_2_alpha_2`.
-    pub d2_pitch_acceleration_d_alpha_d_alpha_constant_1: R,
+    pub minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2: R,
 }
 
 impl<R> Prepared<R> {
@@ -364,12 +364,16 @@ impl<R> Prepared<R> {
             psi_1_c_bar_over_effective_inertia: f(
                 &self.psi_1_c_bar_over_effective_inertia,
             ),
-            parameter_jacobian_constant_1: f(&self.parameter_jacobian_constant_1),
+            minus_half_psi_1_c_bar_s_over_effective_inertia: f(
+                &self.minus_half_psi_1_c_bar_s_over_effective_inertia,
+            ),
             omega_1: f(&self.omega_1),
             two_psi_1_2_over_effective_inertia: f(
                 &self.two_psi_1_2_over_effective_inertia,
             ),
-            parameter_jacobian_constant_2: f(&self.parameter_jacobian_constant_2),
+            minus_two_psi_1_psi_2_omega_2_over_effective_inertia: f(
+                &self.minus_two_psi_1_psi_2_omega_2_over_effective_inertia,
+            ),
             psi_1_z_t_over_effective_inertia: f(&self.psi_1_z_t_over_effective_inertia),
             minus_psi_1_z_t_over_effective_inertia: f(
                 &self.minus_psi_1_z_t_over_effective_inertia,
@@ -382,8 +386,12 @@ impl<R> Prepared<R> {
             psi_2_c_bar_over_effective_inertia: f(
                 &self.psi_2_c_bar_over_effective_inertia,
             ),
-            parameter_jacobian_constant_3: f(&self.parameter_jacobian_constant_3),
-            parameter_jacobian_constant_4: f(&self.parameter_jacobian_constant_4),
+            minus_half_psi_2_c_bar_s_over_effective_inertia: f(
+                &self.minus_half_psi_2_c_bar_s_over_effective_inertia,
+            ),
+            minus_two_psi_2_psi_1_omega_1_over_effective_inertia: f(
+                &self.minus_two_psi_2_psi_1_omega_1_over_effective_inertia,
+            ),
             omega_2: f(&self.omega_2),
             two_psi_2_2_over_effective_inertia: f(
                 &self.two_psi_2_2_over_effective_inertia,
@@ -400,8 +408,8 @@ impl<R> Prepared<R> {
             two_m_2: f(&self.two_m_2),
             c_bar_s: f(&self.c_bar_s),
             two_c_bar_c_m_alpha_2: f(&self.two_c_bar_c_m_alpha_2),
-            d2_pitch_acceleration_d_alpha_d_alpha_constant_1: f(
-                &self.d2_pitch_acceleration_d_alpha_d_alpha_constant_1,
+            minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2: f(
+                &self.minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2,
             ),
         }
     }
@@ -562,22 +570,22 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         minus_psi_1_over_effective_inertia: -p.psi_1 * inv_effective_inertia,
         minus_psi_2_over_effective_inertia: -p.psi_2 * inv_effective_inertia,
         psi_1_c_bar_over_effective_inertia: p.psi_1 * p.c_bar * inv_effective_inertia,
-        parameter_jacobian_constant_1: R::from_f64(-0.5) * p.psi_1 * p.c_bar * p.s
-            * inv_effective_inertia,
+        minus_half_psi_1_c_bar_s_over_effective_inertia: R::from_f64(-0.5) * p.psi_1
+            * p.c_bar * p.s * inv_effective_inertia,
         omega_1: p.omega_1,
         two_psi_1_2_over_effective_inertia: R::TWO * psi_1_2 * inv_effective_inertia,
-        parameter_jacobian_constant_2: R::from_f64(-2.0) * p.psi_1 * p.psi_2
-            * inv_effective_inertia * p.omega_2,
+        minus_two_psi_1_psi_2_omega_2_over_effective_inertia: R::from_f64(-2.0) * p.psi_1
+            * p.psi_2 * inv_effective_inertia * p.omega_2,
         psi_1_z_t_over_effective_inertia: p.psi_1 * p.z_t * inv_effective_inertia,
         minus_psi_1_z_t_over_effective_inertia: -p.psi_1 * p.z_t * inv_effective_inertia,
         psi_1_2_over_effective_inertia,
         d_eta_acceleration_1_d_n_1_0,
         psi_1_psi_2_over_effective_inertia: p.psi_1 * p.psi_2 * inv_effective_inertia,
         psi_2_c_bar_over_effective_inertia: p.psi_2 * p.c_bar * inv_effective_inertia,
-        parameter_jacobian_constant_3: R::from_f64(-0.5) * p.psi_2 * p.c_bar * p.s
-            * inv_effective_inertia,
-        parameter_jacobian_constant_4: R::from_f64(-2.0) * p.psi_2 * p.psi_1
-            * inv_effective_inertia * p.omega_1,
+        minus_half_psi_2_c_bar_s_over_effective_inertia: R::from_f64(-0.5) * p.psi_2
+            * p.c_bar * p.s * inv_effective_inertia,
+        minus_two_psi_2_psi_1_omega_1_over_effective_inertia: R::from_f64(-2.0) * p.psi_2
+            * p.psi_1 * inv_effective_inertia * p.omega_1,
         omega_2: p.omega_2,
         two_psi_2_2_over_effective_inertia: R::TWO * psi_2_2 * inv_effective_inertia,
         psi_2_z_t_over_effective_inertia: p.psi_2 * p.z_t * inv_effective_inertia,
@@ -590,7 +598,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         two_m_2: R::TWO * m_2,
         c_bar_s: p.c_bar * p.s,
         two_c_bar_c_m_alpha_2: R::TWO * p.c_bar * p.c_m_alpha_2,
-        d2_pitch_acceleration_d_alpha_d_alpha_constant_1: -R::TWO * p.psi_1
+        minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2: -R::TWO * p.psi_1
             * p.n_1_alpha_2 - R::TWO * p.psi_2 * p.n_2_alpha_2,
     }
 }

@@ -153,16 +153,13 @@ pub fn parameter_jacobian_values<R: Real>(
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
 
     // Derivatives with respect to parameters
     let inverse_momentum_2 = inverse_momentum * inverse_momentum;
+    let density_velocity = density * x.velocity;
+    let s_density_velocity = p.s * density_velocity;
     let d_force_turn_d_m = -(thrust * sin_alpha * inverse_momentum_2 * x.velocity
-        + c_l * d_reference_force_d_velocity * p.half_inv_m_2); // rad*ft/s/slug
+        + c_l * s_density_velocity * p.half_inv_m_2); // rad*ft/s/slug
     let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * velocity_2 * d_density_d_h_0; // lb/ft^3
@@ -185,17 +182,20 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
-    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
-        * inv_velocity;
+    let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+        * (p.earth_curvature * radius_ratio
+            * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+        * (radius_ratio
+            * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    let pitching_moment_over_i_yy = pitching_moment * p.inv_i_yy;
 
     [
         -path_force * p.inv_m_2,
@@ -222,7 +222,7 @@ pub fn parameter_jacobian_values<R: Real>(
         -reference_force * u.delta_e * p.inv_m,
         -reference_force * p.inv_m,
         d_force_turn_d_m,
-        c_l * d_dynamic_pressure_d_velocity * p.half_over_m,
+        c_l * density_velocity * p.half_over_m,
         c_l * p.half_s_over_m * x.velocity * density_ratio,
         d_force_turn_d_h_0,
         d_force_turn_d_h_s,
@@ -241,7 +241,7 @@ pub fn parameter_jacobian_values<R: Real>(
         turn_factor * u.delta_e,
         turn_factor,
         -d_force_turn_d_m,
-        c_l * d_dynamic_pressure_d_velocity * p.minus_half_over_m,
+        c_l * density_velocity * p.minus_half_over_m,
         c_l * p.minus_half_s_over_m * x.velocity * density_ratio,
         -d_force_turn_d_h_0,
         -d_force_turn_d_h_s,
@@ -259,7 +259,7 @@ pub fn parameter_jacobian_values<R: Real>(
         -turn_factor * x.alpha,
         -turn_factor * u.delta_e,
         -turn_factor,
-        -pitch_acceleration * p.inv_i_yy,
+        -pitching_moment_over_i_yy * p.inv_i_yy,
         c_m * p.c_bar_over_i_yy * dynamic_pressure,
         c_m * reference_force * p.inv_i_yy,
         thrust * p.inv_i_yy,

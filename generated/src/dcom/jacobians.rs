@@ -404,9 +404,8 @@ pub fn jacobians_values<R: Real>(
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to eta_1
-    let d2_normal_coefficient_d_alpha_d_eta_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_eta_1 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
+    let d_path_force_d_eta_1 = reference_force * (cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_eta_1 = turn_factor * d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
@@ -415,9 +414,8 @@ pub fn jacobians_values<R: Real>(
     let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_normal_coefficient_d_alpha_d_eta_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_eta_2 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
+    let d_path_force_d_eta_2 = reference_force * (cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_eta_2 = turn_factor * d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
@@ -426,9 +424,8 @@ pub fn jacobians_values<R: Real>(
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_normal_coefficient_d_alpha_d_eta_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_eta_3 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
+    let d_path_force_d_eta_3 = reference_force * (cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_eta_3 = turn_factor * d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
@@ -773,9 +770,8 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to eta_1
-    let d2_normal_coefficient_d_alpha_d_eta_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_eta_1 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
+    let d_path_force_d_eta_1 = reference_force * (cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_eta_1 = turn_factor * d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
@@ -784,9 +780,8 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_normal_coefficient_d_alpha_d_eta_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_eta_2 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
+    let d_path_force_d_eta_2 = reference_force * (cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_eta_2 = turn_factor * d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
@@ -795,9 +790,8 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_normal_coefficient_d_alpha_d_eta_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_eta_3 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
+    let d_path_force_d_eta_3 = reference_force * (cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_eta_3 = turn_factor * d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5

@@ -144,23 +144,6 @@ pub fn noise_derivatives_values<R: Real>(
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
     let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d2_thrust_d_velocity_d_alpha = d_reference_force_d_velocity * d_c_t_d_alpha; // lb*s/ft^2/rad
-    let d2_drag_d_velocity_d_alpha = d_reference_force_d_velocity * d_c_d_d_alpha; // lb*s/ft^2/rad
-    let d2_path_force_d_velocity_d_alpha = d_thrust_d_velocity * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_velocity_d_alpha
-        - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_velocity_d_alpha = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_altitude_d_gamma = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to alpha
-    let d2_thrust_d_altitude_d_alpha = d_reference_force_d_altitude * d_c_t_d_alpha; // lb/ft^2/rad
-    let d2_drag_d_altitude_d_alpha = d_reference_force_d_altitude * d_c_d_d_alpha; // lb/ft^2/rad
-    let d2_path_force_d_altitude_d_alpha = d_thrust_d_altitude * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_altitude_d_alpha
-        - d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
-    let d2_velocity_rate_d_altitude_d_alpha = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to gamma
     let d2_velocity_rate_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
@@ -182,22 +165,6 @@ pub fn noise_derivatives_values<R: Real>(
 
     // Derivatives with respect to gamma
     let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_gamma_rate_d_velocity_d_gamma = -d_gravity_turn_d_velocity
-        * d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to alpha
-    let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_alpha; // 1/ft
-
-    // Derivatives with respect to gamma
-    let d2_gamma_rate_d_altitude_d_gamma = -d_gravity_turn_d_altitude
-        * d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to alpha
-    let d2_force_turn_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * d_normal_coefficient_d_alpha; // 1/s/ft
-
-    // Derivatives with respect to gamma
     let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
     let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
@@ -207,58 +174,111 @@ pub fn noise_derivatives_values<R: Real>(
         + c_t * d_cos_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha = turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
-    let d2_pitching_moment_d_velocity_d_alpha = d_reference_force_d_velocity * p.c_bar
-        * d_c_m_d_alpha + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
-    let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
-        * p.inv_i_yy; // 1/s/ft
-    let d2_pitching_moment_d_altitude_d_alpha = d_reference_force_d_altitude * p.c_bar
-        * d_c_m_d_alpha + p.z_t * d2_thrust_d_altitude_d_alpha; // lb/ft/rad
-    let d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha
-        * p.inv_i_yy; // 1/s^2/ft
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
         + p.two_c_bar_c_m_alpha_2 * reference_force; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
-    let d2_generalized_force_1_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_1_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_2_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_3_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let noise_derivatives_term_1 = d2_gamma_rate_d_velocity_d_gamma * d_velocity_rate_d_gamma
-        + d2_gamma_rate_d_altitude_d_gamma * d_altitude_rate_d_gamma
+
+    // Derivatives with respect to altitude
+    let d2_velocity_rate_d_gamma_d_altitude = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+
+    // Derivatives with respect to velocity
+    let d2_thrust_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_t_d_alpha; // lb*s/ft^2/rad
+    let d2_drag_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_d_d_alpha; // lb*s/ft^2/rad
+    let d2_path_force_d_alpha_d_velocity = d_thrust_d_velocity * d_cos_alpha_d_alpha
+        + cos_alpha * d2_thrust_d_alpha_d_velocity
+        - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
+    let d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
+
+    // Derivatives with respect to altitude
+    let d2_thrust_d_alpha_d_altitude = d_reference_force_d_altitude * d_c_t_d_alpha; // lb/ft^2/rad
+    let d2_drag_d_alpha_d_altitude = d_reference_force_d_altitude * d_c_d_d_alpha; // lb/ft^2/rad
+    let d2_path_force_d_alpha_d_altitude = d_thrust_d_altitude * d_cos_alpha_d_alpha
+        + cos_alpha * d2_thrust_d_alpha_d_altitude
+        - d2_drag_d_alpha_d_altitude; // lb/ft^2/rad
+    let d2_velocity_rate_d_alpha_d_altitude = d2_path_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
+
+    // Derivatives with respect to velocity
+    let d2_gamma_rate_d_gamma_d_velocity = -d_gravity_turn_d_velocity
+        * d_cos_gamma_d_gamma; // 1/ft
+
+    // Derivatives with respect to altitude
+    let d2_gamma_rate_d_gamma_d_altitude = -d_gravity_turn_d_altitude
+        * d_cos_gamma_d_gamma; // 1/s/ft
+
+    // Derivatives with respect to velocity
+    let d2_force_turn_d_alpha_d_velocity = d_turn_factor_d_velocity
+        * d_normal_coefficient_d_alpha; // 1/ft
+
+    // Derivatives with respect to altitude
+    let d2_force_turn_d_alpha_d_altitude = d_turn_factor_d_altitude
+        * d_normal_coefficient_d_alpha; // 1/s/ft
+
+    // Derivatives with respect to velocity
+    let d2_pitching_moment_d_alpha_d_velocity = d_reference_force_d_velocity * p.c_bar
+        * d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
+    let d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
+        * p.inv_i_yy; // 1/s/ft
+
+    // Derivatives with respect to altitude
+    let d2_pitching_moment_d_alpha_d_altitude = d_reference_force_d_altitude * p.c_bar
+        * d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
+    let d2_pitch_acceleration_d_alpha_d_altitude = d2_pitching_moment_d_alpha_d_altitude
+        * p.inv_i_yy; // 1/s^2/ft
+
+    // Derivatives with respect to velocity
+    let d2_generalized_force_1_d_alpha_d_velocity = d_reference_force_d_velocity
+        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+
+    // Derivatives with respect to altitude
+    let d2_generalized_force_1_d_alpha_d_altitude = d_reference_force_d_altitude
+        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+
+    // Derivatives with respect to velocity
+    let d2_generalized_force_2_d_alpha_d_velocity = d_reference_force_d_velocity
+        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+
+    // Derivatives with respect to altitude
+    let d2_generalized_force_2_d_alpha_d_altitude = d_reference_force_d_altitude
+        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+
+    // Derivatives with respect to velocity
+    let d2_generalized_force_3_d_alpha_d_velocity = d_reference_force_d_velocity
+        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+
+    // Derivatives with respect to altitude
+    let d2_generalized_force_3_d_alpha_d_altitude = d_reference_force_d_altitude
+        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let noise_derivatives_term_1 = d2_gamma_rate_d_gamma_d_velocity * d_velocity_rate_d_gamma
+        + d2_gamma_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
         + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma;
-    let noise_derivatives_term_2 = d2_force_turn_d_velocity_d_alpha
+    let d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_gamma = d2_force_turn_d_alpha_d_velocity
         * d_velocity_rate_d_gamma;
-    let noise_derivatives_term_3 = d2_force_turn_d_altitude_d_alpha
+    let d2_force_turn_d_alpha_d_altitude_d_altitude_rate_d_gamma = d2_force_turn_d_alpha_d_altitude
         * d_altitude_rate_d_gamma;
-    let noise_derivatives_term_4 = d2_force_turn_d_alpha_d_alpha * d_gamma_rate_d_gamma;
-    let noise_derivatives_term_5 = d2_gamma_rate_d_velocity_d_gamma
+    let d2_force_turn_d_alpha_d_alpha_d_gamma_rate_d_gamma = d2_force_turn_d_alpha_d_alpha
+        * d_gamma_rate_d_gamma;
+    let noise_derivatives_term_2 = d2_gamma_rate_d_gamma_d_velocity
         * d_velocity_rate_d_alpha + d2_gamma_rate_d_gamma_d_gamma * d_force_turn_d_alpha;
-    let noise_derivatives_term_6 = d2_force_turn_d_velocity_d_alpha
+    let d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha = d2_force_turn_d_alpha_d_velocity
         * d_velocity_rate_d_alpha;
-    let noise_derivatives_term_7 = d2_force_turn_d_alpha_d_alpha * d_force_turn_d_alpha;
+    let d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
+        * d_force_turn_d_alpha;
 
     [
         p.w_gamma_2
-            * (d2_velocity_rate_d_altitude_d_gamma * d_altitude_rate_d_gamma
+            * (d2_velocity_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
                 + d2_velocity_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
         p.w_alpha_w_gamma
-            * (d2_velocity_rate_d_velocity_d_alpha * d_velocity_rate_d_gamma
-                + d2_velocity_rate_d_altitude_d_alpha * d_altitude_rate_d_gamma
+            * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_gamma
+                + d2_velocity_rate_d_alpha_d_altitude * d_altitude_rate_d_gamma
                 - d2_velocity_rate_d_alpha_d_alpha * d_gamma_rate_d_gamma),
         p.w_alpha_w_gamma * d2_velocity_rate_d_gamma_d_gamma * d_force_turn_d_alpha,
         p.w_alpha_2
-            * (d2_velocity_rate_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_velocity_rate_d_alpha_d_alpha * d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_velocity_rate_d_alpha_d_alpha,
         p.w_gamma_2
@@ -269,48 +289,54 @@ pub fn noise_derivatives_values<R: Real>(
                 + d2_altitude_rate_d_gamma_d_gamma * d_force_turn_d_alpha),
         p.w_gamma_2 * noise_derivatives_term_1,
         p.w_alpha_w_gamma
-            * (noise_derivatives_term_2 + noise_derivatives_term_3
-                - noise_derivatives_term_4),
-        p.w_alpha_w_gamma * noise_derivatives_term_5,
-        p.w_alpha_2 * (noise_derivatives_term_6 - noise_derivatives_term_7),
+            * (d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_gamma
+                + d2_force_turn_d_alpha_d_altitude_d_altitude_rate_d_gamma
+                - d2_force_turn_d_alpha_d_alpha_d_gamma_rate_d_gamma),
+        p.w_alpha_w_gamma * noise_derivatives_term_2,
+        p.w_alpha_2
+            * (d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha
+                - d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_force_turn_d_alpha_d_alpha,
         -p.w_gamma_2 * noise_derivatives_term_1,
         p.w_alpha_w_gamma
-            * (noise_derivatives_term_4 - noise_derivatives_term_2
-                - noise_derivatives_term_3),
-        -p.w_alpha_w_gamma * noise_derivatives_term_5,
-        p.w_alpha_2 * (noise_derivatives_term_7 - noise_derivatives_term_6),
+            * (d2_force_turn_d_alpha_d_alpha_d_gamma_rate_d_gamma
+                - d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_gamma
+                - d2_force_turn_d_alpha_d_altitude_d_altitude_rate_d_gamma),
+        -p.w_alpha_w_gamma * noise_derivatives_term_2,
+        p.w_alpha_2
+            * (d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha
+                - d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha),
         -p.w_alpha_w_q * d2_force_turn_d_alpha_d_alpha,
         p.w_alpha_w_gamma
-            * (d2_pitch_acceleration_d_velocity_d_alpha * d_velocity_rate_d_gamma
-                + d2_pitch_acceleration_d_altitude_d_alpha * d_altitude_rate_d_gamma
+            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_gamma
+                + d2_pitch_acceleration_d_alpha_d_altitude * d_altitude_rate_d_gamma
                 - d2_pitch_acceleration_d_alpha_d_alpha * d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_pitch_acceleration_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_pitch_acceleration_d_alpha_d_alpha * d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_pitch_acceleration_d_alpha_d_alpha,
         p.w_alpha_w_gamma
-            * (d2_generalized_force_1_d_velocity_d_alpha * d_velocity_rate_d_gamma
-                + d2_generalized_force_1_d_altitude_d_alpha * d_altitude_rate_d_gamma
+            * (d2_generalized_force_1_d_alpha_d_velocity * d_velocity_rate_d_gamma
+                + d2_generalized_force_1_d_alpha_d_altitude * d_altitude_rate_d_gamma
                 - d2_generalized_force_1_d_alpha_d_alpha * d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_generalized_force_1_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_generalized_force_1_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_generalized_force_1_d_alpha_d_alpha * d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_generalized_force_1_d_alpha_d_alpha,
         p.w_alpha_w_gamma
-            * (d2_generalized_force_2_d_velocity_d_alpha * d_velocity_rate_d_gamma
-                + d2_generalized_force_2_d_altitude_d_alpha * d_altitude_rate_d_gamma
+            * (d2_generalized_force_2_d_alpha_d_velocity * d_velocity_rate_d_gamma
+                + d2_generalized_force_2_d_alpha_d_altitude * d_altitude_rate_d_gamma
                 - d2_generalized_force_2_d_alpha_d_alpha * d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_generalized_force_2_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_generalized_force_2_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_generalized_force_2_d_alpha_d_alpha * d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_generalized_force_2_d_alpha_d_alpha,
         p.w_alpha_w_gamma
-            * (d2_generalized_force_3_d_velocity_d_alpha * d_velocity_rate_d_gamma
-                + d2_generalized_force_3_d_altitude_d_alpha * d_altitude_rate_d_gamma
+            * (d2_generalized_force_3_d_alpha_d_velocity * d_velocity_rate_d_gamma
+                + d2_generalized_force_3_d_alpha_d_altitude * d_altitude_rate_d_gamma
                 - d2_generalized_force_3_d_alpha_d_alpha * d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_generalized_force_3_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_generalized_force_3_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_generalized_force_3_d_alpha_d_alpha * d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_generalized_force_3_d_alpha_d_alpha,
     ]
@@ -417,15 +443,8 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
     let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d2_thrust_d_velocity_d_alpha = d_reference_force_d_velocity * d_c_t_d_alpha; // lb*s/ft^2/rad
-    let d2_drag_d_velocity_d_alpha = d_reference_force_d_velocity * d_c_d_d_alpha; // lb*s/ft^2/rad
-    let d2_path_force_d_velocity_d_alpha = d_thrust_d_velocity * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_velocity_d_alpha
-        - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_velocity_d_alpha = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to gamma
-    let d2_velocity_rate_d_altitude_d_gamma = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
     let d2_velocity_rate_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
@@ -445,16 +464,6 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
 
     // Derivatives with respect to gamma
     let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_gamma_rate_d_velocity_d_gamma = -d_gravity_turn_d_velocity
-        * d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to alpha
-    let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_alpha; // 1/ft
-
-    // Derivatives with respect to gamma
-    let d2_gamma_rate_d_altitude_d_gamma = -d_gravity_turn_d_altitude
-        * d_cos_gamma_d_gamma; // 1/s/ft
     let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
     let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
@@ -464,59 +473,85 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         + c_t * d_cos_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha = turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
-    let d2_pitching_moment_d_velocity_d_alpha = d_reference_force_d_velocity * p.c_bar
-        * d_c_m_d_alpha + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
-    let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
-        * p.inv_i_yy; // 1/s/ft
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
         + p.two_c_bar_c_m_alpha_2 * reference_force; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
-    let d2_generalized_force_1_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+
+    // Derivatives with respect to altitude
+    let d2_velocity_rate_d_gamma_d_altitude = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+
+    // Derivatives with respect to velocity
+    let d2_thrust_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_t_d_alpha; // lb*s/ft^2/rad
+    let d2_drag_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_d_d_alpha; // lb*s/ft^2/rad
+    let d2_path_force_d_alpha_d_velocity = d_thrust_d_velocity * d_cos_alpha_d_alpha
+        + cos_alpha * d2_thrust_d_alpha_d_velocity
+        - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
+    let d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
+    let d2_gamma_rate_d_gamma_d_velocity = -d_gravity_turn_d_velocity
+        * d_cos_gamma_d_gamma; // 1/ft
+
+    // Derivatives with respect to altitude
+    let d2_gamma_rate_d_gamma_d_altitude = -d_gravity_turn_d_altitude
+        * d_cos_gamma_d_gamma; // 1/s/ft
+
+    // Derivatives with respect to velocity
+    let d2_force_turn_d_alpha_d_velocity = d_turn_factor_d_velocity
+        * d_normal_coefficient_d_alpha; // 1/ft
+    let d2_pitching_moment_d_alpha_d_velocity = d_reference_force_d_velocity * p.c_bar
+        * d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
+    let d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
+        * p.inv_i_yy; // 1/s/ft
+    let d2_generalized_force_1_d_alpha_d_velocity = d_reference_force_d_velocity
+        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_alpha_d_velocity = d_reference_force_d_velocity
+        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_alpha_d_velocity = d_reference_force_d_velocity
+        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
     let ito_correction_term_1 = p.half_w_gamma_2
-        * (d2_gamma_rate_d_velocity_d_gamma * d_velocity_rate_d_gamma
-            + d2_gamma_rate_d_altitude_d_gamma * d_altitude_rate_d_gamma
+        * (d2_gamma_rate_d_gamma_d_velocity * d_velocity_rate_d_gamma
+            + d2_gamma_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
             + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma);
-    let ito_correction_term_2 = d2_force_turn_d_velocity_d_alpha
+    let d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha = d2_force_turn_d_alpha_d_velocity
         * d_velocity_rate_d_alpha;
-    let ito_correction_term_3 = d2_force_turn_d_alpha_d_alpha * d_force_turn_d_alpha;
+    let d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
+        * d_force_turn_d_alpha;
 
     State {
         velocity: p.half_w_gamma_2
-            * (d2_velocity_rate_d_altitude_d_gamma * d_altitude_rate_d_gamma
+            * (d2_velocity_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
                 + d2_velocity_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma)
             + p.half_w_alpha_2
-                * (d2_velocity_rate_d_velocity_d_alpha * d_velocity_rate_d_alpha
+                * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_alpha
                     - d2_velocity_rate_d_alpha_d_alpha * d_force_turn_d_alpha),
         altitude: p.half_w_gamma_2
             * (cos_gamma * d_velocity_rate_d_gamma
                 + d2_altitude_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
         gamma: ito_correction_term_1
-            + p.half_w_alpha_2 * (ito_correction_term_2 - ito_correction_term_3),
-        alpha: p.half_w_alpha_2 * (ito_correction_term_3 - ito_correction_term_2)
+            + p.half_w_alpha_2
+                * (d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha
+                    - d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha),
+        alpha: p.half_w_alpha_2
+            * (d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha
+                - d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha)
             - ito_correction_term_1,
         pitch_rate: p.half_w_alpha_2
-            * (d2_pitch_acceleration_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_pitch_acceleration_d_alpha_d_alpha * d_force_turn_d_alpha),
         eta_1: R::ZERO,
         eta_dot_1: p.half_w_alpha_2
-            * (d2_generalized_force_1_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_generalized_force_1_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_generalized_force_1_d_alpha_d_alpha * d_force_turn_d_alpha),
         eta_2: R::ZERO,
         eta_dot_2: p.half_w_alpha_2
-            * (d2_generalized_force_2_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_generalized_force_2_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_generalized_force_2_d_alpha_d_alpha * d_force_turn_d_alpha),
         eta_3: R::ZERO,
         eta_dot_3: p.half_w_alpha_2
-            * (d2_generalized_force_3_d_velocity_d_alpha * d_velocity_rate_d_alpha
+            * (d2_generalized_force_3_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_generalized_force_3_d_alpha_d_alpha * d_force_turn_d_alpha),
     }
 }

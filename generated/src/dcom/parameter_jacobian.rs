@@ -277,11 +277,6 @@ pub fn parameter_jacobian_values<R: Real>(
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
 
     // Derivatives with respect to delta_e
     let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
@@ -333,10 +328,11 @@ pub fn parameter_jacobian_values<R: Real>(
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
     let inv_velocity = x.velocity.recip();
-    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
-        * inv_velocity;
+    let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+        * (p.earth_curvature * radius_ratio
+            * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
@@ -347,11 +343,15 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_eta_acceleration_3_d_omega_3 = -(x.eta_dot_3 * p.two_zeta_3
         + x.eta_3 * p.two_omega_3); // ft^0.5*slug^0.5/s/rad
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+        * (radius_ratio
+            * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_c_l_d_c_l_delta_e = u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
     let d_force_turn_d_c_l_delta_e = turn_factor * d_c_l_d_c_l_delta_e; // rad^2/s
+    let density_velocity = density * x.velocity;
+    let s_density_velocity = p.s * density_velocity;
+    let pitching_moment_over_i_yy = pitching_moment * p.inv_i_yy;
     let reference_force_alpha_2 = reference_force * alpha_2;
     let reference_force_alpha = reference_force * x.alpha;
     let reference_force_delta_e = reference_force * u.delta_e;
@@ -385,7 +385,7 @@ pub fn parameter_jacobian_values<R: Real>(
         reference_force * slope_of_c_d_in_canard_deflection * u.delta_e
             * p.canard_slaving_over_c_l_delta_c_m,
         -reference_force * slope_of_c_d_in_canard_deflection * u.delta_e
-            * p.parameter_jacobian_constant_1,
+            * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m,
         -reference_force * alpha_2 * p.inv_m,
         -reference_force * x.alpha * p.inv_m,
         -reference_force * delta_e_2 * p.inv_m,
@@ -396,8 +396,8 @@ pub fn parameter_jacobian_values<R: Real>(
         -reference_force * x.eta_1 * p.inv_m,
         -reference_force * x.eta_2 * p.inv_m,
         -reference_force * x.eta_3 * p.inv_m,
-        normal_coefficient * d_reference_force_d_velocity * p.minus_half_inv_m_2,
-        normal_coefficient * d_dynamic_pressure_d_velocity * p.half_over_m,
+        normal_coefficient * s_density_velocity * p.minus_half_inv_m_2,
+        normal_coefficient * density_velocity * p.half_over_m,
         normal_coefficient * p.half_s_over_m * x.velocity * density_ratio,
         d_force_turn_d_h_0,
         d_force_turn_d_h_s,
@@ -424,8 +424,8 @@ pub fn parameter_jacobian_values<R: Real>(
         turn_factor * x.eta_1,
         turn_factor * x.eta_2,
         turn_factor * x.eta_3,
-        normal_coefficient * d_reference_force_d_velocity * p.half_inv_m_2,
-        normal_coefficient * d_dynamic_pressure_d_velocity * p.minus_half_over_m,
+        normal_coefficient * s_density_velocity * p.half_inv_m_2,
+        normal_coefficient * density_velocity * p.minus_half_over_m,
         normal_coefficient * p.minus_half_s_over_m * x.velocity * density_ratio,
         -d_force_turn_d_h_0,
         -d_force_turn_d_h_s,
@@ -452,7 +452,7 @@ pub fn parameter_jacobian_values<R: Real>(
         -turn_factor * x.eta_1,
         -turn_factor * x.eta_2,
         -turn_factor * x.eta_3,
-        -pitch_acceleration * p.inv_i_yy,
+        -pitching_moment_over_i_yy * p.inv_i_yy,
         d_pitch_acceleration_d_s,
         reference_force * c_m * p.inv_i_yy,
         thrust * p.inv_i_yy,
@@ -460,7 +460,8 @@ pub fn parameter_jacobian_values<R: Real>(
         d_pitch_acceleration_d_h_0,
         d_pitch_acceleration_d_h_s,
         p.c_bar_c_m_delta_c_over_i_yy * reference_force * u.delta_c,
-        -p.parameter_jacobian_constant_2 * reference_force * u.delta_e,
+        -p.c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy * reference_force
+            * u.delta_e,
         p.z_t_over_i_yy * reference_force * u.phi * alpha_3,
         p.z_t_over_i_yy * reference_force * u.phi * alpha_2,
         p.z_t_over_i_yy * reference_force * u.phi * x.alpha,
@@ -472,8 +473,9 @@ pub fn parameter_jacobian_values<R: Real>(
         p.z_t_over_i_yy * reference_force * x.eta_1,
         p.z_t_over_i_yy * reference_force * x.eta_2,
         p.z_t_over_i_yy * reference_force * x.eta_3,
-        -p.parameter_jacobian_constant_3 * reference_force * u.delta_e,
-        p.parameter_jacobian_constant_4 * reference_force * u.delta_e,
+        -p.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy * reference_force
+            * u.delta_e,
+        p.parameter_jacobian_constant_1 * reference_force * u.delta_e,
         p.c_bar_over_i_yy * reference_force * alpha_2,
         p.c_bar_over_i_yy * reference_force * x.alpha,
         p.c_bar_over_i_yy * reference_force * u.delta_e,
@@ -489,9 +491,10 @@ pub fn parameter_jacobian_values<R: Real>(
         d_eta_acceleration_1_d_omega_1,
         x.eta_dot_1 * p.minus_two_omega_1,
         reference_force * p.c_n_1_delta_c * u.delta_c,
-        -reference_force * p.parameter_jacobian_constant_5 * u.delta_e,
-        -reference_force * p.parameter_jacobian_constant_6 * u.delta_e,
-        reference_force * p.parameter_jacobian_constant_7 * u.delta_e,
+        -reference_force * p.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
+        -reference_force * p.c_n_1_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
+        reference_force * p.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+            * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,
@@ -504,9 +507,10 @@ pub fn parameter_jacobian_values<R: Real>(
         d_eta_acceleration_2_d_omega_2,
         x.eta_dot_2 * p.minus_two_omega_2,
         reference_force * p.c_n_2_delta_c * u.delta_c,
-        -reference_force * p.parameter_jacobian_constant_8 * u.delta_e,
-        -reference_force * p.parameter_jacobian_constant_9 * u.delta_e,
-        reference_force * p.parameter_jacobian_constant_10 * u.delta_e,
+        -reference_force * p.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
+        -reference_force * p.c_n_2_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
+        reference_force * p.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+            * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,
@@ -519,9 +523,10 @@ pub fn parameter_jacobian_values<R: Real>(
         d_eta_acceleration_3_d_omega_3,
         x.eta_dot_3 * p.minus_two_omega_3,
         reference_force * p.c_n_3_delta_c * u.delta_c,
-        -reference_force * p.parameter_jacobian_constant_11 * u.delta_e,
-        -reference_force * p.parameter_jacobian_constant_12 * u.delta_e,
-        reference_force * p.parameter_jacobian_constant_13 * u.delta_e,
+        -reference_force * p.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
+        -reference_force * p.c_n_3_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
+        reference_force * p.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+            * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,

@@ -221,7 +221,7 @@ pub struct Prepared<R> {
     /// `canard_slaving * inv_c_l_delta_c * inv_m`.
     pub canard_slaving_over_c_l_delta_c_m: R,
     /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_m`.
-    pub parameter_jacobian_constant_1: R,
+    pub canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m: R,
     /// `R::from_f64(-0.5) * inv_m_2`.
     pub minus_half_inv_m_2: R,
     /// `R::HALF * inv_m`.
@@ -248,13 +248,13 @@ pub struct Prepared<R> {
     /// `c_bar * c_m_delta_c * inv_i_yy`.
     pub c_bar_c_m_delta_c_over_i_yy: R,
     /// `c_bar * c_m_delta_c * c_l_delta_e * inv_c_l_delta_c * inv_i_yy`.
-    pub parameter_jacobian_constant_2: R,
+    pub c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy: R,
     /// `z_t * inv_i_yy`.
     pub z_t_over_i_yy: R,
     /// `c_bar * c_m_delta_c * canard_slaving * inv_c_l_delta_c * inv_i_yy`.
-    pub parameter_jacobian_constant_3: R,
+    pub c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy: R,
     /// `c_bar * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy`.
-    pub parameter_jacobian_constant_4: R,
+    pub parameter_jacobian_constant_1: R,
     /// `c_bar * inv_i_yy`.
     pub c_bar_over_i_yy: R,
     /// `R::HALF * s`.
@@ -266,11 +266,11 @@ pub struct Prepared<R> {
     /// `R::from_f64(-2.0) * omega_1`.
     pub minus_two_omega_1: R,
     /// `c_n_1_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_5: R,
+    pub c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c: R,
     /// `c_n_1_delta_c * canard_slaving * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_6: R,
+    pub c_n_1_delta_c_canard_slaving_over_c_l_delta_c: R,
     /// `c_n_1_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-    pub parameter_jacobian_constant_7: R,
+    pub c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
     /// `2 * zeta_2`.
     pub two_zeta_2: R,
     /// `2 * omega_2`.
@@ -278,11 +278,11 @@ pub struct Prepared<R> {
     /// `R::from_f64(-2.0) * omega_2`.
     pub minus_two_omega_2: R,
     /// `c_n_2_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_8: R,
+    pub c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c: R,
     /// `c_n_2_delta_c * canard_slaving * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_9: R,
+    pub c_n_2_delta_c_canard_slaving_over_c_l_delta_c: R,
     /// `c_n_2_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-    pub parameter_jacobian_constant_10: R,
+    pub c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
     /// `2 * zeta_3`.
     pub two_zeta_3: R,
     /// `2 * omega_3`.
@@ -290,11 +290,11 @@ pub struct Prepared<R> {
     /// `R::from_f64(-2.0) * omega_3`.
     pub minus_two_omega_3: R,
     /// `c_n_3_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_11: R,
+    pub c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c: R,
     /// `c_n_3_delta_c * canard_slaving * inv_c_l_delta_c`.
-    pub parameter_jacobian_constant_12: R,
+    pub c_n_3_delta_c_canard_slaving_over_c_l_delta_c: R,
     /// `c_n_3_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-    pub parameter_jacobian_constant_13: R,
+    pub c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
     /// `2 * earth_curvature_2`.
     pub two_earth_curvature_2: R,
     /// `R::from_f64(6.0) * c_t_alpha_3`.
@@ -468,7 +468,9 @@ impl<R> Prepared<R> {
             canard_slaving_over_c_l_delta_c_m: f(
                 &self.canard_slaving_over_c_l_delta_c_m,
             ),
-            parameter_jacobian_constant_1: f(&self.parameter_jacobian_constant_1),
+            canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m: f(
+                &self.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m,
+            ),
             minus_half_inv_m_2: f(&self.minus_half_inv_m_2),
             half_over_m: f(&self.half_over_m),
             inv_r_e: f(&self.inv_r_e),
@@ -481,30 +483,52 @@ impl<R> Prepared<R> {
             half_c_bar: f(&self.half_c_bar),
             half_z_t: f(&self.half_z_t),
             c_bar_c_m_delta_c_over_i_yy: f(&self.c_bar_c_m_delta_c_over_i_yy),
-            parameter_jacobian_constant_2: f(&self.parameter_jacobian_constant_2),
+            c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy: f(
+                &self.c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy,
+            ),
             z_t_over_i_yy: f(&self.z_t_over_i_yy),
-            parameter_jacobian_constant_3: f(&self.parameter_jacobian_constant_3),
-            parameter_jacobian_constant_4: f(&self.parameter_jacobian_constant_4),
+            c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy: f(
+                &self.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy,
+            ),
+            parameter_jacobian_constant_1: f(&self.parameter_jacobian_constant_1),
             c_bar_over_i_yy: f(&self.c_bar_over_i_yy),
             half_s: f(&self.half_s),
             two_zeta_1: f(&self.two_zeta_1),
             two_omega_1: f(&self.two_omega_1),
             minus_two_omega_1: f(&self.minus_two_omega_1),
-            parameter_jacobian_constant_5: f(&self.parameter_jacobian_constant_5),
-            parameter_jacobian_constant_6: f(&self.parameter_jacobian_constant_6),
-            parameter_jacobian_constant_7: f(&self.parameter_jacobian_constant_7),
+            c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c: f(
+                &self.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c,
+            ),
+            c_n_1_delta_c_canard_slaving_over_c_l_delta_c: f(
+                &self.c_n_1_delta_c_canard_slaving_over_c_l_delta_c,
+            ),
+            c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: f(
+                &self.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
+            ),
             two_zeta_2: f(&self.two_zeta_2),
             two_omega_2: f(&self.two_omega_2),
             minus_two_omega_2: f(&self.minus_two_omega_2),
-            parameter_jacobian_constant_8: f(&self.parameter_jacobian_constant_8),
-            parameter_jacobian_constant_9: f(&self.parameter_jacobian_constant_9),
-            parameter_jacobian_constant_10: f(&self.parameter_jacobian_constant_10),
+            c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c: f(
+                &self.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c,
+            ),
+            c_n_2_delta_c_canard_slaving_over_c_l_delta_c: f(
+                &self.c_n_2_delta_c_canard_slaving_over_c_l_delta_c,
+            ),
+            c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: f(
+                &self.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
+            ),
             two_zeta_3: f(&self.two_zeta_3),
             two_omega_3: f(&self.two_omega_3),
             minus_two_omega_3: f(&self.minus_two_omega_3),
-            parameter_jacobian_constant_11: f(&self.parameter_jacobian_constant_11),
-            parameter_jacobian_constant_12: f(&self.parameter_jacobian_constant_12),
-            parameter_jacobian_constant_13: f(&self.parameter_jacobian_constant_13),
+            c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c: f(
+                &self.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c,
+            ),
+            c_n_3_delta_c_canard_slaving_over_c_l_delta_c: f(
+                &self.c_n_3_delta_c_canard_slaving_over_c_l_delta_c,
+            ),
+            c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: f(
+                &self.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
+            ),
             two_earth_curvature_2: f(&self.two_earth_curvature_2),
             six_c_t_alpha_3: f(&self.six_c_t_alpha_3),
             six_c_t_phi_alpha_3: f(&self.six_c_t_phi_alpha_3),
@@ -685,8 +709,8 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_l_delta_e_over_c_l_delta_c_m: p.c_l_delta_e * inv_c_l_delta_c * inv_m,
         minus_two_g_over_r_e: R::from_f64(-2.0) * p.g * inv_r_e,
         canard_slaving_over_c_l_delta_c_m: p.canard_slaving * inv_c_l_delta_c * inv_m,
-        parameter_jacobian_constant_1: p.canard_slaving * p.c_l_delta_e
-            * inv_c_l_delta_c_2 * inv_m,
+        canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m: p.canard_slaving
+            * p.c_l_delta_e * inv_c_l_delta_c_2 * inv_m,
         minus_half_inv_m_2: R::from_f64(-0.5) * inv_m_2,
         half_over_m: R::HALF * inv_m,
         inv_r_e,
@@ -699,40 +723,42 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         half_c_bar: R::HALF * p.c_bar,
         half_z_t: R::HALF * p.z_t,
         c_bar_c_m_delta_c_over_i_yy: p.c_bar * p.c_m_delta_c * inv_i_yy,
-        parameter_jacobian_constant_2: p.c_bar * p.c_m_delta_c * p.c_l_delta_e
-            * inv_c_l_delta_c * inv_i_yy,
+        c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy: p.c_bar * p.c_m_delta_c
+            * p.c_l_delta_e * inv_c_l_delta_c * inv_i_yy,
         z_t_over_i_yy: p.z_t * inv_i_yy,
-        parameter_jacobian_constant_3: p.c_bar * p.c_m_delta_c * p.canard_slaving
-            * inv_c_l_delta_c * inv_i_yy,
-        parameter_jacobian_constant_4: p.c_bar * p.c_m_delta_c * p.canard_slaving
+        c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy: p.c_bar * p.c_m_delta_c
+            * p.canard_slaving * inv_c_l_delta_c * inv_i_yy,
+        parameter_jacobian_constant_1: p.c_bar * p.c_m_delta_c * p.canard_slaving
             * p.c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy,
         c_bar_over_i_yy: p.c_bar * inv_i_yy,
         half_s: R::HALF * p.s,
         two_zeta_1: R::TWO * p.zeta_1,
         two_omega_1: R::TWO * p.omega_1,
         minus_two_omega_1: R::from_f64(-2.0) * p.omega_1,
-        parameter_jacobian_constant_5: p.c_n_1_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
-        parameter_jacobian_constant_6: p.c_n_1_delta_c * p.canard_slaving
+        c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c: p.c_n_1_delta_c * p.c_l_delta_e
             * inv_c_l_delta_c,
-        parameter_jacobian_constant_7: p.c_n_1_delta_c * p.canard_slaving * p.c_l_delta_e
-            * inv_c_l_delta_c_2,
+        c_n_1_delta_c_canard_slaving_over_c_l_delta_c: p.c_n_1_delta_c * p.canard_slaving
+            * inv_c_l_delta_c,
+        c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: p.c_n_1_delta_c
+            * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2,
         two_zeta_2: R::TWO * p.zeta_2,
         two_omega_2: R::TWO * p.omega_2,
         minus_two_omega_2: R::from_f64(-2.0) * p.omega_2,
-        parameter_jacobian_constant_8: p.c_n_2_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
-        parameter_jacobian_constant_9: p.c_n_2_delta_c * p.canard_slaving
+        c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c: p.c_n_2_delta_c * p.c_l_delta_e
             * inv_c_l_delta_c,
-        parameter_jacobian_constant_10: p.c_n_2_delta_c * p.canard_slaving
-            * p.c_l_delta_e * inv_c_l_delta_c_2,
+        c_n_2_delta_c_canard_slaving_over_c_l_delta_c: p.c_n_2_delta_c * p.canard_slaving
+            * inv_c_l_delta_c,
+        c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: p.c_n_2_delta_c
+            * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2,
         two_zeta_3: R::TWO * p.zeta_3,
         two_omega_3: R::TWO * p.omega_3,
         minus_two_omega_3: R::from_f64(-2.0) * p.omega_3,
-        parameter_jacobian_constant_11: p.c_n_3_delta_c * p.c_l_delta_e
+        c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c: p.c_n_3_delta_c * p.c_l_delta_e
             * inv_c_l_delta_c,
-        parameter_jacobian_constant_12: p.c_n_3_delta_c * p.canard_slaving
+        c_n_3_delta_c_canard_slaving_over_c_l_delta_c: p.c_n_3_delta_c * p.canard_slaving
             * inv_c_l_delta_c,
-        parameter_jacobian_constant_13: p.c_n_3_delta_c * p.canard_slaving
-            * p.c_l_delta_e * inv_c_l_delta_c_2,
+        c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: p.c_n_3_delta_c
+            * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2,
         two_earth_curvature_2: R::TWO * earth_curvature_2,
         six_c_t_alpha_3: R::from_f64(6.0) * p.c_t_alpha_3,
         six_c_t_phi_alpha_3: R::from_f64(6.0) * p.c_t_phi_alpha_3,

@@ -150,15 +150,15 @@ pub fn eta_spectrum<R: Real>(
     frequency: R,
 ) -> R {
     let omega_minus_frequency = p.omega - frequency;
-    let omega_minus_frequency_2 = omega_minus_frequency * omega_minus_frequency;
+    let power_2_of_omega_minus_frequency = omega_minus_frequency * omega_minus_frequency;
     let omega_plus_frequency = p.omega + frequency;
-    let omega_plus_frequency_2 = omega_plus_frequency * omega_plus_frequency;
+    let power_2_of_omega_plus_frequency = omega_plus_frequency * omega_plus_frequency;
     let frequency_2 = frequency * frequency;
-    let eta_spectrum_term_1 = (omega_minus_frequency_2 * omega_plus_frequency_2
-        + p.damping_2 * frequency_2)
+    let eta_spectrum_over_sigma_2 = (power_2_of_omega_minus_frequency
+        * power_2_of_omega_plus_frequency + p.damping_2 * frequency_2)
         .recip();
 
-    p.sigma_2 * eta_spectrum_term_1
+    p.sigma_2 * eta_spectrum_over_sigma_2
 }
 
 /// Two-sided spectral density of the coloured noise at an angular frequency, eq. (24). Unit: ft*slug*s.
@@ -172,9 +172,9 @@ pub fn chi_spectrum<R: Real>(
     frequency: R,
 ) -> R {
     let frequency_2 = frequency * frequency;
-    let inv_chi_decay_2_plus_frequency_2 = (p.chi_decay_2 + frequency_2).recip();
+    let inv_of_chi_decay_2_plus_frequency_2 = (p.chi_decay_2 + frequency_2).recip();
 
-    p.chi_diffusion_2 * inv_chi_decay_2_plus_frequency_2
+    p.chi_diffusion_2 * inv_of_chi_decay_2_plus_frequency_2
 }
 
 /// Variance of the mode at a time, from rest, for zeta < 1, eq. (17). Unit: ft*slug.
@@ -275,12 +275,13 @@ pub fn eta_variance_at_overdamped<R: Real>(
     let fast_envelope = (-p.fast_pole * time).exp();
     let slow_envelope = (-p.slow_pole * time).exp();
     let slow_envelope_minus_fast_envelope = slow_envelope - fast_envelope;
-    let slow_envelope_minus_fast_envelope_2 = slow_envelope_minus_fast_envelope
+    let power_2_of_slow_envelope_minus_fast_envelope = slow_envelope_minus_fast_envelope
         * slow_envelope_minus_fast_envelope;
 
     p.chi_variance_variance_constant_1
         * (R::ONE - fast_envelope * slow_envelope
-            - p.two_zeta_2_stiffness_inv_pole_gap_2 * slow_envelope_minus_fast_envelope_2
+            - p.two_zeta_2_stiffness_inv_pole_gap_2
+                * power_2_of_slow_envelope_minus_fast_envelope
             - p.zeta_omega_over_pole_gap * slow_envelope_minus_fast_envelope
                 * (slow_envelope + fast_envelope))
 }

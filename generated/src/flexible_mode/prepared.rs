@@ -190,8 +190,8 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let overdamped_ratio = ((p.zeta - R::ONE) * one_plus_zeta).sqrt();
     let zeta_plus_overdamped_ratio = p.zeta + overdamped_ratio;
     let fast_pole = p.omega * zeta_plus_overdamped_ratio; // 1/s
-    let inv_zeta_plus_overdamped_ratio = zeta_plus_overdamped_ratio.recip();
-    let slow_pole = p.omega * inv_zeta_plus_overdamped_ratio; // 1/s
+    let inv_of_zeta_plus_overdamped_ratio = zeta_plus_overdamped_ratio.recip();
+    let slow_pole = p.omega * inv_of_zeta_plus_overdamped_ratio; // 1/s
     let pole_gap = R::TWO * p.omega * overdamped_ratio; // 1/s
     let sigma_2 = p.sigma * p.sigma;
     let inv_stiffness = stiffness.recip();

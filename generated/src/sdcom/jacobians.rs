@@ -416,9 +416,8 @@ pub fn jacobians_values<R: Real>(
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to chi_1
-    let d2_normal_coefficient_d_alpha_d_chi_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_1 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
+    let d_path_force_d_chi_1 = reference_force * (cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_chi_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_chi_1 = turn_factor * d_normal_coefficient_d_chi_1; // rad/s/ft^0.5/slug^0.5
@@ -427,9 +426,8 @@ pub fn jacobians_values<R: Real>(
     let d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_normal_coefficient_d_alpha_d_chi_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_2 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
+    let d_path_force_d_chi_2 = reference_force * (cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_chi_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_chi_2 = turn_factor * d_normal_coefficient_d_chi_2; // rad/s/ft^0.5/slug^0.5
@@ -438,9 +436,8 @@ pub fn jacobians_values<R: Real>(
     let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_normal_coefficient_d_alpha_d_chi_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_3 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
+    let d_path_force_d_chi_3 = reference_force * (cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_chi_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_chi_3 = turn_factor * d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5
@@ -867,9 +864,8 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to chi_1
-    let d2_normal_coefficient_d_alpha_d_chi_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_1 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
+    let d_path_force_d_chi_1 = reference_force * (cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_chi_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_chi_1 = turn_factor * d_normal_coefficient_d_chi_1; // rad/s/ft^0.5/slug^0.5
@@ -878,9 +874,8 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_normal_coefficient_d_alpha_d_chi_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_2 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
+    let d_path_force_d_chi_2 = reference_force * (cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_chi_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_chi_2 = turn_factor * d_normal_coefficient_d_chi_2; // rad/s/ft^0.5/slug^0.5
@@ -889,9 +884,8 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_normal_coefficient_d_alpha_d_chi_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_3 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
+    let d_path_force_d_chi_3 = reference_force * (cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
     let d_normal_coefficient_d_chi_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
     let d_force_turn_d_chi_3 = turn_factor * d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5

@@ -326,20 +326,6 @@ pub fn parameter_jacobian_values<R: Real>(
 
     // Motion, (1)
     let path_force = thrust * cos_alpha - drag; // lb/ft
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-
-    // Derivatives with respect to chi_1
-    let d_normal_coefficient_d_chi_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_normal_coefficient_d_chi_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_normal_coefficient_d_chi_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
 
     // Derivatives with respect to delta_e
     let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
@@ -360,8 +346,9 @@ pub fn parameter_jacobian_values<R: Real>(
         * (p.c_l_eta_1_inv_omega_1_2 * c_n_1 + p.c_l_eta_2_inv_omega_2_2 * c_n_2
             + p.c_l_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
     let d_normal_coefficient_d_s = sin_alpha * d_c_t_d_s + d_c_l_d_s; // 1/ft
-    let d_force_turn_d_s = normal_coefficient * d_dynamic_pressure_d_velocity
-        * p.half_over_m + turn_factor * d_normal_coefficient_d_s; // rad/s/ft
+    let density_velocity = density * x.velocity;
+    let d_force_turn_d_s = normal_coefficient * density_velocity * p.half_over_m
+        + turn_factor * d_normal_coefficient_d_s; // rad/s/ft
     let d_c_m_d_s = dynamic_pressure
         * (p.c_m_eta_1_inv_omega_1_2 * c_n_1 + p.c_m_eta_2_inv_omega_2_2 * c_n_2
             + p.c_m_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
@@ -468,10 +455,11 @@ pub fn parameter_jacobian_values<R: Real>(
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
     let inv_velocity = x.velocity.recip();
-    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
-        * inv_velocity;
+    let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+        * (p.earth_curvature * radius_ratio
+            * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
@@ -481,8 +469,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_normal_coefficient_d_omega_1 = -p.inv_omega_1 * eta_static_1
         * (sin_alpha * p.two_c_t_eta_1 + R::TWO * p.c_l_eta_1); // s/rad
     let d_force_turn_d_omega_1 = turn_factor * d_normal_coefficient_d_omega_1;
-    let d_pitching_moment_d_omega_1 = -p.d_pitching_moment_d_omega_1_constant_1
-        * reference_force * eta_static_1; // lb*s/rad
+    let d_pitching_moment_d_omega_1 = -p
+        .two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1 * reference_force
+        * eta_static_1; // lb*s/rad
     let d_pitch_acceleration_d_omega_1 = d_pitching_moment_d_omega_1 * p.inv_i_yy; // 1/s
     let d_chi_rate_1_d_omega_1 = -x.chi_1 * p.d_chi_decay_1_d_omega_1; // ft^0.5*slug^0.5/rad
     let d_path_force_d_omega_2 = reference_force * p.inv_omega_2 * eta_static_2
@@ -491,8 +480,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_normal_coefficient_d_omega_2 = -p.inv_omega_2 * eta_static_2
         * (sin_alpha * p.two_c_t_eta_2 + R::TWO * p.c_l_eta_2); // s/rad
     let d_force_turn_d_omega_2 = turn_factor * d_normal_coefficient_d_omega_2;
-    let d_pitching_moment_d_omega_2 = -p.d_pitching_moment_d_omega_2_constant_1
-        * reference_force * eta_static_2; // lb*s/rad
+    let d_pitching_moment_d_omega_2 = -p
+        .two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2 * reference_force
+        * eta_static_2; // lb*s/rad
     let d_pitch_acceleration_d_omega_2 = d_pitching_moment_d_omega_2 * p.inv_i_yy; // 1/s
     let d_chi_rate_2_d_omega_2 = -x.chi_2 * p.d_chi_decay_2_d_omega_2; // ft^0.5*slug^0.5/rad
     let d_path_force_d_omega_3 = reference_force * p.inv_omega_3 * eta_static_3
@@ -501,8 +491,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_normal_coefficient_d_omega_3 = -p.inv_omega_3 * eta_static_3
         * (sin_alpha * p.two_c_t_eta_3 + R::TWO * p.c_l_eta_3); // s/rad
     let d_force_turn_d_omega_3 = turn_factor * d_normal_coefficient_d_omega_3;
-    let d_pitching_moment_d_omega_3 = -p.d_pitching_moment_d_omega_3_constant_1
-        * reference_force * eta_static_3; // lb*s/rad
+    let d_pitching_moment_d_omega_3 = -p
+        .two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3 * reference_force
+        * eta_static_3; // lb*s/rad
     let d_pitch_acceleration_d_omega_3 = d_pitching_moment_d_omega_3 * p.inv_i_yy; // 1/s
     let d_chi_rate_3_d_omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
     let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // ft^0.5*slug^0.5/s
@@ -557,17 +548,17 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_path_force_d_canard_slaving = cos_alpha * d_thrust_d_canard_slaving
         - d_drag_d_canard_slaving; // lb/ft
     let d_velocity_rate_d_canard_slaving = d_path_force_d_canard_slaving * p.inv_m; // ft/s^2
-    let d_c_l_d_canard_slaving_term_1 = p.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2
-        * u.delta_e;
-    let d_c_l_d_canard_slaving_term_2 = p.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2
-        * u.delta_e;
-    let d_c_l_d_canard_slaving_term_3 = p.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2
-        * u.delta_e;
-    let d_c_l_d_canard_slaving_term_4 = d_c_l_d_canard_slaving_term_1
-        + d_c_l_d_canard_slaving_term_2
-        + d_c_l_d_canard_slaving_term_3;
+    let c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e = p
+        .c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e;
+    let c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e = p
+        .c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e;
+    let c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e = p
+        .c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
+    let d_c_l_d_canard_slaving_term_1 = c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
+        + c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
+        + c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e;
     let d_c_l_d_canard_slaving = -p.c_l_delta_e
-        * (p.inv_c_l_delta_c * reference_force * d_c_l_d_canard_slaving_term_4
+        * (p.inv_c_l_delta_c * reference_force * d_c_l_d_canard_slaving_term_1
             + u.delta_e);
     let d_normal_coefficient_d_canard_slaving = sin_alpha * d_c_t_d_canard_slaving
         + d_c_l_d_canard_slaving;
@@ -585,7 +576,8 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_pitch_acceleration_d_canard_slaving = d_pitching_moment_d_canard_slaving
         * p.inv_i_yy; // rad/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+        * (radius_ratio
+            * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // ft^0.5*slug^0.5/s
@@ -601,8 +593,9 @@ pub fn parameter_jacobian_values<R: Real>(
         - d_drag_d_c_l_delta_e; // lb*rad/ft
     let d_velocity_rate_d_c_l_delta_e = d_path_force_d_c_l_delta_e * p.inv_m; // ft*rad/s^2
     let d_c_l_d_c_l_delta_e = p.canard_slaving_over_c_l_delta_c * reference_force
-        * (-d_c_l_d_canard_slaving_term_1 - d_c_l_d_canard_slaving_term_2
-            - d_c_l_d_canard_slaving_term_3)
+        * (-c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
+            - c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
+            - c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e)
         + u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
     let d_normal_coefficient_d_c_l_delta_e = sin_alpha * d_c_t_d_c_l_delta_e
         + d_c_l_d_c_l_delta_e; // rad
@@ -613,21 +606,21 @@ pub fn parameter_jacobian_values<R: Real>(
         + p.z_t * d_thrust_d_c_l_delta_e; // lb*rad
     let d_pitch_acceleration_d_c_l_delta_e = d_pitching_moment_d_c_l_delta_e
         * p.inv_i_yy; // rad^2/s^2
-    let d_c_t_d_c_l_delta_c = p.d_c_t_d_c_l_delta_c_constant_1 * reference_force
-        * d_c_t_d_canard_slaving_term_1; // rad
+    let d_c_t_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+        * reference_force * d_c_t_d_canard_slaving_term_1; // rad
     let d_thrust_d_c_l_delta_c = reference_force * d_c_t_d_c_l_delta_c; // lb*rad/ft
-    let d_c_d_d_c_l_delta_c = p.d_c_t_d_c_l_delta_c_constant_1
+    let d_c_d_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_c_d_d_canard_slaving_term_1; // rad
     let d_drag_d_c_l_delta_c = reference_force * d_c_d_d_c_l_delta_c; // lb*rad/ft
     let d_path_force_d_c_l_delta_c = cos_alpha * d_thrust_d_c_l_delta_c
         - d_drag_d_c_l_delta_c; // lb*rad/ft
     let d_velocity_rate_d_c_l_delta_c = d_path_force_d_c_l_delta_c * p.inv_m; // ft*rad/s^2
-    let d_c_l_d_c_l_delta_c = p.d_c_t_d_c_l_delta_c_constant_1 * reference_force
-        * d_c_l_d_canard_slaving_term_4 + canard_commanded; // rad
+    let d_c_l_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+        * reference_force * d_c_l_d_canard_slaving_term_1 + canard_commanded; // rad
     let d_normal_coefficient_d_c_l_delta_c = sin_alpha * d_c_t_d_c_l_delta_c
         + d_c_l_d_c_l_delta_c; // rad
     let d_force_turn_d_c_l_delta_c = turn_factor * d_normal_coefficient_d_c_l_delta_c; // rad^2/s
-    let d_c_m_d_c_l_delta_c = p.d_c_t_d_c_l_delta_c_constant_1
+    let d_c_m_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_c_m_d_canard_slaving_term_1; // rad
     let d_pitching_moment_d_c_l_delta_c = p.c_bar * reference_force * d_c_m_d_c_l_delta_c
         + p.z_t * d_thrust_d_c_l_delta_c; // lb*rad
@@ -666,29 +659,29 @@ pub fn parameter_jacobian_values<R: Real>(
         * (p.c_bar_c_m_eta_1 * u.delta_e + p.z_t_c_t_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_1_delta_e = d_pitching_moment_d_c_n_1_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d2_normal_coefficient_d_alpha_d_chi_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_c_n_1_delta_c_term_1 = d2_normal_coefficient_d_alpha_d_chi_1
-        - p.c_d_eta_1;
+    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
+    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha_c_t_eta_1 - p.c_d_eta_1;
     let d_path_force_d_c_n_1_delta_c = reference_force_2 * p.inv_omega_1_2
-        * canard_deflection * d_path_force_d_c_n_1_delta_c_term_1; // lb*slug^0.5*rad/ft^1.5
+        * canard_deflection * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_1_delta_c = d_path_force_d_c_n_1_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
     let d_normal_coefficient_d_c_n_1_delta_c = p.inv_omega_1_2 * reference_force
-        * canard_deflection * d_normal_coefficient_d_chi_1; // slug^0.5*rad/ft^0.5
+        * canard_deflection * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // slug^0.5*rad/ft^0.5
     let d_force_turn_d_c_n_1_delta_c = turn_factor
         * d_normal_coefficient_d_c_n_1_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_delta_c = p
-        .d_pitching_moment_d_c_n_1_delta_c_constant_1 * reference_force_2
+        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * reference_force_2
         * canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_1_delta_c = d_pitching_moment_d_c_n_1_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_0 = reference_force_2 * p.inv_omega_1_2
-        * d_path_force_d_c_n_1_delta_c_term_1; // lb*slug^0.5/ft^1.5
+        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
     let d_normal_coefficient_d_c_n_1_0 = p.inv_omega_1_2 * reference_force
-        * d_normal_coefficient_d_chi_1; // slug^0.5/ft^0.5
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // slug^0.5/ft^0.5
     let d_force_turn_d_c_n_1_0 = turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_0 = p.d_pitching_moment_d_c_n_1_delta_c_constant_1
-        * reference_force_2; // lb*slug^0.5/ft^0.5
+    let d_pitching_moment_d_c_n_1_0 = p
+        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_alpha_2 = reference_force_2 * p.inv_omega_2_2
         * (cos_alpha * p.c_t_eta_2 * alpha_2 - p.c_d_eta_2 * alpha_2); // lb*slug^0.5*rad^2/ft^1.5
@@ -722,29 +715,29 @@ pub fn parameter_jacobian_values<R: Real>(
         * (p.c_bar_c_m_eta_2 * u.delta_e + p.z_t_c_t_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_delta_e = d_pitching_moment_d_c_n_2_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d2_normal_coefficient_d_alpha_d_chi_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_c_n_2_delta_c_term_1 = d2_normal_coefficient_d_alpha_d_chi_2
-        - p.c_d_eta_2;
+    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
+    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha_c_t_eta_2 - p.c_d_eta_2;
     let d_path_force_d_c_n_2_delta_c = reference_force_2 * p.inv_omega_2_2
-        * canard_deflection * d_path_force_d_c_n_2_delta_c_term_1; // lb*slug^0.5*rad/ft^1.5
+        * canard_deflection * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_delta_c = d_path_force_d_c_n_2_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
     let d_normal_coefficient_d_c_n_2_delta_c = p.inv_omega_2_2 * reference_force
-        * canard_deflection * d_normal_coefficient_d_chi_2; // slug^0.5*rad/ft^0.5
+        * canard_deflection * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // slug^0.5*rad/ft^0.5
     let d_force_turn_d_c_n_2_delta_c = turn_factor
         * d_normal_coefficient_d_c_n_2_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_delta_c = p
-        .d_pitching_moment_d_c_n_2_delta_c_constant_1 * reference_force_2
+        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * reference_force_2
         * canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_delta_c = d_pitching_moment_d_c_n_2_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_0 = reference_force_2 * p.inv_omega_2_2
-        * d_path_force_d_c_n_2_delta_c_term_1; // lb*slug^0.5/ft^1.5
+        * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_2_0 = d_path_force_d_c_n_2_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
     let d_normal_coefficient_d_c_n_2_0 = p.inv_omega_2_2 * reference_force
-        * d_normal_coefficient_d_chi_2; // slug^0.5/ft^0.5
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // slug^0.5/ft^0.5
     let d_force_turn_d_c_n_2_0 = turn_factor * d_normal_coefficient_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_2_0 = p.d_pitching_moment_d_c_n_2_delta_c_constant_1
-        * reference_force_2; // lb*slug^0.5/ft^0.5
+    let d_pitching_moment_d_c_n_2_0 = p
+        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_2_0 = d_pitching_moment_d_c_n_2_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_alpha_2 = reference_force_2 * p.inv_omega_3_2
         * (cos_alpha * p.c_t_eta_3 * alpha_2 - p.c_d_eta_3 * alpha_2); // lb*slug^0.5*rad^2/ft^1.5
@@ -778,30 +771,32 @@ pub fn parameter_jacobian_values<R: Real>(
         * (p.c_bar_c_m_eta_3 * u.delta_e + p.z_t_c_t_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_delta_e = d_pitching_moment_d_c_n_3_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d2_normal_coefficient_d_alpha_d_chi_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_c_n_3_delta_c_term_1 = d2_normal_coefficient_d_alpha_d_chi_3
-        - p.c_d_eta_3;
+    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
+    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha_c_t_eta_3 - p.c_d_eta_3;
     let d_path_force_d_c_n_3_delta_c = reference_force_2 * p.inv_omega_3_2
-        * canard_deflection * d_path_force_d_c_n_3_delta_c_term_1; // lb*slug^0.5*rad/ft^1.5
+        * canard_deflection * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_delta_c = d_path_force_d_c_n_3_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
     let d_normal_coefficient_d_c_n_3_delta_c = p.inv_omega_3_2 * reference_force
-        * canard_deflection * d_normal_coefficient_d_chi_3; // slug^0.5*rad/ft^0.5
+        * canard_deflection * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // slug^0.5*rad/ft^0.5
     let d_force_turn_d_c_n_3_delta_c = turn_factor
         * d_normal_coefficient_d_c_n_3_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_delta_c = p
-        .d_pitching_moment_d_c_n_3_delta_c_constant_1 * reference_force_2
+        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * reference_force_2
         * canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_delta_c = d_pitching_moment_d_c_n_3_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_0 = reference_force_2 * p.inv_omega_3_2
-        * d_path_force_d_c_n_3_delta_c_term_1; // lb*slug^0.5/ft^1.5
+        * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_3_0 = d_path_force_d_c_n_3_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
     let d_normal_coefficient_d_c_n_3_0 = p.inv_omega_3_2 * reference_force
-        * d_normal_coefficient_d_chi_3; // slug^0.5/ft^0.5
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // slug^0.5/ft^0.5
     let d_force_turn_d_c_n_3_0 = turn_factor * d_normal_coefficient_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_3_0 = p.d_pitching_moment_d_c_n_3_delta_c_constant_1
-        * reference_force_2; // lb*slug^0.5/ft^0.5
+    let d_pitching_moment_d_c_n_3_0 = p
+        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_3_0 = d_pitching_moment_d_c_n_3_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
+    let s_density_velocity = p.s * density_velocity;
+    let pitching_moment_over_i_yy = pitching_moment * p.inv_i_yy;
 
     [
         -path_force * p.inv_m_2,
@@ -857,7 +852,7 @@ pub fn parameter_jacobian_values<R: Real>(
         d_velocity_rate_d_c_n_3_delta_e,
         d_velocity_rate_d_c_n_3_delta_c,
         d_velocity_rate_d_c_n_3_0,
-        normal_coefficient * d_reference_force_d_velocity * p.minus_half_inv_m_2,
+        normal_coefficient * s_density_velocity * p.minus_half_inv_m_2,
         d_force_turn_d_s,
         d_force_turn_d_rho_0,
         d_force_turn_d_h_0,
@@ -903,7 +898,7 @@ pub fn parameter_jacobian_values<R: Real>(
         d_force_turn_d_c_n_3_delta_e,
         d_force_turn_d_c_n_3_delta_c,
         d_force_turn_d_c_n_3_0,
-        normal_coefficient * d_reference_force_d_velocity * p.half_inv_m_2,
+        normal_coefficient * s_density_velocity * p.half_inv_m_2,
         -d_force_turn_d_s,
         -d_force_turn_d_rho_0,
         -d_force_turn_d_h_0,
@@ -949,7 +944,7 @@ pub fn parameter_jacobian_values<R: Real>(
         -d_force_turn_d_c_n_3_delta_e,
         -d_force_turn_d_c_n_3_delta_c,
         -d_force_turn_d_c_n_3_0,
-        -pitch_acceleration * p.inv_i_yy,
+        -pitching_moment_over_i_yy * p.inv_i_yy,
         d_pitch_acceleration_d_s,
         reference_force * c_m * p.inv_i_yy,
         thrust * p.inv_i_yy,

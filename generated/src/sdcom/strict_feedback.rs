@@ -103,19 +103,16 @@ pub fn g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     // Angles, (1)
     let cos_alpha = x.alpha.cos();
 
-    // Curve fits, (3)
+    // Strict-feedback form, (28)
     let alpha_2 = x.alpha * x.alpha;
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
+    let c_t_of_g_velocity = p.c_t_phi
         + p.c_t_phi_alpha_3 * alpha_3
         + p.c_t_phi_alpha_2 * alpha_2
         + p.c_t_phi_alpha * x.alpha;
+    let reference_force_c_t_of_g_velocity = reference_force * c_t_of_g_velocity;
 
-    // Derivatives with respect to phi
-    let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
-
-    // Strict-feedback form, (28)
-    cos_alpha * d_thrust_d_phi * p.inv_m
+    cos_alpha * reference_force_c_t_of_g_velocity * p.inv_m
 }
 
 /// Derivatives of the velocity rate with respect to the coloured noises chi, eq. (29).
@@ -132,26 +129,20 @@ pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 
     // Angles, (1)
     let cos_alpha = x.alpha.cos();
+    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
+    let cos_alpha_c_t_eta_1_minus_c_d_eta_1_times_reference_force = reference_force
+        * (cos_alpha_c_t_eta_1 - p.c_d_eta_1);
+    let h_V_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1_times_reference_force * p.inv_m;
+    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
+    let cos_alpha_c_t_eta_2_minus_c_d_eta_2_times_reference_force = reference_force
+        * (cos_alpha_c_t_eta_2 - p.c_d_eta_2);
+    let h_V_term_2 = cos_alpha_c_t_eta_2_minus_c_d_eta_2_times_reference_force * p.inv_m;
+    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
+    let cos_alpha_c_t_eta_3_minus_c_d_eta_3_times_reference_force = reference_force
+        * (cos_alpha_c_t_eta_3 - p.c_d_eta_3);
+    let h_V_term_3 = cos_alpha_c_t_eta_3_minus_c_d_eta_3_times_reference_force * p.inv_m;
 
-    // Derivatives with respect to chi_1
-    let d2_normal_coefficient_d_alpha_d_chi_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_1 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_normal_coefficient_d_alpha_d_chi_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_2 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_normal_coefficient_d_alpha_d_chi_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
-    let d_path_force_d_chi_3 = reference_force
-        * (d2_normal_coefficient_d_alpha_d_chi_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-
-    [d_velocity_rate_d_chi_1, d_velocity_rate_d_chi_2, d_velocity_rate_d_chi_3]
+    [h_V_term_1, h_V_term_2, h_V_term_3]
 }
 
 /// Derivative of the velocity rate with respect to the angle of attack, at frozen inputs, eq. (28). Unit:
@@ -376,15 +367,15 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
-    // Strict-feedback form, (28)
-    let c_t_of_f_eta_velocity = p.c_t_eta_1 * eta_static_1
+    // Strict-feedback form, (30)
+    let c_t_of_f_eta_gamma = p.c_t_eta_1 * eta_static_1
         + p.c_t_eta_2 * eta_static_2
         + p.c_t_eta_3 * eta_static_3;
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
     let f_gamma_eta = turn_factor
-        * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
+        * (sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma); // rad/s
     let alpha_3 = x.alpha * alpha_2;
     let c_t_of_f_gamma = p.c_t_0
         + p.c_t_phi_alpha_3 * u.phi * alpha_3
@@ -436,20 +427,21 @@ pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
 
     // Motion, (1)
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3;
 
-    // Derivatives with respect to chi_1
-    let d_normal_coefficient_d_chi_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_chi_1 = turn_factor * d_normal_coefficient_d_chi_1; // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_normal_coefficient_d_chi_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_chi_2 = turn_factor * d_normal_coefficient_d_chi_2; // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_normal_coefficient_d_chi_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_chi_3 = turn_factor * d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5
-
-    [d_force_turn_d_chi_1, d_force_turn_d_chi_2, d_force_turn_d_chi_3]
+    [
+        sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor,
+        sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor,
+        sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor,
+    ]
 }
 
 /// Derivative of the gamma rate with respect to the angle of attack, at frozen inputs, eq. (30). Unit: 1/s.
@@ -601,15 +593,15 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
-    // Strict-feedback form, (28)
-    let c_t_of_f_eta_velocity = p.c_t_eta_1 * eta_static_1
+    // Strict-feedback form, (30)
+    let c_t_of_f_eta_gamma = p.c_t_eta_1 * eta_static_1
         + p.c_t_eta_2 * eta_static_2
         + p.c_t_eta_3 * eta_static_3;
     let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
 
-    turn_factor * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma)
+    turn_factor * (sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma)
 }
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
@@ -671,16 +663,16 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
-    // Strict-feedback form, (28)
-    let c_t_of_f_eta_velocity = p.c_t_eta_1 * eta_static_1
+    // Strict-feedback form, (32)
+    let c_t_of_f_eta_alpha = p.c_t_eta_1 * eta_static_1
         + p.c_t_eta_2 * eta_static_2
         + p.c_t_eta_3 * eta_static_3;
-    let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
+    let c_l_of_f_eta_alpha = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
-    let f_alpha_eta = -f_gamma_eta; // rad/s
+    let f_alpha_eta_term_1 = turn_factor
+        * (sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
+    let f_alpha_eta = -f_alpha_eta_term_1; // rad/s
     let alpha_3 = x.alpha * alpha_2;
     let c_t_of_f_alpha = p.c_t_0
         + p.c_t_phi_alpha_3 * u.phi * alpha_3
@@ -722,20 +714,21 @@ pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
 
     // Motion, (1)
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3;
 
-    // Derivatives with respect to chi_1
-    let d_normal_coefficient_d_chi_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_chi_1 = turn_factor * d_normal_coefficient_d_chi_1; // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_normal_coefficient_d_chi_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_chi_2 = turn_factor * d_normal_coefficient_d_chi_2; // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_normal_coefficient_d_chi_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_chi_3 = turn_factor * d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5
-
-    [-d_force_turn_d_chi_1, -d_force_turn_d_chi_2, -d_force_turn_d_chi_3]
+    [
+        -sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor,
+        -sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor,
+        -sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor,
+    ]
 }
 
 /// Derivative of the alpha rate with respect to the angle of attack, at frozen inputs, eq. (32). Unit: 1/s.
@@ -888,17 +881,17 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
-    // Strict-feedback form, (28)
-    let c_t_of_f_eta_velocity = p.c_t_eta_1 * eta_static_1
+    // Strict-feedback form, (32)
+    let c_t_of_f_eta_alpha = p.c_t_eta_1 * eta_static_1
         + p.c_t_eta_2 * eta_static_2
         + p.c_t_eta_3 * eta_static_3;
-    let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
+    let c_l_of_f_eta_alpha = p.c_l_eta_1 * eta_static_1
         + p.c_l_eta_2 * eta_static_2
         + p.c_l_eta_3 * eta_static_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha * c_t_of_f_eta_velocity + c_l_of_f_eta_gamma); // rad/s
+    let f_alpha_eta_term_1 = turn_factor
+        * (sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
 
-    -f_gamma_eta
+    -f_alpha_eta_term_1
 }
 
 /// Part of the pitch_rate rate that is left to f, eq. (34). Unit: rad/s^2.
@@ -945,12 +938,17 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
-    // Strict-feedback form, (28)
-    let c_t_of_f_eta_velocity = p.c_t_eta_1 * eta_static_1
+    // Strict-feedback form, (34)
+    let c_t_of_f_eta_pitch_rate = p.c_t_eta_1 * eta_static_1
         + p.c_t_eta_2 * eta_static_2
         + p.c_t_eta_3 * eta_static_3;
+    let c_m_of_f_eta_pitch_rate = p.c_m_eta_1 * eta_static_1
+        + p.c_m_eta_2 * eta_static_2
+        + p.c_m_eta_3 * eta_static_3;
+    let f_pitch_rate_eta = p.inv_i_yy * reference_force
+        * (p.z_t * c_t_of_f_eta_pitch_rate + p.c_bar * c_m_of_f_eta_pitch_rate); // rad/s^2
     let alpha_3 = x.alpha * alpha_2;
-    let c_t_of_f_alpha = p.c_t_0
+    let c_t_of_f_pitch_rate = p.c_t_0
         + p.c_t_phi_alpha_3 * u.phi * alpha_3
         + p.c_t_phi_alpha_2 * u.phi * alpha_2
         + p.c_t_phi_alpha * u.phi * x.alpha
@@ -958,18 +956,14 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * alpha_2
         + p.c_t_alpha * x.alpha;
-    let c_m_of_f_eta_pitch_rate = p.c_m_eta_1 * eta_static_1
-        + p.c_m_eta_2 * eta_static_2
-        + p.c_m_eta_3 * eta_static_3;
-    let f_pitch_rate_eta = p.inv_i_yy * reference_force
-        * (p.z_t * c_t_of_f_eta_velocity + p.c_bar * c_m_of_f_eta_pitch_rate); // rad/s^2
     let c_m_of_f_pitch_rate = p.c_m_0
         + p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_c * canard_commanded;
 
     p.inv_i_yy * reference_force
-        * (p.z_t * c_t_of_f_alpha + p.c_bar * c_m_of_f_pitch_rate) + f_pitch_rate_eta
+        * (p.z_t * c_t_of_f_pitch_rate + p.c_bar * c_m_of_f_pitch_rate)
+        + f_pitch_rate_eta
 }
 
 /// Coefficient of delta_e (rad) in the pitch_rate rate, eq. (34). Unit: 1/s^2.
@@ -999,27 +993,20 @@ pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
     let reference_force = dynamic_pressure * p.s; // lb/ft
+    let c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_reference_force = reference_force
+        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1;
+    let h_Q_term_1 = c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_reference_force
+        * p.inv_i_yy;
+    let c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_reference_force = reference_force
+        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2;
+    let h_Q_term_2 = c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_reference_force
+        * p.inv_i_yy;
+    let c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_reference_force = reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3;
+    let h_Q_term_3 = c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_reference_force
+        * p.inv_i_yy;
 
-    // Derivatives with respect to chi_1
-    let d_pitching_moment_d_chi_1 = reference_force
-        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_pitching_moment_d_chi_2 = reference_force
-        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_pitching_moment_d_chi_3 = reference_force
-        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    [
-        d_pitch_acceleration_d_chi_1,
-        d_pitch_acceleration_d_chi_2,
-        d_pitch_acceleration_d_chi_3,
-    ]
+    [h_Q_term_1, h_Q_term_2, h_Q_term_3]
 }
 
 /// Derivative of the pitch_rate rate with respect to the angle of attack, at frozen inputs, eq. (34). Unit:
@@ -1112,8 +1099,8 @@ pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
     let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
 
-    // Strict-feedback form, (28)
-    let c_t_of_f_eta_velocity = p.c_t_eta_1 * eta_static_1
+    // Strict-feedback form, (34)
+    let c_t_of_f_eta_pitch_rate = p.c_t_eta_1 * eta_static_1
         + p.c_t_eta_2 * eta_static_2
         + p.c_t_eta_3 * eta_static_3;
     let c_m_of_f_eta_pitch_rate = p.c_m_eta_1 * eta_static_1
@@ -1121,7 +1108,7 @@ pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_m_eta_3 * eta_static_3;
 
     p.inv_i_yy * reference_force
-        * (p.z_t * c_t_of_f_eta_velocity + p.c_bar * c_m_of_f_eta_pitch_rate)
+        * (p.z_t * c_t_of_f_eta_pitch_rate + p.c_bar * c_m_of_f_eta_pitch_rate)
 }
 
 /// Total derivative of the pitch acceleration with respect to the elevator, through the generalized forces as

@@ -328,9 +328,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to alpha_gust
     let d_normal_coefficient_d_alpha_gust = sin_alpha_d_c_t_d_alpha + d_c_l_d_alpha; // 1/rad
 
-    // Derivatives with respect to parameters
-    let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
-
     // Derivatives with respect to velocity
     let d2_generalized_force_1_d_velocity_d_velocity = c_n_1 * p.s * density; // slug^0.5/ft^1.5
     let d2_eta_static_1_d_velocity_d_velocity = d2_generalized_force_1_d_velocity_d_velocity
@@ -458,7 +455,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * d_radius_ratio_d_altitude_2
             + R::TWO * radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let d2_density_ratio_d_altitude_d_altitude = d_density_ratio_d_h_0 * p.inv_h_s; // 1/ft^2
+    let density_ratio_over_h_s = density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
     let d2_density_d_altitude_d_altitude = p.rho_0
         * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * velocity_2

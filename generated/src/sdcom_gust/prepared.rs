@@ -269,7 +269,7 @@ pub struct Prepared<R> {
     /// `canard_slaving * inv_c_l_delta_c`.
     pub canard_slaving_over_c_l_delta_c: R,
     /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-    pub d_c_t_d_c_l_delta_c_constant_1: R,
+    pub canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
     /// `R::from_f64(-0.5) * inv_m_2`.
     pub minus_half_inv_m_2: R,
     /// `R::HALF * inv_m`.
@@ -318,11 +318,11 @@ pub struct Prepared<R> {
     /// `R::HALF * c_m_eta_3 * inv_omega_3_2`.
     pub half_c_m_eta_3_inv_omega_3_2: R,
     /// `inv_omega_1 * (2 * c_bar_c_m_eta_1 + 2 * z_t_c_t_eta_1)`.
-    pub d_pitching_moment_d_omega_1_constant_1: R,
+    pub two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1: R,
     /// `inv_omega_2 * (2 * c_bar_c_m_eta_2 + 2 * z_t_c_t_eta_2)`.
-    pub d_pitching_moment_d_omega_2_constant_1: R,
+    pub two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2: R,
     /// `inv_omega_3 * (2 * c_bar_c_m_eta_3 + 2 * z_t_c_t_eta_3)`.
-    pub d_pitching_moment_d_omega_3_constant_1: R,
+    pub two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3: R,
     /// `c_m_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
     pub c_m_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
     /// `c_m_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
@@ -334,19 +334,19 @@ pub struct Prepared<R> {
     /// `c_bar * inv_i_yy`.
     pub c_bar_over_i_yy: R,
     /// `inv_omega_1_2 * c_bar_c_m_eta_1_plus_z_t_c_t_eta_1`.
-    pub d_pitching_moment_d_c_n_1_alpha_2_constant_1: R,
+    pub c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2: R,
     /// `c_bar * c_m_eta_1`.
     pub c_bar_c_m_eta_1: R,
     /// `z_t * c_t_eta_1`.
     pub z_t_c_t_eta_1: R,
     /// `inv_omega_2_2 * c_bar_c_m_eta_2_plus_z_t_c_t_eta_2`.
-    pub d_pitching_moment_d_c_n_2_alpha_2_constant_1: R,
+    pub c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2: R,
     /// `c_bar * c_m_eta_2`.
     pub c_bar_c_m_eta_2: R,
     /// `z_t * c_t_eta_2`.
     pub z_t_c_t_eta_2: R,
     /// `inv_omega_3_2 * c_bar_c_m_eta_3_plus_z_t_c_t_eta_3`.
-    pub d_pitching_moment_d_c_n_3_alpha_2_constant_1: R,
+    pub c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2: R,
     /// `c_bar * c_m_eta_3`.
     pub c_bar_c_m_eta_3: R,
     /// `z_t * c_t_eta_3`.
@@ -556,7 +556,9 @@ impl<R> Prepared<R> {
             c_l_delta_e_over_c_l_delta_c: f(&self.c_l_delta_e_over_c_l_delta_c),
             minus_two_g_over_r_e: f(&self.minus_two_g_over_r_e),
             canard_slaving_over_c_l_delta_c: f(&self.canard_slaving_over_c_l_delta_c),
-            d_c_t_d_c_l_delta_c_constant_1: f(&self.d_c_t_d_c_l_delta_c_constant_1),
+            canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: f(
+                &self.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
+            ),
             minus_half_inv_m_2: f(&self.minus_half_inv_m_2),
             half_over_m: f(&self.half_over_m),
             c_l_eta_1_inv_omega_1_2: f(&self.c_l_eta_1_inv_omega_1_2),
@@ -586,14 +588,14 @@ impl<R> Prepared<R> {
             half_c_m_eta_1_inv_omega_1_2: f(&self.half_c_m_eta_1_inv_omega_1_2),
             half_c_m_eta_2_inv_omega_2_2: f(&self.half_c_m_eta_2_inv_omega_2_2),
             half_c_m_eta_3_inv_omega_3_2: f(&self.half_c_m_eta_3_inv_omega_3_2),
-            d_pitching_moment_d_omega_1_constant_1: f(
-                &self.d_pitching_moment_d_omega_1_constant_1,
+            two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1: f(
+                &self.two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1,
             ),
-            d_pitching_moment_d_omega_2_constant_1: f(
-                &self.d_pitching_moment_d_omega_2_constant_1,
+            two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2: f(
+                &self.two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2,
             ),
-            d_pitching_moment_d_omega_3_constant_1: f(
-                &self.d_pitching_moment_d_omega_3_constant_1,
+            two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3: f(
+                &self.two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3,
             ),
             c_m_eta_1_c_n_1_delta_c_inv_omega_1_2: f(
                 &self.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2,
@@ -606,18 +608,18 @@ impl<R> Prepared<R> {
             ),
             z_t_over_i_yy: f(&self.z_t_over_i_yy),
             c_bar_over_i_yy: f(&self.c_bar_over_i_yy),
-            d_pitching_moment_d_c_n_1_alpha_2_constant_1: f(
-                &self.d_pitching_moment_d_c_n_1_alpha_2_constant_1,
+            c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2: f(
+                &self.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2,
             ),
             c_bar_c_m_eta_1: f(&self.c_bar_c_m_eta_1),
             z_t_c_t_eta_1: f(&self.z_t_c_t_eta_1),
-            d_pitching_moment_d_c_n_2_alpha_2_constant_1: f(
-                &self.d_pitching_moment_d_c_n_2_alpha_2_constant_1,
+            c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2: f(
+                &self.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2,
             ),
             c_bar_c_m_eta_2: f(&self.c_bar_c_m_eta_2),
             z_t_c_t_eta_2: f(&self.z_t_c_t_eta_2),
-            d_pitching_moment_d_c_n_3_alpha_2_constant_1: f(
-                &self.d_pitching_moment_d_c_n_3_alpha_2_constant_1,
+            c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2: f(
+                &self.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2,
             ),
             c_bar_c_m_eta_3: f(&self.c_bar_c_m_eta_3),
             z_t_c_t_eta_3: f(&self.z_t_c_t_eta_3),
@@ -701,20 +703,20 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
-    let chi_share_1_term_1 = R::ONE
+    let one_minus_variance_matching_minus_moment_matching = R::ONE
         - p.variance_matching
         - p.moment_matching;
-    let chi_share_1 = p.zeta_1 * chi_share_1_term_1
+    let chi_share_1 = p.zeta_1 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * moment_matching_over_zeta_1;
     let inv_omega_1 = p.omega_1.recip();
     let chi_diffusion_1 = chi_share_1 * p.sigma_1 * inv_omega_1; // (ft*slug)^0.5/s^0.5
-    let chi_share_2 = p.zeta_2 * chi_share_1_term_1
+    let chi_share_2 = p.zeta_2 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * moment_matching_over_zeta_2;
     let inv_omega_2 = p.omega_2.recip();
     let chi_diffusion_2 = chi_share_2 * p.sigma_2 * inv_omega_2; // (ft*slug)^0.5/s^0.5
-    let chi_share_3 = p.zeta_3 * chi_share_1_term_1
+    let chi_share_3 = p.zeta_3 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * moment_matching_over_zeta_3;
     let inv_omega_3 = p.omega_3.recip();
@@ -883,7 +885,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
         minus_two_g_over_r_e: R::from_f64(-2.0) * p.g * inv_r_e,
         canard_slaving_over_c_l_delta_c: p.canard_slaving * inv_c_l_delta_c,
-        d_c_t_d_c_l_delta_c_constant_1: p.canard_slaving * p.c_l_delta_e
+        canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: p.canard_slaving * p.c_l_delta_e
             * inv_c_l_delta_c_2,
         minus_half_inv_m_2: R::from_f64(-0.5) * inv_m_2,
         half_over_m: R::HALF * inv_m,
@@ -911,11 +913,11 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         half_c_m_eta_1_inv_omega_1_2: R::HALF * p.c_m_eta_1 * inv_omega_1_2,
         half_c_m_eta_2_inv_omega_2_2: R::HALF * p.c_m_eta_2 * inv_omega_2_2,
         half_c_m_eta_3_inv_omega_3_2: R::HALF * p.c_m_eta_3 * inv_omega_3_2,
-        d_pitching_moment_d_omega_1_constant_1: inv_omega_1
+        two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1: inv_omega_1
             * (R::TWO * c_bar_c_m_eta_1 + R::TWO * z_t_c_t_eta_1),
-        d_pitching_moment_d_omega_2_constant_1: inv_omega_2
+        two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2: inv_omega_2
             * (R::TWO * c_bar_c_m_eta_2 + R::TWO * z_t_c_t_eta_2),
-        d_pitching_moment_d_omega_3_constant_1: inv_omega_3
+        two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3: inv_omega_3
             * (R::TWO * c_bar_c_m_eta_3 + R::TWO * z_t_c_t_eta_3),
         c_m_eta_1_c_n_1_delta_c_inv_omega_1_2: p.c_m_eta_1 * p.c_n_1_delta_c
             * inv_omega_1_2,
@@ -925,15 +927,15 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
             * inv_omega_3_2,
         z_t_over_i_yy: p.z_t * inv_i_yy,
         c_bar_over_i_yy: p.c_bar * inv_i_yy,
-        d_pitching_moment_d_c_n_1_alpha_2_constant_1: inv_omega_1_2
+        c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2: inv_omega_1_2
             * c_bar_c_m_eta_1_plus_z_t_c_t_eta_1,
         c_bar_c_m_eta_1,
         z_t_c_t_eta_1,
-        d_pitching_moment_d_c_n_2_alpha_2_constant_1: inv_omega_2_2
+        c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2: inv_omega_2_2
             * c_bar_c_m_eta_2_plus_z_t_c_t_eta_2,
         c_bar_c_m_eta_2,
         z_t_c_t_eta_2,
-        d_pitching_moment_d_c_n_3_alpha_2_constant_1: inv_omega_3_2
+        c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2: inv_omega_3_2
             * c_bar_c_m_eta_3_plus_z_t_c_t_eta_3,
         c_bar_c_m_eta_3,
         z_t_c_t_eta_3,

@@ -219,30 +219,27 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
     let gamma_rate = force_turn - gravity_turn_cos_gamma; // rad/s
 
     // Strict-feedback form, (31)
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0
-        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0); // rad
-    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3;
+    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
+    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
+        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0);
+    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - gravity_turn_cos_gamma
         + f_gamma_eta; // rad/s
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let g_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
+    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
 
     // Printed form, (27)
-    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
-    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
+    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
         + f_gamma
         + g_gamma * x.alpha; // rad/s
 
@@ -344,18 +341,15 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
     let gamma_rate = force_turn - gravity_turn_cos_gamma; // rad/s
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 
-    // Strict-feedback form, (31)
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
-    let f_alpha_eta = -f_gamma_eta; // rad/s
+    // Strict-feedback form, (33)
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let f_alpha_eta_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3;
+    let f_alpha_eta_term_2 = turn_factor * f_alpha_eta_term_1;
+    let f_alpha_eta = -f_alpha_eta_term_2; // rad/s
     let f_alpha = gravity_turn_cos_gamma
         - turn_factor
             * (p.c_l_0 + c_l_alpha_alpha
@@ -365,10 +359,9 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Printed form, (27)
     let alpha_rate_printed = turn_factor
-        * (-d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
-            - d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
-            - d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3) + f_alpha
-        + x.pitch_rate; // rad/s
+        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
+            - sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
+            - sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3) + f_alpha + x.pitch_rate; // rad/s
 
     alpha_rate - alpha_rate_printed
 }
@@ -544,10 +537,10 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let thrust = reference_force * c_t; // lb/ft
 
     // Strict-feedback form, (28)
-    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
-        * (p.c_t_alpha + p.c_t_phi_alpha * u.phi); // 1/rad
+    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
+        * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
     let alpha_slope_velocity = reference_force * p.inv_m
-        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
+        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
@@ -654,9 +647,9 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_t_eta_3 * eta_3;
 
     // Strict-feedback form, (30)
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let alpha_slope_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
+    let alpha_slope_gamma = turn_factor * alpha_slope_gamma_over_turn_factor; // rad/s/rad
 
     // Derivatives with respect to alpha
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
@@ -687,7 +680,7 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + d_c_l_d_alpha; // 1/rad
     let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
 
-    d_force_turn_d_alpha - g_gamma
+    d_force_turn_d_alpha - alpha_slope_gamma
 }
 
 /// H of the alpha row in the exact form less that of the printed one, eq. (32). Unit: rad/s/rad.
@@ -758,11 +751,11 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
 
-    // Strict-feedback form, (30)
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    // Strict-feedback form, (32)
+    let alpha_slope_alpha_term_1 = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
-    let alpha_slope_alpha = -g_gamma; // rad/s/rad
+    let alpha_slope_alpha_term_2 = turn_factor * alpha_slope_alpha_term_1;
+    let alpha_slope_alpha = -alpha_slope_alpha_term_2; // rad/s/rad
 
     // Derivatives with respect to alpha
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad

@@ -83,7 +83,6 @@ pub fn diffusion_values<R: Real>(
     let density = p.rho_0 * density_ratio; // slug/ft^3
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
@@ -92,22 +91,23 @@ pub fn diffusion_values<R: Real>(
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Strict-feedback form, (28)
+    let dynamic_pressure_s = dynamic_pressure * p.s;
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
-    let alpha_slope_velocity = reference_force * p.inv_m
-        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let alpha_slope_velocity = dynamic_pressure_s * p.inv_m
+        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
+    let alpha_slope_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
-    let alpha_slope_alpha = -g_gamma; // rad/s/rad
-    let alpha_slope_pitch_rate = reference_force * p.inv_i_yy
+    let alpha_slope_gamma = turn_factor * alpha_slope_gamma_over_turn_factor; // rad/s/rad
+    let alpha_slope_alpha = -alpha_slope_gamma; // rad/s/rad
+    let alpha_slope_pitch_rate = dynamic_pressure_s * p.inv_i_yy
         * (p.c_bar_c_m_alpha + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
 
     [
         alpha_slope_velocity * p.w_alpha,
         x.velocity * p.w_gamma,
-        g_gamma * p.w_alpha,
+        alpha_slope_gamma * p.w_alpha,
         alpha_slope_alpha * p.w_alpha,
         p.w_q,
         alpha_slope_pitch_rate * p.w_alpha,
@@ -184,11 +184,6 @@ pub fn drift_and_diffusion<R: Real>(
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Motion, (1)
     let altitude_rate = x.velocity * sin_gamma; // ft/s
 
@@ -199,12 +194,15 @@ pub fn drift_and_diffusion<R: Real>(
 
     // Strict-feedback form, (29)
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft/s^2
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
@@ -213,29 +211,27 @@ pub fn drift_and_diffusion<R: Real>(
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
+    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi;
     let alpha_slope_velocity = reference_force * p.inv_m
-        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
+        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
+    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
     let c_t_phi_phi = p.c_t_phi * u.phi;
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0); // rad
+    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
+        + sin_alpha * (c_t_phi_phi + p.c_t_0);
     let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
+    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - gravity_turn_cos_gamma
         + f_gamma_eta; // rad/s
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let g_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
+    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
         + c_t_alpha_alpha
@@ -246,9 +242,9 @@ pub fn drift_and_diffusion<R: Real>(
         + f_alpha_eta; // rad/s
     let alpha_slope_alpha = -g_gamma; // rad/s/rad
     let f_pitch_rate_eta = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3); // rad/s^2
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2); // rad/s^2
     let f_pitch_rate = reference_force * p.inv_i_yy
         * (p.z_t * f_alpha_term_1
             + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
@@ -263,22 +259,22 @@ pub fn drift_and_diffusion<R: Real>(
             + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let gamma_rate_printed_term_1 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
         * x.chi_1;
-    let gamma_rate_printed_term_2 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
         * x.chi_2;
-    let gamma_rate_printed_term_3 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
         * x.chi_3;
-    let slope_of_gamma_rate_printed_in_turn_factor = gamma_rate_printed_term_1
-        + gamma_rate_printed_term_2
-        + gamma_rate_printed_term_3; // rad
-    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
+    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
         + f_gamma
         + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed =
-        turn_factor * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2 - gamma_rate_printed_term_3)
-        + f_alpha
-        + x.pitch_rate; // rad/s
+    let alpha_rate_printed = turn_factor
+        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + f_alpha + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed = reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
             + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
@@ -352,7 +348,6 @@ pub fn noise_increment<R: Real>(
     let density = p.rho_0 * density_ratio; // slug/ft^3
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
     let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
@@ -361,23 +356,24 @@ pub fn noise_increment<R: Real>(
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Strict-feedback form, (28)
+    let dynamic_pressure_s = dynamic_pressure * p.s;
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
-    let alpha_slope_velocity = reference_force * p.inv_m
-        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi;
+    let alpha_slope_velocity = dynamic_pressure_s * p.inv_m
+        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
+    let alpha_slope_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
-    let alpha_slope_alpha = -g_gamma; // rad/s/rad
-    let alpha_slope_pitch_rate = reference_force * p.inv_i_yy
+    let alpha_slope_gamma = turn_factor * alpha_slope_gamma_over_turn_factor; // rad/s/rad
+    let alpha_slope_alpha = -alpha_slope_gamma; // rad/s/rad
+    let alpha_slope_pitch_rate = dynamic_pressure_s * p.inv_i_yy
         * (p.c_bar_c_m_alpha + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {
         velocity: alpha_slope_velocity * p.w_alpha * dw.w_alpha,
         altitude: x.velocity * p.w_gamma * dw.w_gamma,
-        gamma: g_gamma * p.w_alpha * dw.w_alpha,
+        gamma: alpha_slope_gamma * p.w_alpha * dw.w_alpha,
         alpha: alpha_slope_alpha * p.w_alpha * dw.w_alpha + p.w_q * dw.w_q,
         pitch_rate: alpha_slope_pitch_rate * p.w_alpha * dw.w_alpha,
         chi_1: p.chi_diffusion_1 * dw.xi_1,
@@ -445,11 +441,6 @@ pub fn drift_and_noise_increment<R: Real>(
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Motion, (1)
     let altitude_rate = x.velocity * sin_gamma; // ft/s
 
@@ -460,12 +451,15 @@ pub fn drift_and_noise_increment<R: Real>(
 
     // Strict-feedback form, (29)
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft/s^2
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
@@ -474,29 +468,27 @@ pub fn drift_and_noise_increment<R: Real>(
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
+    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
+        * c_t_alpha_plus_c_t_phi_alpha_phi;
     let alpha_slope_velocity = reference_force * p.inv_m
-        * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha); // ft/s^2/rad
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
+        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
+    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
     let c_t_phi_phi = p.c_t_phi * u.phi;
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0); // rad
+    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
+        + sin_alpha * (c_t_phi_phi + p.c_t_0);
     let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
+    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - gravity_turn_cos_gamma
         + f_gamma_eta; // rad/s
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let g_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
+    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
         + c_t_alpha_alpha
@@ -507,9 +499,9 @@ pub fn drift_and_noise_increment<R: Real>(
         + f_alpha_eta; // rad/s
     let alpha_slope_alpha = -g_gamma; // rad/s/rad
     let f_pitch_rate_eta = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3); // rad/s^2
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2); // rad/s^2
     let f_pitch_rate = reference_force * p.inv_i_yy
         * (p.z_t * f_alpha_term_1
             + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
@@ -524,22 +516,22 @@ pub fn drift_and_noise_increment<R: Real>(
             + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let gamma_rate_printed_term_1 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
         * x.chi_1;
-    let gamma_rate_printed_term_2 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
         * x.chi_2;
-    let gamma_rate_printed_term_3 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
         * x.chi_3;
-    let slope_of_gamma_rate_printed_in_turn_factor = gamma_rate_printed_term_1
-        + gamma_rate_printed_term_2
-        + gamma_rate_printed_term_3; // rad
-    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
+    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
         + f_gamma
         + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed =
-        turn_factor * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2 - gamma_rate_printed_term_3)
-        + f_alpha
-        + x.pitch_rate; // rad/s
+    let alpha_rate_printed = turn_factor
+        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + f_alpha + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed = reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
             + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2

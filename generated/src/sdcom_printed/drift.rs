@@ -59,11 +59,6 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Motion, (1)
     let altitude_rate = x.velocity * sin_gamma; // ft/s
 
@@ -74,12 +69,15 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
 
     // Strict-feedback form, (29)
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft/s^2
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
@@ -87,25 +85,23 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
         - gravity * sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
+    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
     let c_t_phi_phi = p.c_t_phi * u.phi;
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0); // rad
+    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
+        + sin_alpha * (c_t_phi_phi + p.c_t_0);
     let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
+    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - gravity_turn_cos_gamma
         + f_gamma_eta; // rad/s
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let g_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
+    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
     let f_alpha_eta = -f_gamma_eta; // rad/s
     let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
         + c_t_alpha_alpha
@@ -115,9 +111,9 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
         - turn_factor * (p.c_l_0 + p.c_l_alpha * x.alpha + sin_alpha * f_alpha_term_1)
         + f_alpha_eta; // rad/s
     let f_pitch_rate_eta = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3); // rad/s^2
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2); // rad/s^2
     let f_pitch_rate = reference_force * p.inv_i_yy
         * (p.z_t * f_alpha_term_1
             + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
@@ -130,22 +126,22 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
             + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let gamma_rate_printed_term_1 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
         * x.chi_1;
-    let gamma_rate_printed_term_2 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
         * x.chi_2;
-    let gamma_rate_printed_term_3 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
         * x.chi_3;
-    let slope_of_gamma_rate_printed_in_turn_factor = gamma_rate_printed_term_1
-        + gamma_rate_printed_term_2
-        + gamma_rate_printed_term_3; // rad
-    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
+    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
         + f_gamma
         + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed =
-        turn_factor * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2 - gamma_rate_printed_term_3)
-        + f_alpha
-        + x.pitch_rate; // rad/s
+    let alpha_rate_printed = turn_factor
+        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + f_alpha + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed = reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
             + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2

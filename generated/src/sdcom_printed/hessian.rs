@@ -135,11 +135,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
@@ -148,12 +143,15 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         - p.c_d_alpha * x.alpha - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
         - p.c_d_0) * p.s_over_m; // ft^3/s^2/lb
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft^3/s^2/lb
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft^3/s^2/lb
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
@@ -177,9 +175,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let c_t_phi_phi = p.c_t_phi * u.phi;
     let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
     let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0; // rad
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let slope_of_f_gamma_eta_in_turn_factor =
+        d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * generalized_force_1_inv_omega_1_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * generalized_force_2_inv_omega_2_2
+        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * generalized_force_3_inv_omega_3_2; // rad
     let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
         * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
@@ -187,10 +186,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
         * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
     let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let slope_of_g_gamma_in_turn_factor_term_1 = sin_alpha
+    let c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha = sin_alpha
         * c_t_alpha_plus_c_t_phi_alpha_phi;
     let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
-        + slope_of_g_gamma_in_turn_factor_term_1;
+        + c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
     let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
         * d_turn_factor_d_velocity; // 1/ft
     let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
@@ -226,21 +225,20 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_turn_factor_d_altitude; // 1/s/ft
 
     // Derivatives with respect to gamma
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
     let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let slope_of_velocity_rate_printed_in_cos_alpha_term_1 = x.chi_1 * p.c_t_eta_1
+    let chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
         + x.chi_2 * p.c_t_eta_2
         + x.chi_3 * p.c_t_eta_3;
     let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
-        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // ft/s^2
+        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
     let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
         * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
-    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = eta_static_1 * p.c_t_eta_1
-        + eta_static_2 * p.c_t_eta_2
-        + eta_static_3 * p.c_t_eta_3;
+    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+        + generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+        + generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
     let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
         * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
@@ -252,7 +250,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let slope_of_g_velocity_in_cos_alpha = c_t_phi_alpha_alpha_plus_c_t_phi
         * reference_force * p.inv_m; // ft/s^2
     let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
-        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // rad/s
+        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
     let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
     let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
         * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
@@ -262,27 +260,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let slope_of_f_alpha_in_sin_alpha = -turn_factor
         * slope_of_f_alpha_in_turn_factor_term_1; // rad/s
     let slope_of_f_alpha_eta_in_sin_alpha = -slope_of_f_gamma_eta_in_sin_alpha; // rad/s
-
-    // Derivatives with respect to chi_1
-    let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_1 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_2 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_3 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to parameters
-    let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
 
     // Derivatives with respect to velocity
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
@@ -295,12 +272,22 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_generalized_force_1_d_velocity_d_velocity = c_n_1 * p.s * density; // slug^0.5/ft^1.5
     let d2_generalized_force_2_d_velocity_d_velocity = c_n_2 * p.s * density; // slug^0.5/ft^1.5
     let d2_generalized_force_3_d_velocity_d_velocity = c_n_3 * p.s * density; // slug^0.5/ft^1.5
-    let d2_f_velocity_eta_d_velocity_d_velocity =
-        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * d_dynamic_pressure_d_velocity
+    let d2_f_velocity_eta_d_velocity_d_velocity_term_1 = reference_force * p.inv_m
+        * cos_alpha_c_t_eta_1_minus_c_d_eta_1;
+    let d2_f_velocity_eta_d_velocity_d_velocity_term_2 = reference_force * p.inv_m
+        * cos_alpha_c_t_eta_2_minus_c_d_eta_2;
+    let d2_f_velocity_eta_d_velocity_d_velocity_term_3 = reference_force * p.inv_m
+        * cos_alpha_c_t_eta_3_minus_c_d_eta_3;
+    let d2_f_velocity_eta_d_velocity_d_velocity = R::TWO
+        * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity
+        * d_dynamic_pressure_d_velocity
         + slope_of_f_velocity_eta_in_dynamic_pressure * density
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_velocity
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_velocity
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_velocity; // 1/ft
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_velocity_d_velocity
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_velocity_d_velocity
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_velocity_d_velocity; // 1/ft
     let d2_f_velocity_d_velocity_d_velocity = slope_of_f_velocity_in_dynamic_pressure
         * density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
     let d2_g_velocity_d_velocity_d_velocity = slope_of_g_velocity_in_dynamic_pressure
@@ -330,13 +317,18 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_generalized_force_3_d_velocity_d_altitude = c_n_3
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_f_velocity_eta_d_velocity_d_altitude =
-        d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * d_dynamic_pressure_d_altitude
-        + slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_velocity_d_altitude
-        + d_dynamic_pressure_d_velocity * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_altitude
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_altitude
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_altitude; // 1/s/ft
+    let d2_f_velocity_eta_d_velocity_d_altitude = d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity
+        * d_dynamic_pressure_d_altitude
+        + slope_of_f_velocity_eta_in_dynamic_pressure
+            * d2_dynamic_pressure_d_velocity_d_altitude
+        + d_dynamic_pressure_d_velocity
+            * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_velocity_d_altitude
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_velocity_d_altitude
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_velocity_d_altitude; // 1/s/ft
     let d2_f_velocity_d_velocity_d_altitude = slope_of_f_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude
         + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
@@ -372,11 +364,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_cos_alpha_d_alpha
         + d_dynamic_pressure_d_velocity
             * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_alpha
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_alpha
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/rad
     let d2_f_velocity_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
         * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
@@ -387,7 +379,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_g_velocity_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s/rad
     let d2_velocity_rate_printed_d_velocity_d_alpha = d_reference_force_d_velocity
-        * p.inv_m * slope_of_velocity_rate_printed_in_cos_alpha_term_1
+        * p.inv_m * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
         * d_cos_alpha_d_alpha + d2_f_velocity_d_velocity_d_alpha
         + u.phi * d2_g_velocity_d_velocity_d_alpha; // 1/s/rad
 
@@ -404,7 +396,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to altitude
-    let d2_density_ratio_d_altitude_d_altitude = d_density_ratio_d_h_0 * p.inv_h_s; // 1/ft^2
+    let density_ratio_over_h_s = density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
     let d2_density_d_altitude_d_altitude = p.rho_0
         * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * velocity_2
@@ -424,12 +417,17 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     let d2_generalized_force_3_d_altitude_d_altitude = c_n_3
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_f_velocity_eta_d_altitude_d_altitude =
-        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude * d_dynamic_pressure_d_altitude
-        + slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_altitude
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_altitude; // 1/s^2/ft
+    let d2_f_velocity_eta_d_altitude_d_altitude = R::TWO
+        * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
+        * d_dynamic_pressure_d_altitude
+        + slope_of_f_velocity_eta_in_dynamic_pressure
+            * d2_dynamic_pressure_d_altitude_d_altitude
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_altitude_d_altitude
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_altitude_d_altitude
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_altitude_d_altitude; // 1/s^2/ft
     let d2_f_velocity_d_altitude_d_altitude =
         slope_of_f_velocity_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
         - sin_gamma * d2_gravity_d_altitude_d_altitude
@@ -458,11 +456,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_cos_alpha_d_alpha
         + d_dynamic_pressure_d_altitude
             * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_altitude_d_alpha
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_altitude_d_alpha
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/rad
     let d2_f_velocity_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
         * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
@@ -470,7 +468,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_g_velocity_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s^2/rad
     let d2_velocity_rate_printed_d_altitude_d_alpha = d_reference_force_d_altitude
-        * p.inv_m * slope_of_velocity_rate_printed_in_cos_alpha_term_1
+        * p.inv_m * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
         * d_cos_alpha_d_alpha + d2_f_velocity_d_altitude_d_alpha
         + u.phi * d2_g_velocity_d_altitude_d_alpha; // 1/s^2/rad
 
@@ -505,9 +503,9 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_f_velocity_eta_d_alpha_d_alpha =
         R::TWO * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
         + slope_of_f_velocity_eta_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha; // ft/s^2/rad^2
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha;
     let d2_f_velocity_d_alpha_d_alpha = R::TWO * d_slope_of_f_velocity_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
         + slope_of_f_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d2_f_velocity_eta_d_alpha_d_alpha; // ft/s^2/rad^2
@@ -563,10 +561,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
         + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
         + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let d2_f_gamma_d_velocity_d_velocity_term_1 = cos_gamma
+    let cos_gamma_d2_gravity_turn_d_velocity_d_velocity = cos_gamma
         * d2_gravity_turn_d_velocity_d_velocity;
     let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
-        - d2_f_gamma_d_velocity_d_velocity_term_1; // rad*s/ft^2
+        - cos_gamma_d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * d_density_d_altitude; // 1/ft^2
@@ -591,10 +589,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
         + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
         + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
-    let d2_f_gamma_d_velocity_d_altitude_term_1 = cos_gamma
+    let cos_gamma_d2_gravity_turn_d_velocity_d_altitude = cos_gamma
         * d2_gravity_turn_d_velocity_d_altitude;
     let d2_f_gamma_d_velocity_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        - d2_f_gamma_d_velocity_d_altitude_term_1
+        - cos_gamma_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
     let d2_g_gamma_d_velocity_d_altitude = slope_of_g_gamma_in_turn_factor
         * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
@@ -607,7 +605,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_f_gamma_d_velocity_d_gamma = -d_gravity_turn_d_velocity * d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = slope_of_velocity_rate_printed_in_cos_alpha_term_1
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
         * cos_alpha;
     let d_slope_of_f_gamma_in_turn_factor_d_alpha = c_t_phi_phi_plus_c_t_0 * cos_alpha;
     let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = slope_of_f_velocity_eta_in_cos_alpha_term_1 * cos_alpha
@@ -666,10 +664,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
         + slope_of_f_gamma_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_f_gamma_d_altitude_d_altitude_term_1 = cos_gamma
+    let cos_gamma_d2_gravity_turn_d_altitude_d_altitude = cos_gamma
         * d2_gravity_turn_d_altitude_d_altitude;
     let d2_f_gamma_d_altitude_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
-        - d2_f_gamma_d_altitude_d_altitude_term_1
+        - cos_gamma_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
     let d2_g_gamma_d_altitude_d_altitude = slope_of_g_gamma_in_turn_factor
         * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
@@ -759,11 +757,12 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
         + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
         + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let d2_f_alpha_d_velocity_d_velocity = d2_f_gamma_d_velocity_d_velocity_term_1
+    let velocity_cos_gamma = x.velocity * cos_gamma;
+    let d2_f_alpha_d_velocity_d_velocity = cos_gamma_d2_gravity_turn_d_velocity_d_velocity
         - gravity_turn
             * (cos_gamma * inv_velocity_2
-                + (cos_gamma * inv_velocity - d_altitude_rate_d_gamma * inv_velocity_2)
-                    * inv_velocity - d_altitude_rate_d_gamma * inv_velocity_3)
+                + (cos_gamma * inv_velocity - velocity_cos_gamma * inv_velocity_2)
+                    * inv_velocity - velocity_cos_gamma * inv_velocity_3)
         + d2_f_alpha_eta_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
@@ -784,7 +783,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
         + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
     let d2_f_alpha_d_velocity_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + d2_f_gamma_d_velocity_d_altitude_term_1
+        + cos_gamma_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
     let d2_alpha_rate_printed_d_velocity_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
         * d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
@@ -795,7 +794,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to alpha
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_in_turn_factor_d_alpha = -(p.c_l_alpha
-        + slope_of_g_gamma_in_turn_factor_term_1
+        + c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         + slope_of_f_alpha_in_turn_factor_term_1 * cos_alpha);
     let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_1
@@ -844,7 +843,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
         + slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_alpha_d_altitude_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
-        + d2_f_gamma_d_altitude_d_altitude_term_1
+        + cos_gamma_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
     let d2_alpha_rate_printed_d_altitude_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
         * d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
@@ -893,11 +892,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
         + slope_of_f_alpha_eta_in_sin_alpha * d_cos_alpha_d_alpha
         + cos_alpha * d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha; // 1/s/rad
-    let d_alpha_slope_alpha_d_alpha = cos_alpha
-        * d_slope_of_f_alpha_in_sin_alpha_d_alpha; // 1/s/rad
+    let cos_alpha_d_slope_of_f_alpha_in_sin_alpha_d_alpha = cos_alpha
+        * d_slope_of_f_alpha_in_sin_alpha_d_alpha;
     let d2_f_alpha_d_alpha_d_alpha = slope_of_f_alpha_in_sin_alpha * d_cos_alpha_d_alpha
         - d_g_gamma_d_alpha
-        + d_alpha_slope_alpha_d_alpha
+        + cos_alpha_d_slope_of_f_alpha_in_sin_alpha_d_alpha
         + d2_f_alpha_eta_d_alpha_d_alpha; // 1/s/rad
     let d2_alpha_rate_printed_d_alpha_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
         * d_cos_alpha_d_alpha + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad
@@ -919,25 +918,35 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to velocity
     let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1 = p
-        .d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_velocity;
+        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+        * d_generalized_force_1_d_velocity;
     let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_2 = p
-        .d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_velocity;
+        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+        * d_generalized_force_2_d_velocity;
     let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3 = p
-        .d_f_pitch_rate_eta_d_velocity_constant_3 * d_generalized_force_3_d_velocity;
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3;
+        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
+        * d_generalized_force_3_d_velocity;
+    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4 =
+        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2;
+    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 = reference_force
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy;
+    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 = reference_force
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy;
+    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 = reference_force
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy;
     let d2_f_pitch_rate_eta_d_velocity_d_velocity = p.inv_i_yy
         * (d_reference_force_d_velocity
             * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_2
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3)
             + p.s * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4 * density)
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_velocity
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_velocity
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_velocity; // rad/ft^2
     let d2_f_pitch_rate_d_velocity_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
         * density + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
@@ -953,11 +962,14 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to altitude
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
-        .d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_altitude;
+        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+        * d_generalized_force_1_d_altitude;
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p
-        .d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_altitude;
+        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+        * d_generalized_force_2_d_altitude;
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3 = p
-        .d_f_pitch_rate_eta_d_velocity_constant_3 * d_generalized_force_3_d_altitude;
+        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
+        * d_generalized_force_3_d_altitude;
     let d2_f_pitch_rate_eta_d_velocity_d_altitude = p.inv_i_yy
         * (d_reference_force_d_velocity
             * (d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
@@ -969,11 +981,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
                     + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3)
             + d2_reference_force_d_velocity_d_altitude
                 * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4)
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_altitude
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_altitude
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
     let d2_f_pitch_rate_d_velocity_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude
@@ -991,29 +1003,32 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * (p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi
             + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha)); // ft^2/s^2/lb
     let d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1 =
-        p.d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_alpha
-        + p.d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_alpha
-        + p.d_f_pitch_rate_eta_d_velocity_constant_3 * d_generalized_force_3_d_alpha;
-    let d2_f_pitch_rate_eta_d_velocity_d_alpha =
-        d_reference_force_d_velocity * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
+        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2 * d_generalized_force_1_d_alpha
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2 * d_generalized_force_2_d_alpha
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2 * d_generalized_force_3_d_alpha;
+    let d2_f_pitch_rate_eta_d_velocity_d_alpha = d_reference_force_d_velocity
+        * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_velocity_d_alpha
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_velocity_d_alpha
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
     let d2_f_pitch_rate_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_velocity_d_alpha; // 1/s/ft
 
     // Derivatives with respect to chi_1
     let d2_pitch_rate_rate_printed_d_velocity_d_chi_1 = d_reference_force_d_velocity
-        * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s/ft^1.5/slug^0.5
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_pitch_rate_rate_printed_d_velocity_d_chi_2 = d_reference_force_d_velocity
-        * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s/ft^1.5/slug^0.5
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d2_pitch_rate_rate_printed_d_velocity_d_chi_3 = d_reference_force_d_velocity
-        * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s/ft^1.5/slug^0.5
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
     let d2_f_pitch_rate_eta_d_altitude_d_altitude = p.inv_i_yy
@@ -1023,11 +1038,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
             + d2_reference_force_d_altitude_d_altitude
                 * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4)
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
             * d2_generalized_force_1_d_altitude_d_altitude
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
             * d2_generalized_force_2_d_altitude_d_altitude
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
             * d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
     let d2_f_pitch_rate_d_altitude_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
         * d2_dynamic_pressure_d_altitude_d_altitude
@@ -1041,32 +1056,37 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
 
     // Derivatives with respect to alpha
-    let d2_f_pitch_rate_eta_d_altitude_d_alpha =
-        d_reference_force_d_altitude * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/ft
+    let d2_f_pitch_rate_eta_d_altitude_d_alpha = d_reference_force_d_altitude
+        * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_altitude_d_alpha
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_altitude_d_alpha
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/ft
     let d2_f_pitch_rate_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_altitude_d_alpha; // 1/s^2/ft
 
     // Derivatives with respect to chi_1
     let d2_pitch_rate_rate_printed_d_altitude_d_chi_1 = d_reference_force_d_altitude
-        * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^1.5/slug^0.5
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_pitch_rate_rate_printed_d_altitude_d_chi_2 = d_reference_force_d_altitude
-        * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^1.5/slug^0.5
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d2_pitch_rate_rate_printed_d_altitude_d_chi_3 = d_reference_force_d_altitude
-        * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^1.5/slug^0.5
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to alpha
-    let d2_f_pitch_rate_eta_d_alpha_d_alpha =
-        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
+    let d2_f_pitch_rate_eta_d_alpha_d_alpha = d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5
+        * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_alpha_d_alpha
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
     let d2_f_pitch_rate_d_alpha_d_alpha = reference_force
         * p.two_c_bar_c_m_alpha_2_over_i_yy + d2_f_pitch_rate_eta_d_alpha_d_alpha; // 1/s^2/rad
 

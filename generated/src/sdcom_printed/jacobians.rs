@@ -218,11 +218,6 @@ pub fn jacobians_values<R: Real>(
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (28)
     let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
     let g_velocity = reference_force * p.inv_m * cos_alpha
@@ -241,12 +236,15 @@ pub fn jacobians_values<R: Real>(
         - p.c_d_alpha * x.alpha - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
         - p.c_d_0) * p.s_over_m; // ft^3/s^2/lb
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft^3/s^2/lb
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft^3/s^2/lb
     let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
@@ -273,30 +271,27 @@ pub fn jacobians_values<R: Real>(
         + d_f_velocity_d_velocity
         + u.phi * d_g_velocity_d_velocity; // 1/s
     let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let slope_of_gamma_rate_printed_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3; // rad
     let inv_velocity_2 = inv_velocity * inv_velocity;
     let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
         + p.earth_curvature * radius_ratio); // 1/ft
     let c_t_phi_phi = p.c_t_phi * u.phi;
     let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
     let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0; // rad
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let slope_of_f_gamma_eta_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2; // rad
     let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
     let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
@@ -334,16 +329,16 @@ pub fn jacobians_values<R: Real>(
         * slope_of_f_alpha_in_turn_factor_term_1
         + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
         * p.s_over_i_yy; // rad*ft^2/s^2/lb
-    let d_f_pitch_rate_eta_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3;
+    let d_f_pitch_rate_eta_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2;
     let d_f_pitch_rate_eta_d_velocity = p.inv_i_yy
         * (reference_force
-            * (p.d_f_pitch_rate_eta_d_velocity_constant_1
+            * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
                 * d_generalized_force_1_d_velocity
-                + p.d_f_pitch_rate_eta_d_velocity_constant_2
+                + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
                     * d_generalized_force_2_d_velocity
-                + p.d_f_pitch_rate_eta_d_velocity_constant_3
+                + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * d_generalized_force_3_d_velocity)
             + d_reference_force_d_velocity * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s/ft
     let d_f_pitch_rate_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
@@ -412,11 +407,11 @@ pub fn jacobians_values<R: Real>(
         * d_turn_factor_d_altitude + d_f_alpha_d_altitude; // rad/s/ft
     let d_f_pitch_rate_eta_d_altitude = p.inv_i_yy
         * (reference_force
-            * (p.d_f_pitch_rate_eta_d_velocity_constant_1
+            * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
                 * d_generalized_force_1_d_altitude
-                + p.d_f_pitch_rate_eta_d_velocity_constant_2
+                + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
                     * d_generalized_force_2_d_altitude
-                + p.d_f_pitch_rate_eta_d_velocity_constant_3
+                + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * d_generalized_force_3_d_altitude)
             + d_reference_force_d_altitude * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s^2/ft
     let d_f_pitch_rate_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
@@ -437,16 +432,16 @@ pub fn jacobians_values<R: Real>(
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let slope_of_velocity_rate_printed_in_cos_alpha_term_1 = x.chi_1 * p.c_t_eta_1
+    let chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
         + x.chi_2 * p.c_t_eta_2
         + x.chi_3 * p.c_t_eta_3;
     let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
-        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // ft/s^2
+        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
     let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
         * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
-    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = eta_static_1 * p.c_t_eta_1
-        + eta_static_2 * p.c_t_eta_2
-        + eta_static_3 * p.c_t_eta_3;
+    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+        + generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+        + generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
     let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
         * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
@@ -474,7 +469,7 @@ pub fn jacobians_values<R: Real>(
         + d_f_velocity_d_alpha
         + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
     let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
-        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // rad/s
+        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
     let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
     let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
         * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
@@ -504,9 +499,11 @@ pub fn jacobians_values<R: Real>(
     let d_alpha_rate_printed_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
         * cos_alpha + d_f_alpha_d_alpha; // 1/s
     let d_f_pitch_rate_eta_d_alpha = reference_force * p.inv_i_yy
-        * (p.d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_alpha
-            + p.d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_alpha
-            + p.d_f_pitch_rate_eta_d_velocity_constant_3
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+            * d_generalized_force_1_d_alpha
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+                * d_generalized_force_2_d_alpha
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                 * d_generalized_force_3_d_alpha); // 1/s^2
     let d_f_pitch_rate_d_alpha = reference_force * p.inv_i_yy
         * (p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi
@@ -516,29 +513,26 @@ pub fn jacobians_values<R: Real>(
     // Derivatives with respect to chi_1
     let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_1 = turn_factor * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_1 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_2 = turn_factor * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_2 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_3 = turn_factor * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_3 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
     let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
@@ -557,7 +551,7 @@ pub fn jacobians_values<R: Real>(
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
+        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m; // ft/s^2/rad
     let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
@@ -718,11 +712,6 @@ pub fn drift_and_jacobians_values<R: Real>(
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Motion, (1)
     let altitude_rate = x.velocity * sin_gamma; // ft/s
 
@@ -733,11 +722,14 @@ pub fn drift_and_jacobians_values<R: Real>(
 
     // Strict-feedback form, (29)
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let f_velocity_eta_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+    let f_velocity_eta_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2;
     let f_velocity_eta = reference_force * p.inv_m * f_velocity_eta_term_1; // ft/s^2
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
@@ -751,15 +743,12 @@ pub fn drift_and_jacobians_values<R: Real>(
     let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * c_t_phi_alpha_alpha_plus_c_t_phi; // ft/s^2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let slope_of_f_gamma_eta_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2; // rad
     let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
     let c_t_phi_phi = p.c_t_phi * u.phi;
     let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
@@ -783,9 +772,9 @@ pub fn drift_and_jacobians_values<R: Real>(
     let f_alpha = gravity_turn_cos_gamma
         - turn_factor * f_alpha_term_2
         + f_alpha_eta; // rad/s
-    let f_pitch_rate_eta_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3;
+    let f_pitch_rate_eta_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2;
     let f_pitch_rate_eta = reference_force * p.inv_i_yy * f_pitch_rate_eta_term_1; // rad/s^2
     let f_pitch_rate_term_1 = p.z_t * f_alpha_term_1
         + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0);
@@ -800,22 +789,22 @@ pub fn drift_and_jacobians_values<R: Real>(
     let velocity_rate_printed = reference_force * p.inv_m * velocity_rate_printed_term_1
         + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let gamma_rate_printed_term_1 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
         * x.chi_1;
-    let gamma_rate_printed_term_2 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
         * x.chi_2;
-    let gamma_rate_printed_term_3 = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
         * x.chi_3;
-    let slope_of_gamma_rate_printed_in_turn_factor = gamma_rate_printed_term_1
-        + gamma_rate_printed_term_2
-        + gamma_rate_printed_term_3; // rad
+    let slope_of_gamma_rate_printed_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3; // rad
     let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
         + f_gamma
         + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed =
-        turn_factor * (-gamma_rate_printed_term_1 - gamma_rate_printed_term_2 - gamma_rate_printed_term_3)
-        + f_alpha
-        + x.pitch_rate; // rad/s
+    let alpha_rate_printed = turn_factor
+        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + f_alpha + x.pitch_rate; // rad/s
     let pitch_rate_rate_printed_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
@@ -853,11 +842,11 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
         + p.earth_curvature * radius_ratio); // 1/ft
     let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
     let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
@@ -889,11 +878,11 @@ pub fn drift_and_jacobians_values<R: Real>(
     let slope_of_f_pitch_rate_in_dynamic_pressure = f_pitch_rate_term_1 * p.s_over_i_yy; // rad*ft^2/s^2/lb
     let d_f_pitch_rate_eta_d_velocity = p.inv_i_yy
         * (reference_force
-            * (p.d_f_pitch_rate_eta_d_velocity_constant_1
+            * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
                 * d_generalized_force_1_d_velocity
-                + p.d_f_pitch_rate_eta_d_velocity_constant_2
+                + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
                     * d_generalized_force_2_d_velocity
-                + p.d_f_pitch_rate_eta_d_velocity_constant_3
+                + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * d_generalized_force_3_d_velocity)
             + d_reference_force_d_velocity * f_pitch_rate_eta_term_1); // rad/s/ft
     let d_f_pitch_rate_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
@@ -958,11 +947,11 @@ pub fn drift_and_jacobians_values<R: Real>(
         * d_turn_factor_d_altitude + d_f_alpha_d_altitude; // rad/s/ft
     let d_f_pitch_rate_eta_d_altitude = p.inv_i_yy
         * (reference_force
-            * (p.d_f_pitch_rate_eta_d_velocity_constant_1
+            * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
                 * d_generalized_force_1_d_altitude
-                + p.d_f_pitch_rate_eta_d_velocity_constant_2
+                + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
                     * d_generalized_force_2_d_altitude
-                + p.d_f_pitch_rate_eta_d_velocity_constant_3
+                + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * d_generalized_force_3_d_altitude)
             + d_reference_force_d_altitude * f_pitch_rate_eta_term_1); // rad/s^2/ft
     let d_f_pitch_rate_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
@@ -983,16 +972,16 @@ pub fn drift_and_jacobians_values<R: Real>(
 
     // Derivatives with respect to alpha
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let slope_of_velocity_rate_printed_in_cos_alpha_term_1 = x.chi_1 * p.c_t_eta_1
+    let chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
         + x.chi_2 * p.c_t_eta_2
         + x.chi_3 * p.c_t_eta_3;
     let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
-        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // ft/s^2
+        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
     let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
         * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
-    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = eta_static_1 * p.c_t_eta_1
-        + eta_static_2 * p.c_t_eta_2
-        + eta_static_3 * p.c_t_eta_3;
+    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+        + generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+        + generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
     let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
         * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
     let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
@@ -1020,7 +1009,7 @@ pub fn drift_and_jacobians_values<R: Real>(
         + d_f_velocity_d_alpha
         + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
     let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
-        * slope_of_velocity_rate_printed_in_cos_alpha_term_1; // rad/s
+        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
     let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
     let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
         * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
@@ -1049,9 +1038,11 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_alpha_rate_printed_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
         * cos_alpha + d_f_alpha_d_alpha; // 1/s
     let d_f_pitch_rate_eta_d_alpha = reference_force * p.inv_i_yy
-        * (p.d_f_pitch_rate_eta_d_velocity_constant_1 * d_generalized_force_1_d_alpha
-            + p.d_f_pitch_rate_eta_d_velocity_constant_2 * d_generalized_force_2_d_alpha
-            + p.d_f_pitch_rate_eta_d_velocity_constant_3
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+            * d_generalized_force_1_d_alpha
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+                * d_generalized_force_2_d_alpha
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                 * d_generalized_force_3_d_alpha); // 1/s^2
     let d_f_pitch_rate_d_alpha = reference_force * p.inv_i_yy
         * (p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi
@@ -1061,29 +1052,26 @@ pub fn drift_and_jacobians_values<R: Real>(
     // Derivatives with respect to chi_1
     let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_1 = turn_factor * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_1 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_2 = turn_factor * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_2 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let d_gamma_rate_printed_d_chi_3 = turn_factor * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
     let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_pitch_rate_rate_printed_d_chi_3 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
     let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
@@ -1102,7 +1090,7 @@ pub fn drift_and_jacobians_values<R: Real>(
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
+        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m; // ft/s^2/rad
     let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s

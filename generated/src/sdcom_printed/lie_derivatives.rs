@@ -54,19 +54,17 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (29)
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft/s^2
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (p.c_t_alpha * x.alpha + p.c_t_0) - p.c_d_alpha * x.alpha
             - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e - p.c_d_0)
@@ -101,28 +99,22 @@ pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> 
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
 
-    // Derivatives with respect to chi_1
-    let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // ft^0.5/s^2/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // ft^0.5/s^2/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // ft^0.5/s^2/slug^0.5
-
     // Derivatives with respect to delta_e
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_f_velocity_eta_d_delta_e_term_1 = reference_force * p.inv_m
+        * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1);
+    let d_f_velocity_eta_d_delta_e_term_2 = reference_force * p.inv_m
+        * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2);
+    let d_f_velocity_eta_d_delta_e_term_3 = reference_force * p.inv_m
+        * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3);
     let d_f_velocity_eta_d_delta_e =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
+        d_f_velocity_eta_d_delta_e_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
+        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m; // ft/s^2/rad
 
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = reference_force
@@ -132,9 +124,9 @@ pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> 
     let d_generalized_force_3_d_delta_c = reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_f_velocity_eta_d_delta_c =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
+        d_f_velocity_eta_d_delta_e_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
 
     Input {
         phi: g_velocity,
@@ -197,37 +189,32 @@ pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (31)
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0
-        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0); // rad
-    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
+    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
+    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
+        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0);
+    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - gravity_turn * cos_gamma
         + f_gamma_eta; // rad/s
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let g_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
+    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
 
     // Printed form, (27)
-    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
+    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
 
-    turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+    turn_factor * gamma_rate_printed_term_1
         + f_gamma
         + g_gamma * x.alpha
 }
@@ -251,18 +238,15 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Derivatives with respect to velocity
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
     let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
     let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
     let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
     let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
@@ -361,43 +345,38 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (29)
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft/s^2
+        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (p.c_t_alpha * x.alpha + p.c_t_0) - p.c_d_alpha * x.alpha
             - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e - p.c_d_0)
         - gravity * sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0
-        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0); // rad
-    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
+    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
+    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
+        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0);
+    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - gravity_turn * cos_gamma
         + f_gamma_eta; // rad/s
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let g_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
+    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
 
     // Printed form, (27)
     let velocity_rate_printed = reference_force * p.inv_m
@@ -405,10 +384,10 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
             + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
         + g_velocity * u.phi; // ft/s^2
-    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
-    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
+    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
+    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
         + f_gamma
         + g_gamma * x.alpha; // rad/s
 
@@ -443,33 +422,18 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
 
     // Derivatives with respect to velocity
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
     let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
     let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
     let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
 
     // Derivatives with respect to gamma
     let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-
-    // Derivatives with respect to chi_1
-    let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // ft^0.5/s^2/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // ft^0.5/s^2/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // ft^0.5/s^2/slug^0.5
 
     // Derivatives with respect to phi
     let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
@@ -480,12 +444,18 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_f_velocity_eta_d_delta_e_term_1 = reference_force * p.inv_m
+        * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1);
+    let d_f_velocity_eta_d_delta_e_term_2 = reference_force * p.inv_m
+        * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2);
+    let d_f_velocity_eta_d_delta_e_term_3 = reference_force * p.inv_m
+        * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3);
     let d_f_velocity_eta_d_delta_e =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
+        d_f_velocity_eta_d_delta_e_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.d_f_velocity_d_delta_e_constant_1; // ft/s^2/rad
+        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m; // ft/s^2/rad
     let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
@@ -498,9 +468,9 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
     let d_generalized_force_3_d_delta_c = reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_f_velocity_eta_d_delta_c =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
+        d_f_velocity_eta_d_delta_e_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
     let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s

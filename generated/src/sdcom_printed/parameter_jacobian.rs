@@ -249,16 +249,7 @@ pub fn parameter_jacobian_values<R: Real>(
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let slope_of_f_velocity_in_dynamic_pressure_term_1 = cos_alpha * (c_t_alpha_alpha + p.c_t_0)
         - p.c_d_alpha * x.alpha
@@ -267,37 +258,37 @@ pub fn parameter_jacobian_values<R: Real>(
     let slope_of_f_velocity_in_dynamic_pressure = slope_of_f_velocity_in_dynamic_pressure_term_1
         * p.s_over_m; // ft^3/s^2/lb
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let slope_of_f_velocity_eta_in_dynamic_pressure_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+    let slope_of_f_velocity_eta_in_dynamic_pressure_term_1 =
+        cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
+        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
+        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2;
     let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
         * slope_of_f_velocity_eta_in_dynamic_pressure_term_1; // ft^3/s^2/lb
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
     let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
     let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
         * cos_alpha * p.s_over_m; // ft^3/s^2/lb
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let slope_of_gamma_rate_printed_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3; // rad
     let c_t_phi_phi = p.c_t_phi * u.phi;
     let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0); // rad
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let slope_of_f_gamma_eta_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2; // rad
     let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
     let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
     let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
@@ -311,38 +302,14 @@ pub fn parameter_jacobian_values<R: Real>(
     let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
     let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
     let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
-    let slope_of_f_pitch_rate_in_dynamic_pressure_term_1 = p.c_m_alpha_2 * alpha_2
+    let c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0 = p.c_m_alpha_2 * alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_0;
-    let slope_of_f_pitch_rate_in_dynamic_pressure_term_2 = p.z_t
+    let slope_of_f_pitch_rate_in_dynamic_pressure_term_1 = p.z_t
         * slope_of_f_alpha_in_turn_factor_term_1
-        + p.c_bar * slope_of_f_pitch_rate_in_dynamic_pressure_term_1;
-    let slope_of_f_pitch_rate_in_dynamic_pressure = slope_of_f_pitch_rate_in_dynamic_pressure_term_2
+        + p.c_bar * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0;
+    let slope_of_f_pitch_rate_in_dynamic_pressure = slope_of_f_pitch_rate_in_dynamic_pressure_term_1
         * p.s_over_i_yy; // rad*ft^2/s^2/lb
-
-    // Derivatives with respect to chi_1
-    let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_1 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_2 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_3 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to parameters
     let d_f_velocity_eta_d_m = -reference_force * p.inv_m_2
@@ -357,27 +324,29 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_velocity_rate_printed_d_m = d_f_velocity_d_m
         - reference_force * p.inv_m_2 * d_velocity_rate_printed_d_m_term_1
         + u.phi * d_g_velocity_d_m; // ft^2/s^2/slug
-    let d_f_gamma_d_m = -d_reference_force_d_velocity * p.inv_m_2
+    let density_velocity = density * x.velocity;
+    let s_density_velocity = p.s * density_velocity;
+    let d_f_gamma_d_m = -s_density_velocity * p.inv_m_2
         * (R::HALF * slope_of_f_gamma_in_turn_factor
             + R::HALF * slope_of_f_gamma_eta_in_turn_factor); // rad*ft/s/slug
     let alpha_slope_of_g_gamma_in_turn_factor = x.alpha
         * slope_of_g_gamma_in_turn_factor;
-    let d_gamma_rate_printed_d_m = d_reference_force_d_velocity * p.inv_m_2
+    let d_gamma_rate_printed_d_m = s_density_velocity * p.inv_m_2
         * (-R::HALF * slope_of_gamma_rate_printed_in_turn_factor
             - R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_m; // rad*ft/s/slug
-    let d_f_alpha_d_m = -d_reference_force_d_velocity * p.inv_m_2
+    let d_f_alpha_d_m = -s_density_velocity * p.inv_m_2
         * (R::HALF * slope_of_f_alpha_in_turn_factor
             + R::HALF * slope_of_f_alpha_eta_in_turn_factor); // rad*ft/s/slug
     let d_alpha_rate_printed_d_m = d_f_alpha_d_m
-        - slope_of_alpha_rate_printed_in_turn_factor * d_reference_force_d_velocity
+        - slope_of_alpha_rate_printed_in_turn_factor * s_density_velocity
             * p.half_inv_m_2; // rad*ft/s/slug
-    let d_f_pitch_rate_eta_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3;
+    let d_f_pitch_rate_eta_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2;
     let d_f_pitch_rate_eta_d_i_yy = -p.inv_i_yy_2 * reference_force
         * d_f_pitch_rate_eta_d_i_yy_term_1; // rad/s^2/slug/ft
     let d_f_pitch_rate_d_i_yy = d_f_pitch_rate_eta_d_i_yy
-        - slope_of_f_pitch_rate_in_dynamic_pressure_term_2 * reference_force
+        - slope_of_f_pitch_rate_in_dynamic_pressure_term_1 * reference_force
             * p.inv_i_yy_2; // rad/s^2/slug/ft
     let d_g_pitch_rate_d_i_yy = -p.d_g_pitch_rate_d_i_yy_constant_1 * reference_force; // 1/s^2/slug/ft
     let d_pitch_rate_rate_printed_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
@@ -386,11 +355,17 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_pitch_rate_rate_printed_d_i_yy = d_f_pitch_rate_d_i_yy
         - p.inv_i_yy_2 * reference_force * d_pitch_rate_rate_printed_d_i_yy_term_1
         + u.delta_e * d_g_pitch_rate_d_i_yy; // rad/s^2/slug/ft
+    let d_f_velocity_eta_d_s_term_1 = reference_force * p.inv_m
+        * cos_alpha_c_t_eta_1_minus_c_d_eta_1;
+    let d_f_velocity_eta_d_s_term_2 = reference_force * p.inv_m
+        * cos_alpha_c_t_eta_2_minus_c_d_eta_2;
+    let d_f_velocity_eta_d_s_term_3 = reference_force * p.inv_m
+        * cos_alpha_c_t_eta_3_minus_c_d_eta_3;
     let d_f_velocity_eta_d_s = dynamic_pressure
         * (p.inv_m * slope_of_f_velocity_eta_in_dynamic_pressure_term_1
-            + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * c_n_1
-            + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * c_n_2
-            + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * c_n_3); // 1/s^2
+            + d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2 * c_n_1
+            + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2 * c_n_2
+            + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2 * c_n_3); // 1/s^2
     let d_f_velocity_d_s = slope_of_f_velocity_in_dynamic_pressure_term_1
         * dynamic_pressure * p.inv_m + d_f_velocity_eta_d_s; // 1/s^2
     let d_g_velocity_d_s = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
@@ -402,47 +377,55 @@ pub fn parameter_jacobian_values<R: Real>(
         * (slope_of_f_gamma_eta_in_generalized_force_1 * c_n_1
             + slope_of_f_gamma_eta_in_generalized_force_2 * c_n_2
             + slope_of_f_gamma_eta_in_generalized_force_3 * c_n_3)
-        + slope_of_f_gamma_eta_in_turn_factor * d_dynamic_pressure_d_velocity
-            * p.half_over_m; // rad/s/ft
-    let d_f_gamma_d_s = slope_of_f_gamma_in_turn_factor * d_dynamic_pressure_d_velocity
+        + slope_of_f_gamma_eta_in_turn_factor * density_velocity * p.half_over_m; // rad/s/ft
+    let d_f_gamma_d_s = slope_of_f_gamma_in_turn_factor * density_velocity
         * p.half_over_m + d_f_gamma_eta_d_s; // rad/s/ft
-    let d_gamma_rate_printed_d_s = d_dynamic_pressure_d_velocity * p.inv_m
+    let d_gamma_rate_printed_d_s = density_velocity * p.inv_m
         * (R::HALF * slope_of_gamma_rate_printed_in_turn_factor
             + R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_s; // rad/s/ft
     let d_f_alpha_eta_d_s = dynamic_pressure
         * (slope_of_f_alpha_eta_in_generalized_force_1 * c_n_1
             + slope_of_f_alpha_eta_in_generalized_force_2 * c_n_2
             + slope_of_f_alpha_eta_in_generalized_force_3 * c_n_3)
-        + slope_of_f_alpha_eta_in_turn_factor * d_dynamic_pressure_d_velocity
-            * p.half_over_m; // rad/s/ft
-    let d_f_alpha_d_s = slope_of_f_alpha_in_turn_factor * d_dynamic_pressure_d_velocity
+        + slope_of_f_alpha_eta_in_turn_factor * density_velocity * p.half_over_m; // rad/s/ft
+    let d_f_alpha_d_s = slope_of_f_alpha_in_turn_factor * density_velocity
         * p.half_over_m + d_f_alpha_eta_d_s; // rad/s/ft
     let d_alpha_rate_printed_d_s = slope_of_alpha_rate_printed_in_turn_factor
-        * d_dynamic_pressure_d_velocity * p.half_over_m + d_f_alpha_d_s; // rad/s/ft
+        * density_velocity * p.half_over_m + d_f_alpha_d_s; // rad/s/ft
+    let d_f_pitch_rate_eta_d_s_term_1 = reference_force
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy;
+    let d_f_pitch_rate_eta_d_s_term_2 = reference_force
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy;
+    let d_f_pitch_rate_eta_d_s_term_3 = reference_force
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy;
     let d_f_pitch_rate_eta_d_s = dynamic_pressure
         * (p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
-            + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * c_n_1
-            + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * c_n_2
-            + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * c_n_3); // rad/s^2/ft
-    let d_f_pitch_rate_d_s = slope_of_f_pitch_rate_in_dynamic_pressure_term_2
+            + d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2 * c_n_1
+            + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2 * c_n_2
+            + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2 * c_n_3); // rad/s^2/ft
+    let d_f_pitch_rate_d_s = slope_of_f_pitch_rate_in_dynamic_pressure_term_1
         * dynamic_pressure * p.inv_i_yy + d_f_pitch_rate_eta_d_s; // rad/s^2/ft
     let d_g_pitch_rate_d_s = p.g_pitch_rate_constant_1 * dynamic_pressure; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_s = p.inv_i_yy * dynamic_pressure * d_pitch_rate_rate_printed_d_i_yy_term_1
         + d_f_pitch_rate_d_s
         + u.delta_e * d_g_pitch_rate_d_s; // rad/s^2/ft
     let d_f_pitch_rate_eta_d_c_bar = reference_force * p.inv_i_yy
-        * (eta_static_1 * p.c_m_eta_1 + eta_static_2 * p.c_m_eta_2
-            + eta_static_3 * p.c_m_eta_3); // rad/s^2/ft
+        * (generalized_force_1_inv_omega_1_2 * p.c_m_eta_1
+            + generalized_force_2_inv_omega_2_2 * p.c_m_eta_2
+            + generalized_force_3_inv_omega_3_2 * p.c_m_eta_3); // rad/s^2/ft
     let d_f_pitch_rate_d_c_bar = reference_force * p.inv_i_yy
-        * slope_of_f_pitch_rate_in_dynamic_pressure_term_1 + d_f_pitch_rate_eta_d_c_bar; // rad/s^2/ft
-    let d_g_pitch_rate_d_c_bar = p.d_g_pitch_rate_d_c_bar_constant_1 * reference_force; // 1/s^2/ft
+        * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0
+        + d_f_pitch_rate_eta_d_c_bar; // rad/s^2/ft
+    let d_g_pitch_rate_d_c_bar = p
+        .c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy * reference_force; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_c_bar =
         reference_force * p.inv_i_yy * (x.chi_1 * p.c_m_eta_1 + x.chi_2 * p.c_m_eta_2 + x.chi_3 * p.c_m_eta_3)
         + d_f_pitch_rate_d_c_bar
         + u.delta_e * d_g_pitch_rate_d_c_bar; // rad/s^2/ft
     let d_f_pitch_rate_eta_d_z_t = reference_force * p.inv_i_yy
-        * (eta_static_1 * p.c_t_eta_1 + eta_static_2 * p.c_t_eta_2
-            + eta_static_3 * p.c_t_eta_3); // rad/s^2/ft
+        * (generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+            + generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+            + generalized_force_3_inv_omega_3_2 * p.c_t_eta_3); // rad/s^2/ft
     let d_f_pitch_rate_d_z_t = reference_force * p.inv_i_yy
         * slope_of_f_alpha_in_turn_factor_term_1 + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
     let d_pitch_rate_rate_printed_d_z_t = reference_force * p.inv_i_yy
@@ -450,11 +433,9 @@ pub fn parameter_jacobian_values<R: Real>(
         + d_f_pitch_rate_d_z_t; // rad/s^2/ft
     let d_f_velocity_eta_d_rho_0 = density_ratio
         * (p.s
-            * (d_velocity_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * c_n_1
-                * velocity_2
-                + d_velocity_rate_printed_d_chi_2 * p.half_inv_omega_2_2 * c_n_2
-                    * velocity_2
-                + d_velocity_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * c_n_3
+            * (d_f_velocity_eta_d_s_term_1 * p.half_inv_omega_1_2 * c_n_1 * velocity_2
+                + d_f_velocity_eta_d_s_term_2 * p.half_inv_omega_2_2 * c_n_2 * velocity_2
+                + d_f_velocity_eta_d_s_term_3 * p.half_inv_omega_3_2 * c_n_3
                     * velocity_2)
             + R::HALF * slope_of_f_velocity_eta_in_dynamic_pressure * velocity_2); // ft^4/s^2/slug
     let d_f_velocity_d_rho_0 = R::HALF * slope_of_f_velocity_in_dynamic_pressure
@@ -487,17 +468,14 @@ pub fn parameter_jacobian_values<R: Real>(
         * p.half_s_over_m * x.velocity * density_ratio + d_f_alpha_d_rho_0; // rad*ft^3/s/slug
     let d_f_pitch_rate_eta_d_rho_0 = p.s * density_ratio
         * (p.half_over_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1 * velocity_2
-            + d_pitch_rate_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * c_n_1
-                * velocity_2
-            + d_pitch_rate_rate_printed_d_chi_2 * p.half_inv_omega_2_2 * c_n_2
-                * velocity_2
-            + d_pitch_rate_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * c_n_3
-                * velocity_2); // rad*ft^3/s^2/slug
+            + d_f_pitch_rate_eta_d_s_term_1 * p.half_inv_omega_1_2 * c_n_1 * velocity_2
+            + d_f_pitch_rate_eta_d_s_term_2 * p.half_inv_omega_2_2 * c_n_2 * velocity_2
+            + d_f_pitch_rate_eta_d_s_term_3 * p.half_inv_omega_3_2 * c_n_3 * velocity_2); // rad*ft^3/s^2/slug
     let d_f_pitch_rate_d_rho_0 = R::HALF * slope_of_f_pitch_rate_in_dynamic_pressure
         * velocity_2 * density_ratio + d_f_pitch_rate_eta_d_rho_0; // rad*ft^3/s^2/slug
     let d_pitch_rate_rate_printed_d_rho_0 = density_ratio
         * (p.half_s_over_i_yy * d_pitch_rate_rate_printed_d_i_yy_term_1 * velocity_2
-            + u.delta_e * p.d_pitch_rate_rate_printed_d_rho_0_constant_1 * velocity_2)
+            + u.delta_e * p.half_slope_of_g_pitch_rate_in_dynamic_pressure * velocity_2)
         + d_f_pitch_rate_d_rho_0; // rad*ft^3/s^2/slug
     let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
@@ -507,9 +485,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_generalized_force_2_d_h_0 = c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_0 = c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_f_velocity_eta_d_h_0 = slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_0
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // 1/s^2
+        + d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
+        + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
+        + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // 1/s^2
     let d_f_velocity_d_h_0 = slope_of_f_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0 + d_f_velocity_eta_d_h_0; // 1/s^2
     let d_g_velocity_d_h_0 = slope_of_g_velocity_in_dynamic_pressure
@@ -537,9 +515,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_alpha_rate_printed_d_h_0 = slope_of_alpha_rate_printed_in_turn_factor
         * d_turn_factor_d_h_0 + d_f_alpha_d_h_0; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // rad/s^2/ft
+        + d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
+        + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
+        + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // rad/s^2/ft
     let d_f_pitch_rate_d_h_0 = slope_of_f_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0 + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
     let d_g_pitch_rate_d_h_0 = p.slope_of_g_pitch_rate_in_dynamic_pressure
@@ -556,9 +534,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_generalized_force_2_d_h_s = c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_s = c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_f_velocity_eta_d_h_s = slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_s
-        + d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // 1/s^2
+        + d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
+        + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
+        + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // 1/s^2
     let d_f_velocity_d_h_s = slope_of_f_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s + d_f_velocity_eta_d_h_s; // 1/s^2
     let d_g_velocity_d_h_s = slope_of_g_velocity_in_dynamic_pressure
@@ -586,9 +564,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_alpha_rate_printed_d_h_s = slope_of_alpha_rate_printed_in_turn_factor
         * d_turn_factor_d_h_s + d_f_alpha_d_h_s; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_s = d_reference_force_d_h_s * p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
-        + d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // rad/s^2/ft
+        + d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
+        + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
+        + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // rad/s^2/ft
     let d_f_pitch_rate_d_h_s = slope_of_f_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
     let d_g_pitch_rate_d_h_s = p.slope_of_g_pitch_rate_in_dynamic_pressure
@@ -600,49 +578,55 @@ pub fn parameter_jacobian_values<R: Real>(
     let radius_ratio_2 = radius_ratio * radius_ratio;
     let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
     let inv_velocity = x.velocity.recip();
-    let d_gravity_turn_d_r_e_term_1 = p.two_g * slope_of_radius_ratio_in_earth_curvature
-        * inv_velocity;
+    let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio * (x.velocity - d_gravity_turn_d_r_e_term_1)
+        * (p.earth_curvature * radius_ratio
+            * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_f_gamma_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_f_alpha_d_r_e = cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-    let d_f_velocity_eta_d_omega_1 = d_velocity_rate_printed_d_chi_1 * eta_static_1
-        * p.minus_two_over_omega_1; // ft/s/rad
-    let d_f_gamma_eta_d_omega_1 = d_gamma_rate_printed_d_chi_1 * eta_static_1
-        * p.minus_two_over_omega_1;
-    let d_f_alpha_eta_d_omega_1 = d_gamma_rate_printed_d_chi_1 * eta_static_1
-        * p.two_over_omega_1;
-    let d_f_pitch_rate_eta_d_omega_1 = d_pitch_rate_rate_printed_d_chi_1
-        * p.minus_two_over_omega_1 * eta_static_1; // 1/s
+    let d_f_velocity_eta_d_omega_1 = d_f_velocity_eta_d_s_term_1
+        * generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1; // ft/s/rad
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1;
+    let d_f_gamma_eta_d_omega_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor
+        * generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1;
+    let d_f_alpha_eta_d_omega_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor
+        * generalized_force_1_inv_omega_1_2 * p.two_over_omega_1;
+    let d_f_pitch_rate_eta_d_omega_1 = d_f_pitch_rate_eta_d_s_term_1
+        * p.minus_two_over_omega_1 * generalized_force_1_inv_omega_1_2; // 1/s
     let d_chi_rate_1_d_omega_1 = -x.chi_1 * p.d_chi_decay_1_d_omega_1; // ft^0.5*slug^0.5/rad
-    let d_f_velocity_eta_d_omega_2 = d_velocity_rate_printed_d_chi_2 * eta_static_2
-        * p.minus_two_over_omega_2; // ft/s/rad
-    let d_f_gamma_eta_d_omega_2 = d_gamma_rate_printed_d_chi_2 * eta_static_2
-        * p.minus_two_over_omega_2;
-    let d_f_alpha_eta_d_omega_2 = d_gamma_rate_printed_d_chi_2 * eta_static_2
-        * p.two_over_omega_2;
-    let d_f_pitch_rate_eta_d_omega_2 = d_pitch_rate_rate_printed_d_chi_2
-        * p.minus_two_over_omega_2 * eta_static_2; // 1/s
+    let d_f_velocity_eta_d_omega_2 = d_f_velocity_eta_d_s_term_2
+        * generalized_force_2_inv_omega_2_2 * p.minus_two_over_omega_2; // ft/s/rad
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2;
+    let d_f_gamma_eta_d_omega_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor
+        * generalized_force_2_inv_omega_2_2 * p.minus_two_over_omega_2;
+    let d_f_alpha_eta_d_omega_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor
+        * generalized_force_2_inv_omega_2_2 * p.two_over_omega_2;
+    let d_f_pitch_rate_eta_d_omega_2 = d_f_pitch_rate_eta_d_s_term_2
+        * p.minus_two_over_omega_2 * generalized_force_2_inv_omega_2_2; // 1/s
     let d_chi_rate_2_d_omega_2 = -x.chi_2 * p.d_chi_decay_2_d_omega_2; // ft^0.5*slug^0.5/rad
-    let d_f_velocity_eta_d_omega_3 = d_velocity_rate_printed_d_chi_3 * eta_static_3
-        * p.minus_two_over_omega_3; // ft/s/rad
-    let d_f_gamma_eta_d_omega_3 = d_gamma_rate_printed_d_chi_3 * eta_static_3
-        * p.minus_two_over_omega_3;
-    let d_f_alpha_eta_d_omega_3 = d_gamma_rate_printed_d_chi_3 * eta_static_3
-        * p.two_over_omega_3;
-    let d_f_pitch_rate_eta_d_omega_3 = d_pitch_rate_rate_printed_d_chi_3
-        * p.minus_two_over_omega_3 * eta_static_3; // 1/s
+    let d_f_velocity_eta_d_omega_3 = d_f_velocity_eta_d_s_term_3
+        * generalized_force_3_inv_omega_3_2 * p.minus_two_over_omega_3; // ft/s/rad
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3;
+    let d_f_gamma_eta_d_omega_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor
+        * generalized_force_3_inv_omega_3_2 * p.minus_two_over_omega_3;
+    let d_f_alpha_eta_d_omega_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor
+        * generalized_force_3_inv_omega_3_2 * p.two_over_omega_3;
+    let d_f_pitch_rate_eta_d_omega_3 = d_f_pitch_rate_eta_d_s_term_3
+        * p.minus_two_over_omega_3 * generalized_force_3_inv_omega_3_2; // 1/s
     let d_chi_rate_3_d_omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
     let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // ft^0.5*slug^0.5/s
     let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // ft^0.5*slug^0.5/s
     let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // ft^0.5*slug^0.5/s
     let d_f_velocity_eta_d_canard_command = reference_force
-        * (d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
-            + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_c
-            + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
-                * u.delta_c); // ft/s^2
+        * (d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
+            + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_c
+            + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_c); // ft/s^2
     let d_f_gamma_eta_d_canard_command = reference_force
         * (slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
             + slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
@@ -652,19 +636,17 @@ pub fn parameter_jacobian_values<R: Real>(
             + slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
             + slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_c); // rad/s
     let d_f_pitch_rate_eta_d_canard_command = reference_force
-        * (d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
-            + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c
-                * u.delta_c
-            + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
-                * u.delta_c); // rad/s^2
+        * (d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
+            + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_c
+            + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_c); // rad/s^2
     let d_f_velocity_eta_d_canard_slaving_term_1 =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
+        d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
+        + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
+        + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
     let d_f_velocity_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft/s^2
     let d_f_velocity_d_canard_slaving = reference_force
-        * p.d_f_velocity_d_canard_slaving_constant_1 * u.delta_e
+        * p.c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_canard_slaving; // ft/s^2
     let d_f_gamma_eta_d_canard_slaving_term_1 =
         slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
@@ -679,44 +661,54 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_f_alpha_eta_d_canard_slaving = -reference_force
         * p.c_l_delta_e_over_c_l_delta_c * d_f_alpha_eta_d_canard_slaving_term_1; // rad/s
     let d_f_pitch_rate_eta_d_canard_slaving_term_1 =
-        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
+        d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
+        + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
+        + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
     let d_f_pitch_rate_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad/s^2
     let d_pitch_rate_rate_printed_d_canard_slaving = d_f_pitch_rate_eta_d_canard_slaving
         - u.delta_e * reference_force
-            * p.d_pitch_rate_rate_printed_d_canard_slaving_constant_1; // rad/s^2
+            * p.c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c; // rad/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio * (d_gravity_turn_d_r_e_term_1 - x.velocity)
+        * (radius_ratio
+            * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_f_gamma_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_f_alpha_d_spherical_earth = cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // ft^0.5*slug^0.5/s
     let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // ft^0.5*slug^0.5/s
     let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // ft^0.5*slug^0.5/s
+    let generalized_force_1_inv_omega_1_2_plus_chi_1 = generalized_force_1_inv_omega_1_2
+        + x.chi_1;
     let d_velocity_rate_printed_d_c_t_eta_1 = reference_force * p.inv_m * cos_alpha
-        * eta_1; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_1 = turn_factor * sin_alpha * eta_1; // rad*ft^0.5*slug^0.5/s
+        * generalized_force_1_inv_omega_1_2_plus_chi_1; // ft^1.5*slug^0.5/s^2
+    let d_gamma_rate_printed_d_c_t_eta_1 = turn_factor * sin_alpha
+        * generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_t_eta_1 = -d_gamma_rate_printed_d_c_t_eta_1; // rad*ft^0.5*slug^0.5/s
     let d_pitch_rate_rate_printed_d_c_t_eta_1 = reference_force * p.z_t_over_i_yy
-        * eta_1; // rad*ft^0.5*slug^0.5/s^2
+        * generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s^2
+    let generalized_force_2_inv_omega_2_2_plus_chi_2 = generalized_force_2_inv_omega_2_2
+        + x.chi_2;
     let d_velocity_rate_printed_d_c_t_eta_2 = reference_force * p.inv_m * cos_alpha
-        * eta_2; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_2 = turn_factor * sin_alpha * eta_2; // rad*ft^0.5*slug^0.5/s
+        * generalized_force_2_inv_omega_2_2_plus_chi_2; // ft^1.5*slug^0.5/s^2
+    let d_gamma_rate_printed_d_c_t_eta_2 = turn_factor * sin_alpha
+        * generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_t_eta_2 = -d_gamma_rate_printed_d_c_t_eta_2; // rad*ft^0.5*slug^0.5/s
     let d_pitch_rate_rate_printed_d_c_t_eta_2 = reference_force * p.z_t_over_i_yy
-        * eta_2; // rad*ft^0.5*slug^0.5/s^2
+        * generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
+    let generalized_force_3_inv_omega_3_2_plus_chi_3 = generalized_force_3_inv_omega_3_2
+        + x.chi_3;
     let d_velocity_rate_printed_d_c_t_eta_3 = reference_force * p.inv_m * cos_alpha
-        * eta_3; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_3 = turn_factor * sin_alpha * eta_3; // rad*ft^0.5*slug^0.5/s
+        * generalized_force_3_inv_omega_3_2_plus_chi_3; // ft^1.5*slug^0.5/s^2
+    let d_gamma_rate_printed_d_c_t_eta_3 = turn_factor * sin_alpha
+        * generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_t_eta_3 = -d_gamma_rate_printed_d_c_t_eta_3; // rad*ft^0.5*slug^0.5/s
     let d_pitch_rate_rate_printed_d_c_t_eta_3 = reference_force * p.z_t_over_i_yy
-        * eta_3; // rad*ft^0.5*slug^0.5/s^2
+        * generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
     let d_f_velocity_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
         * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_e = reference_force
-        * p.d_f_velocity_d_c_l_delta_e_constant_1 * u.delta_e
+        * p.c_d_delta_c_canard_slaving_over_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_c_l_delta_e; // ft*rad/s^2
     let d_f_gamma_eta_d_c_l_delta_e = -reference_force
         * p.canard_slaving_over_c_l_delta_c * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
@@ -726,97 +718,103 @@ pub fn parameter_jacobian_values<R: Real>(
         * reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad^2/s^2
     let d_pitch_rate_rate_printed_d_c_l_delta_e = d_f_pitch_rate_eta_d_c_l_delta_e
         - u.delta_e * reference_force
-            * p.d_pitch_rate_rate_printed_d_c_l_delta_e_constant_1; // rad^2/s^2
-    let d_f_velocity_eta_d_c_l_delta_c = p.d_f_velocity_eta_d_c_l_delta_c_constant_1
+            * p.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c; // rad^2/s^2
+    let d_f_velocity_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_c = d_f_velocity_eta_d_c_l_delta_c
         - reference_force * p.d_f_velocity_d_c_l_delta_c_constant_1 * u.delta_e; // ft*rad/s^2
     let d_f_gamma_eta_d_c_l_delta_c = reference_force
-        * p.d_f_velocity_eta_d_c_l_delta_c_constant_1
+        * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
     let d_f_alpha_eta_d_c_l_delta_c = reference_force
-        * p.d_f_velocity_eta_d_c_l_delta_c_constant_1
+        * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_f_alpha_eta_d_canard_slaving_term_1; // rad^2/s
-    let d_f_pitch_rate_eta_d_c_l_delta_c = p.d_f_velocity_eta_d_c_l_delta_c_constant_1
+    let d_f_pitch_rate_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad^2/s^2
     let d_pitch_rate_rate_printed_d_c_l_delta_c = d_f_pitch_rate_eta_d_c_l_delta_c
         + u.delta_e * reference_force
             * p.d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1; // rad^2/s^2
-    let d_gamma_rate_printed_d_c_l_eta_1 = turn_factor * eta_1; // rad*ft^0.5*slug^0.5/s
+    let d_gamma_rate_printed_d_c_l_eta_1 = turn_factor
+        * generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_l_eta_1 = -d_gamma_rate_printed_d_c_l_eta_1; // rad*ft^0.5*slug^0.5/s
-    let d_gamma_rate_printed_d_c_l_eta_2 = turn_factor * eta_2; // rad*ft^0.5*slug^0.5/s
+    let d_gamma_rate_printed_d_c_l_eta_2 = turn_factor
+        * generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_l_eta_2 = -d_gamma_rate_printed_d_c_l_eta_2; // rad*ft^0.5*slug^0.5/s
-    let d_gamma_rate_printed_d_c_l_eta_3 = turn_factor * eta_3; // rad*ft^0.5*slug^0.5/s
+    let d_gamma_rate_printed_d_c_l_eta_3 = turn_factor
+        * generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_l_eta_3 = -d_gamma_rate_printed_d_c_l_eta_3; // rad*ft^0.5*slug^0.5/s
-    let d_velocity_rate_printed_d_c_d_eta_1 = -reference_force * p.inv_m * eta_1; // ft^1.5*slug^0.5/s^2
-    let d_velocity_rate_printed_d_c_d_eta_2 = -reference_force * p.inv_m * eta_2; // ft^1.5*slug^0.5/s^2
-    let d_velocity_rate_printed_d_c_d_eta_3 = -reference_force * p.inv_m * eta_3; // ft^1.5*slug^0.5/s^2
+    let d_velocity_rate_printed_d_c_d_eta_1 = -reference_force * p.inv_m
+        * generalized_force_1_inv_omega_1_2_plus_chi_1; // ft^1.5*slug^0.5/s^2
+    let d_velocity_rate_printed_d_c_d_eta_2 = -reference_force * p.inv_m
+        * generalized_force_2_inv_omega_2_2_plus_chi_2; // ft^1.5*slug^0.5/s^2
+    let d_velocity_rate_printed_d_c_d_eta_3 = -reference_force * p.inv_m
+        * generalized_force_3_inv_omega_3_2_plus_chi_3; // ft^1.5*slug^0.5/s^2
     let d_pitch_rate_rate_printed_d_c_m_eta_1 = reference_force * p.c_bar_over_i_yy
-        * eta_1; // rad*ft^0.5*slug^0.5/s^2
+        * generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s^2
     let d_pitch_rate_rate_printed_d_c_m_eta_2 = reference_force * p.c_bar_over_i_yy
-        * eta_2; // rad*ft^0.5*slug^0.5/s^2
+        * generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
     let d_pitch_rate_rate_printed_d_c_m_eta_3 = reference_force * p.c_bar_over_i_yy
-        * eta_3; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_velocity_eta_d_c_n_1_alpha_2 = d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_alpha_2 = d_pitch_rate_rate_printed_d_chi_1
+        * generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
+    let d_f_velocity_eta_d_c_n_1_alpha_2 = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
+        * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_alpha_2 = d_f_pitch_rate_eta_d_s_term_1
         * p.inv_omega_1_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_alpha = d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_alpha = d_pitch_rate_rate_printed_d_chi_1
+    let d_f_velocity_eta_d_c_n_1_alpha = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
+        * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_alpha = d_f_pitch_rate_eta_d_s_term_1
         * p.inv_omega_1_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_delta_e = d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_delta_e = d_pitch_rate_rate_printed_d_chi_1
+    let d_f_velocity_eta_d_c_n_1_delta_e = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
+        * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_delta_e = d_f_pitch_rate_eta_d_s_term_1
         * p.inv_omega_1_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_delta_c = d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_delta_c = d_pitch_rate_rate_printed_d_chi_1
+    let d_f_velocity_eta_d_c_n_1_delta_c = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
+        * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_delta_c = d_f_pitch_rate_eta_d_s_term_1
         * p.inv_omega_1_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_0 = d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+    let d_f_velocity_eta_d_c_n_1_0 = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
         * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_0 = d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * reference_force; // rad*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_alpha_2 = d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_alpha_2 = d_pitch_rate_rate_printed_d_chi_2
+    let d_f_pitch_rate_eta_d_c_n_1_0 = d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2
+        * reference_force; // rad*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_2_alpha_2 = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
+        * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_alpha_2 = d_f_pitch_rate_eta_d_s_term_2
         * p.inv_omega_2_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_alpha = d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_alpha = d_pitch_rate_rate_printed_d_chi_2
+    let d_f_velocity_eta_d_c_n_2_alpha = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
+        * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_alpha = d_f_pitch_rate_eta_d_s_term_2
         * p.inv_omega_2_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_delta_e = d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_delta_e = d_pitch_rate_rate_printed_d_chi_2
+    let d_f_velocity_eta_d_c_n_2_delta_e = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
+        * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_delta_e = d_f_pitch_rate_eta_d_s_term_2
         * p.inv_omega_2_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_delta_c = d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_delta_c = d_pitch_rate_rate_printed_d_chi_2
+    let d_f_velocity_eta_d_c_n_2_delta_c = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
+        * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_delta_c = d_f_pitch_rate_eta_d_s_term_2
         * p.inv_omega_2_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_0 = d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+    let d_f_velocity_eta_d_c_n_2_0 = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
         * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_0 = d_pitch_rate_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * reference_force; // rad*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_alpha_2 = d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_alpha_2 = d_pitch_rate_rate_printed_d_chi_3
+    let d_f_pitch_rate_eta_d_c_n_2_0 = d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2
+        * reference_force; // rad*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_3_alpha_2 = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
+        * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_alpha_2 = d_f_pitch_rate_eta_d_s_term_3
         * p.inv_omega_3_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_alpha = d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_alpha = d_pitch_rate_rate_printed_d_chi_3
+    let d_f_velocity_eta_d_c_n_3_alpha = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
+        * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_alpha = d_f_pitch_rate_eta_d_s_term_3
         * p.inv_omega_3_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_delta_e = d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_delta_e = d_pitch_rate_rate_printed_d_chi_3
+    let d_f_velocity_eta_d_c_n_3_delta_e = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
+        * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_delta_e = d_f_pitch_rate_eta_d_s_term_3
         * p.inv_omega_3_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_delta_c = d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_delta_c = d_pitch_rate_rate_printed_d_chi_3
+    let d_f_velocity_eta_d_c_n_3_delta_c = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
+        * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_delta_c = d_f_pitch_rate_eta_d_s_term_3
         * p.inv_omega_3_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_0 = d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+    let d_f_velocity_eta_d_c_n_3_0 = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
         * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_0 = d_pitch_rate_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * reference_force; // rad*slug^0.5/s^2/ft^0.5
+    let d_f_pitch_rate_eta_d_c_n_3_0 = d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2
+        * reference_force; // rad*slug^0.5/s^2/ft^0.5
 
     [
         d_velocity_rate_printed_d_m,

@@ -141,21 +141,21 @@ pub struct Prepared<R> {
     /// `s * inv_i_yy`.
     pub s_over_i_yy: R,
     /// `z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * inv_omega_1_2`.
-    pub d_f_pitch_rate_eta_d_velocity_constant_1: R,
+    pub z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2: R,
     /// `z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * inv_omega_2_2`.
-    pub d_f_pitch_rate_eta_d_velocity_constant_2: R,
+    pub z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2: R,
     /// `z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * inv_omega_3_2`.
-    pub d_f_pitch_rate_eta_d_velocity_constant_3: R,
+    pub z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2: R,
     /// Partial derivative of g of the pitch_rate row with respect to dynamic pressure, ft^2/s^2/lb.
     pub slope_of_g_pitch_rate_in_dynamic_pressure: R,
     /// `2 * c_m_alpha_2`.
     pub two_c_m_alpha_2: R,
     /// `inv_i_yy * z_t_c_t_eta_1_plus_c_bar_c_m_eta_1`.
-    pub d_pitch_rate_rate_printed_d_chi_1_constant_1: R,
+    pub z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy: R,
     /// `inv_i_yy * z_t_c_t_eta_2_plus_c_bar_c_m_eta_2`.
-    pub d_pitch_rate_rate_printed_d_chi_2_constant_1: R,
+    pub z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy: R,
     /// `inv_i_yy * z_t_c_t_eta_3_plus_c_bar_c_m_eta_3`.
-    pub d_pitch_rate_rate_printed_d_chi_3_constant_1: R,
+    pub z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy: R,
     /// `-chi_decay_1`.
     pub minus_chi_decay_1: R,
     /// `-chi_decay_2`.
@@ -169,7 +169,7 @@ pub struct Prepared<R> {
     /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, ft^0.5/slug^0.5/rad.
     pub d_c_n_3_d_delta_e: R,
     /// `inv_m * c_d_delta_e_plus_c_d_delta_c_canard_gain`.
-    pub d_f_velocity_d_delta_e_constant_1: R,
+    pub c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m: R,
     /// `c_n_1_delta_c * canard_command`.
     pub c_n_1_delta_c_canard_command: R,
     /// `c_n_2_delta_c * canard_command`.
@@ -203,17 +203,17 @@ pub struct Prepared<R> {
     /// `inv_omega_3_2 * c_n_3_delta_c`.
     pub inv_omega_3_2_c_n_3_delta_c: R,
     /// `inv_m * c_d_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub d_f_velocity_d_canard_slaving_constant_1: R,
+    pub c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c: R,
     /// `c_l_delta_e * inv_c_l_delta_c`.
     pub c_l_delta_e_over_c_l_delta_c: R,
     /// `R::from_f64(-2.0) * g * inv_r_e`.
     pub minus_two_g_over_r_e: R,
     /// `inv_m * c_d_delta_c * canard_slaving * inv_c_l_delta_c`.
-    pub d_f_velocity_d_c_l_delta_e_constant_1: R,
+    pub c_d_delta_c_canard_slaving_over_m_c_l_delta_c: R,
     /// `canard_slaving * inv_c_l_delta_c`.
     pub canard_slaving_over_c_l_delta_c: R,
     /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-    pub d_f_velocity_eta_d_c_l_delta_c_constant_1: R,
+    pub canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
     /// `inv_m * c_d_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
     pub d_f_velocity_d_c_l_delta_c_constant_1: R,
     /// `inv_m * canard_gain`.
@@ -243,17 +243,17 @@ pub struct Prepared<R> {
     /// Coefficient of eta_3 in C_M, 1/(ft*slug)^0.5.
     pub c_m_eta_3: R,
     /// `c_m_delta_e_plus_canard_gain_c_m_delta_c * inv_i_yy`.
-    pub d_g_pitch_rate_d_c_bar_constant_1: R,
+    pub c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy: R,
     /// `R::HALF * s * inv_i_yy`.
     pub half_s_over_i_yy: R,
     /// `R::HALF * slope_of_g_pitch_rate_in_dynamic_pressure`.
-    pub d_pitch_rate_rate_printed_d_rho_0_constant_1: R,
+    pub half_slope_of_g_pitch_rate_in_dynamic_pressure: R,
     /// `R::HALF * inv_i_yy`.
     pub half_over_i_yy: R,
     /// `c_bar * inv_i_yy * c_m_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub d_pitch_rate_rate_printed_d_canard_slaving_constant_1: R,
+    pub c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c: R,
     /// `c_bar * inv_i_yy * c_m_delta_c * canard_slaving * inv_c_l_delta_c`.
-    pub d_pitch_rate_rate_printed_d_c_l_delta_e_constant_1: R,
+    pub c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c: R,
     /// `c_bar * inv_i_yy * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
     pub d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1: R,
     /// `c_bar * inv_i_yy`.
@@ -447,27 +447,27 @@ impl<R> Prepared<R> {
             two_c_n_3_alpha_2: f(&self.two_c_n_3_alpha_2),
             c_t_phi_alpha_over_m: f(&self.c_t_phi_alpha_over_m),
             s_over_i_yy: f(&self.s_over_i_yy),
-            d_f_pitch_rate_eta_d_velocity_constant_1: f(
-                &self.d_f_pitch_rate_eta_d_velocity_constant_1,
+            z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2: f(
+                &self.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2,
             ),
-            d_f_pitch_rate_eta_d_velocity_constant_2: f(
-                &self.d_f_pitch_rate_eta_d_velocity_constant_2,
+            z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2: f(
+                &self.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2,
             ),
-            d_f_pitch_rate_eta_d_velocity_constant_3: f(
-                &self.d_f_pitch_rate_eta_d_velocity_constant_3,
+            z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2: f(
+                &self.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2,
             ),
             slope_of_g_pitch_rate_in_dynamic_pressure: f(
                 &self.slope_of_g_pitch_rate_in_dynamic_pressure,
             ),
             two_c_m_alpha_2: f(&self.two_c_m_alpha_2),
-            d_pitch_rate_rate_printed_d_chi_1_constant_1: f(
-                &self.d_pitch_rate_rate_printed_d_chi_1_constant_1,
+            z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy: f(
+                &self.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy,
             ),
-            d_pitch_rate_rate_printed_d_chi_2_constant_1: f(
-                &self.d_pitch_rate_rate_printed_d_chi_2_constant_1,
+            z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy: f(
+                &self.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy,
             ),
-            d_pitch_rate_rate_printed_d_chi_3_constant_1: f(
-                &self.d_pitch_rate_rate_printed_d_chi_3_constant_1,
+            z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy: f(
+                &self.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy,
             ),
             minus_chi_decay_1: f(&self.minus_chi_decay_1),
             minus_chi_decay_2: f(&self.minus_chi_decay_2),
@@ -475,8 +475,8 @@ impl<R> Prepared<R> {
             d_c_n_1_d_delta_e: f(&self.d_c_n_1_d_delta_e),
             d_c_n_2_d_delta_e: f(&self.d_c_n_2_d_delta_e),
             d_c_n_3_d_delta_e: f(&self.d_c_n_3_d_delta_e),
-            d_f_velocity_d_delta_e_constant_1: f(
-                &self.d_f_velocity_d_delta_e_constant_1,
+            c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m: f(
+                &self.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m,
             ),
             c_n_1_delta_c_canard_command: f(&self.c_n_1_delta_c_canard_command),
             c_n_2_delta_c_canard_command: f(&self.c_n_2_delta_c_canard_command),
@@ -494,17 +494,17 @@ impl<R> Prepared<R> {
             inv_omega_1_2_c_n_1_delta_c: f(&self.inv_omega_1_2_c_n_1_delta_c),
             inv_omega_2_2_c_n_2_delta_c: f(&self.inv_omega_2_2_c_n_2_delta_c),
             inv_omega_3_2_c_n_3_delta_c: f(&self.inv_omega_3_2_c_n_3_delta_c),
-            d_f_velocity_d_canard_slaving_constant_1: f(
-                &self.d_f_velocity_d_canard_slaving_constant_1,
+            c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c: f(
+                &self.c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c,
             ),
             c_l_delta_e_over_c_l_delta_c: f(&self.c_l_delta_e_over_c_l_delta_c),
             minus_two_g_over_r_e: f(&self.minus_two_g_over_r_e),
-            d_f_velocity_d_c_l_delta_e_constant_1: f(
-                &self.d_f_velocity_d_c_l_delta_e_constant_1,
+            c_d_delta_c_canard_slaving_over_m_c_l_delta_c: f(
+                &self.c_d_delta_c_canard_slaving_over_m_c_l_delta_c,
             ),
             canard_slaving_over_c_l_delta_c: f(&self.canard_slaving_over_c_l_delta_c),
-            d_f_velocity_eta_d_c_l_delta_c_constant_1: f(
-                &self.d_f_velocity_eta_d_c_l_delta_c_constant_1,
+            canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: f(
+                &self.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
             ),
             d_f_velocity_d_c_l_delta_c_constant_1: f(
                 &self.d_f_velocity_d_c_l_delta_c_constant_1,
@@ -522,19 +522,19 @@ impl<R> Prepared<R> {
             c_m_eta_1: f(&self.c_m_eta_1),
             c_m_eta_2: f(&self.c_m_eta_2),
             c_m_eta_3: f(&self.c_m_eta_3),
-            d_g_pitch_rate_d_c_bar_constant_1: f(
-                &self.d_g_pitch_rate_d_c_bar_constant_1,
+            c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy: f(
+                &self.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy,
             ),
             half_s_over_i_yy: f(&self.half_s_over_i_yy),
-            d_pitch_rate_rate_printed_d_rho_0_constant_1: f(
-                &self.d_pitch_rate_rate_printed_d_rho_0_constant_1,
+            half_slope_of_g_pitch_rate_in_dynamic_pressure: f(
+                &self.half_slope_of_g_pitch_rate_in_dynamic_pressure,
             ),
             half_over_i_yy: f(&self.half_over_i_yy),
-            d_pitch_rate_rate_printed_d_canard_slaving_constant_1: f(
-                &self.d_pitch_rate_rate_printed_d_canard_slaving_constant_1,
+            c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c: f(
+                &self.c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c,
             ),
-            d_pitch_rate_rate_printed_d_c_l_delta_e_constant_1: f(
-                &self.d_pitch_rate_rate_printed_d_c_l_delta_e_constant_1,
+            c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c: f(
+                &self.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c,
             ),
             d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1: f(
                 &self.d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1,
@@ -656,20 +656,20 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
-    let chi_share_1_term_1 = R::ONE
+    let one_minus_variance_matching_minus_moment_matching = R::ONE
         - p.variance_matching
         - p.moment_matching;
-    let chi_share_1 = p.zeta_1 * chi_share_1_term_1
+    let chi_share_1 = p.zeta_1 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * moment_matching_over_zeta_1;
     let inv_omega_1 = p.omega_1.recip();
     let chi_diffusion_1 = chi_share_1 * p.sigma_1 * inv_omega_1; // (ft*slug)^0.5/s^0.5
-    let chi_share_2 = p.zeta_2 * chi_share_1_term_1
+    let chi_share_2 = p.zeta_2 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * moment_matching_over_zeta_2;
     let inv_omega_2 = p.omega_2.recip();
     let chi_diffusion_2 = chi_share_2 * p.sigma_2 * inv_omega_2; // (ft*slug)^0.5/s^0.5
-    let chi_share_3 = p.zeta_3 * chi_share_1_term_1
+    let chi_share_3 = p.zeta_3 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * moment_matching_over_zeta_3;
     let inv_omega_3 = p.omega_3.recip();
@@ -762,19 +762,19 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         two_c_n_3_alpha_2: R::TWO * p.c_n_3_alpha_2,
         c_t_phi_alpha_over_m: inv_m * p.c_t_phi_alpha,
         s_over_i_yy: p.s * inv_i_yy,
-        d_f_pitch_rate_eta_d_velocity_constant_1: z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
+        z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2: z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
             * inv_omega_1_2,
-        d_f_pitch_rate_eta_d_velocity_constant_2: z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
+        z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2: z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
             * inv_omega_2_2,
-        d_f_pitch_rate_eta_d_velocity_constant_3: z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
+        z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2: z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
             * inv_omega_3_2,
         slope_of_g_pitch_rate_in_dynamic_pressure,
         two_c_m_alpha_2: R::TWO * p.c_m_alpha_2,
-        d_pitch_rate_rate_printed_d_chi_1_constant_1: inv_i_yy
+        z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy: inv_i_yy
             * z_t_c_t_eta_1_plus_c_bar_c_m_eta_1,
-        d_pitch_rate_rate_printed_d_chi_2_constant_1: inv_i_yy
+        z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy: inv_i_yy
             * z_t_c_t_eta_2_plus_c_bar_c_m_eta_2,
-        d_pitch_rate_rate_printed_d_chi_3_constant_1: inv_i_yy
+        z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy: inv_i_yy
             * z_t_c_t_eta_3_plus_c_bar_c_m_eta_3,
         minus_chi_decay_1: -chi_decay_1,
         minus_chi_decay_2: -chi_decay_2,
@@ -782,7 +782,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         d_c_n_1_d_delta_e,
         d_c_n_2_d_delta_e,
         d_c_n_3_d_delta_e,
-        d_f_velocity_d_delta_e_constant_1: inv_m
+        c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m: inv_m
             * c_d_delta_e_plus_c_d_delta_c_canard_gain,
         c_n_1_delta_c_canard_command: p.c_n_1_delta_c * p.canard_command,
         c_n_2_delta_c_canard_command: p.c_n_2_delta_c * p.canard_command,
@@ -800,14 +800,14 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         inv_omega_1_2_c_n_1_delta_c: inv_omega_1_2 * p.c_n_1_delta_c,
         inv_omega_2_2_c_n_2_delta_c: inv_omega_2_2 * p.c_n_2_delta_c,
         inv_omega_3_2_c_n_3_delta_c: inv_omega_3_2 * p.c_n_3_delta_c,
-        d_f_velocity_d_canard_slaving_constant_1: inv_m * p.c_d_delta_c * p.c_l_delta_e
+        c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c: inv_m * p.c_d_delta_c * p.c_l_delta_e
             * inv_c_l_delta_c,
         c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
         minus_two_g_over_r_e: R::from_f64(-2.0) * p.g * inv_r_e,
-        d_f_velocity_d_c_l_delta_e_constant_1: inv_m * p.c_d_delta_c * p.canard_slaving
-            * inv_c_l_delta_c,
+        c_d_delta_c_canard_slaving_over_m_c_l_delta_c: inv_m * p.c_d_delta_c
+            * p.canard_slaving * inv_c_l_delta_c,
         canard_slaving_over_c_l_delta_c: p.canard_slaving * inv_c_l_delta_c,
-        d_f_velocity_eta_d_c_l_delta_c_constant_1: p.canard_slaving * p.c_l_delta_e
+        canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: p.canard_slaving * p.c_l_delta_e
             * inv_c_l_delta_c_2,
         d_f_velocity_d_c_l_delta_c_constant_1: inv_m * p.c_d_delta_c * p.canard_slaving
             * p.c_l_delta_e * inv_c_l_delta_c_2,
@@ -825,15 +825,15 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_m_eta_1: p.c_m_eta_1,
         c_m_eta_2: p.c_m_eta_2,
         c_m_eta_3: p.c_m_eta_3,
-        d_g_pitch_rate_d_c_bar_constant_1: c_m_delta_e_plus_canard_gain_c_m_delta_c
+        c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy: c_m_delta_e_plus_canard_gain_c_m_delta_c
             * inv_i_yy,
         half_s_over_i_yy: R::HALF * p.s * inv_i_yy,
-        d_pitch_rate_rate_printed_d_rho_0_constant_1: R::HALF
+        half_slope_of_g_pitch_rate_in_dynamic_pressure: R::HALF
             * slope_of_g_pitch_rate_in_dynamic_pressure,
         half_over_i_yy: R::HALF * inv_i_yy,
-        d_pitch_rate_rate_printed_d_canard_slaving_constant_1: p.c_bar * inv_i_yy
+        c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c: p.c_bar * inv_i_yy
             * p.c_m_delta_c * p.c_l_delta_e * inv_c_l_delta_c,
-        d_pitch_rate_rate_printed_d_c_l_delta_e_constant_1: p.c_bar * inv_i_yy
+        c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c: p.c_bar * inv_i_yy
             * p.c_m_delta_c * p.canard_slaving * inv_c_l_delta_c,
         d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1: p.c_bar * inv_i_yy
             * p.c_m_delta_c * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2,

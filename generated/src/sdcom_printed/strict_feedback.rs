@@ -54,16 +54,15 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (29)
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let f_velocity_eta = reference_force * p.inv_m
-        * ((cos_alpha * p.c_t_eta_1 - p.c_d_eta_1) * eta_static_1
-            + (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2) * eta_static_2
-            + (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3) * eta_static_3); // ft/s^2
+        * ((cos_alpha * p.c_t_eta_1 - p.c_d_eta_1) * generalized_force_1_inv_omega_1_2
+            + (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2) * generalized_force_2_inv_omega_2_2
+            + (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3)
+                * generalized_force_3_inv_omega_3_2); // ft/s^2
 
     reference_force * p.inv_m
         * (cos_alpha * (p.c_t_alpha * x.alpha + p.c_t_0) - p.c_d_alpha * x.alpha
@@ -81,13 +80,14 @@ pub fn g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     let density = p.rho_0 * density_ratio; // slug/ft^3
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
     let cos_alpha = x.alpha.cos();
 
     // Strict-feedback form, (28)
-    reference_force * p.inv_m * cos_alpha * (p.c_t_phi_alpha * x.alpha + p.c_t_phi)
+    let dynamic_pressure_s = dynamic_pressure * p.s;
+
+    dynamic_pressure_s * p.inv_m * cos_alpha * (p.c_t_phi_alpha * x.alpha + p.c_t_phi)
 }
 
 /// Derivatives of the velocity rate with respect to the coloured noises chi, eq. (29).
@@ -100,28 +100,18 @@ pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let density = p.rho_0 * density_ratio; // slug/ft^3
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
     let cos_alpha = x.alpha.cos();
+    let dynamic_pressure_s = dynamic_pressure * p.s;
+    let h_V_term_1 = dynamic_pressure_s * p.inv_m
+        * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1);
+    let h_V_term_2 = dynamic_pressure_s * p.inv_m
+        * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2);
+    let h_V_term_3 = dynamic_pressure_s * p.inv_m
+        * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3);
 
-    // Derivatives with respect to chi_1
-    let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1); // ft^0.5/s^2/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2); // ft^0.5/s^2/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3); // ft^0.5/s^2/slug^0.5
-
-    [
-        d_velocity_rate_printed_d_chi_1,
-        d_velocity_rate_printed_d_chi_2,
-        d_velocity_rate_printed_d_chi_3,
-    ]
+    [h_V_term_1, h_V_term_2, h_V_term_3]
 }
 
 /// Derivative of the velocity rate with respect to the angle of attack, at frozen inputs, eq. (28). Unit:
@@ -135,16 +125,17 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let density = p.rho_0 * density_ratio; // slug/ft^3
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
     let cos_alpha = x.alpha.cos();
 
     // Strict-feedback form, (28)
-    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
-        * (p.c_t_alpha + p.c_t_phi_alpha * u.phi); // 1/rad
+    let dynamic_pressure_s = dynamic_pressure * p.s;
+    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
+        * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
 
-    reference_force * p.inv_m * (d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha)
+    dynamic_pressure_s * p.inv_m
+        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha)
 }
 
 /// Part of f_V from the static flexible coordinates, eq. (29). Unit: ft/s^2.
@@ -189,16 +180,16 @@ pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (29)
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+
     reference_force * p.inv_m
-        * ((cos_alpha * p.c_t_eta_1 - p.c_d_eta_1) * eta_static_1
-            + (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2) * eta_static_2
-            + (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3) * eta_static_3)
+        * ((cos_alpha * p.c_t_eta_1 - p.c_d_eta_1) * generalized_force_1_inv_omega_1_2
+            + (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2) * generalized_force_2_inv_omega_2_2
+            + (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3)
+                * generalized_force_3_inv_omega_3_2)
 }
 
 /// Part of the gamma rate that is left to f, eq. (30). Unit: rad/s.
@@ -255,26 +246,21 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (31)
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0
-        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0); // rad
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
+    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
+    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
+        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0);
 
-    turn_factor * slope_of_f_gamma_in_turn_factor
+    turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - gravity_turn * cos_gamma
         + f_gamma_eta
 }
@@ -295,10 +281,10 @@ pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Strict-feedback form, (30)
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let g_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
 
-    turn_factor * slope_of_g_gamma_in_turn_factor
+    turn_factor * g_gamma_over_turn_factor
 }
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
@@ -315,29 +301,20 @@ pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
 
     // Motion, (1)
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Derivatives with respect to chi_1
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3;
 
     [
-        d_gamma_rate_printed_d_chi_1,
-        d_gamma_rate_printed_d_chi_2,
-        d_gamma_rate_printed_d_chi_3,
+        sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor,
+        sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor,
+        sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor,
     ]
 }
 
@@ -357,10 +334,10 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
     // Strict-feedback form, (30)
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    let alpha_slope_gamma_over_turn_factor = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
 
-    turn_factor * slope_of_g_gamma_in_turn_factor
+    turn_factor * alpha_slope_gamma_over_turn_factor
 }
 
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
@@ -408,23 +385,18 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (31)
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
 
-    turn_factor * slope_of_f_gamma_eta_in_turn_factor
+    turn_factor * f_gamma_eta_over_turn_factor
 }
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
@@ -481,23 +453,18 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
-    // Strict-feedback form, (31)
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
-    let f_alpha_eta = -f_gamma_eta; // rad/s
+    // Strict-feedback form, (33)
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+    let f_alpha_eta_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
+    let f_alpha_eta_term_2 = turn_factor * f_alpha_eta_term_1;
+    let f_alpha_eta = -f_alpha_eta_term_2; // rad/s
 
     gravity_turn * cos_gamma
         - turn_factor
@@ -529,33 +496,20 @@ pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
 
     // Motion, (1)
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_1_plus_c_l_eta_1;
+    let h_alpha_term_1 = -sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_2_plus_c_l_eta_2;
+    let h_alpha_term_2 = -sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor = turn_factor
+        * sin_alpha_c_t_eta_3_plus_c_l_eta_3;
+    let h_alpha_term_3 = -sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor;
 
-    // Derivatives with respect to chi_1
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
-
-    [
-        d_alpha_rate_printed_d_chi_1,
-        d_alpha_rate_printed_d_chi_2,
-        d_alpha_rate_printed_d_chi_3,
-    ]
+    [h_alpha_term_1, h_alpha_term_2, h_alpha_term_3]
 }
 
 /// Derivative of the alpha rate with respect to the angle of attack, at frozen inputs, eq. (32). Unit: 1/s.
@@ -573,12 +527,12 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     // Motion, (1)
     let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
 
-    // Strict-feedback form, (30)
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
+    // Strict-feedback form, (32)
+    let alpha_slope_alpha_term_1 = p.c_l_alpha
         + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
+    let alpha_slope_alpha_term_2 = turn_factor * alpha_slope_alpha_term_1;
 
-    -g_gamma
+    -alpha_slope_alpha_term_2
 }
 
 /// Part of f_alpha from the static flexible coordinates, eq. (33). Unit: rad/s.
@@ -626,24 +580,19 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    // Strict-feedback form, (33)
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+    let f_alpha_eta_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
+    let f_alpha_eta_term_2 = turn_factor * f_alpha_eta_term_1;
 
-    // Strict-feedback form, (31)
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * eta_static_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * eta_static_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * eta_static_3; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
-
-    -f_gamma_eta
+    -f_alpha_eta_term_2
 }
 
 /// Part of the pitch_rate rate that is left to f, eq. (34). Unit: rad/s^2.
@@ -685,16 +634,14 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (35)
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
     let f_pitch_rate_eta = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3); // rad/s^2
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2); // rad/s^2
 
     reference_force * p.inv_i_yy
         * (p.z_t
@@ -714,10 +661,11 @@ pub fn g_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     let density = p.rho_0 * density_ratio; // slug/ft^3
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Strict-feedback form, (34)
-    reference_force * p.g_pitch_rate_constant_1
+    let dynamic_pressure_s = dynamic_pressure * p.s;
+
+    dynamic_pressure_s * p.g_pitch_rate_constant_1
 }
 
 /// Derivatives of the pitch_rate rate with respect to the coloured noises chi, eq. (35).
@@ -730,25 +678,15 @@ pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let density = p.rho_0 * density_ratio; // slug/ft^3
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let dynamic_pressure_s = dynamic_pressure * p.s;
+    let h_Q_term_1 = dynamic_pressure_s
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy;
+    let h_Q_term_2 = dynamic_pressure_s
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy;
+    let h_Q_term_3 = dynamic_pressure_s
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy;
 
-    // Derivatives with respect to chi_1
-    let d_pitch_rate_rate_printed_d_chi_1 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_1_constant_1; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_pitch_rate_rate_printed_d_chi_2 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_2_constant_1; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_pitch_rate_rate_printed_d_chi_3 = reference_force
-        * p.d_pitch_rate_rate_printed_d_chi_3_constant_1; // rad/s^2/ft^0.5/slug^0.5
-
-    [
-        d_pitch_rate_rate_printed_d_chi_1,
-        d_pitch_rate_rate_printed_d_chi_2,
-        d_pitch_rate_rate_printed_d_chi_3,
-    ]
+    [h_Q_term_1, h_Q_term_2, h_Q_term_3]
 }
 
 /// Derivative of the pitch_rate rate with respect to the angle of attack, at frozen inputs, eq. (34). Unit:
@@ -762,10 +700,11 @@ pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let density = p.rho_0 * density_ratio; // slug/ft^3
     let velocity_2 = x.velocity * x.velocity;
     let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
 
     // Strict-feedback form, (34)
-    reference_force * p.inv_i_yy
+    let dynamic_pressure_s = dynamic_pressure * p.s;
+
+    dynamic_pressure_s * p.inv_i_yy
         * (p.c_bar_c_m_alpha + p.z_t * (p.c_t_alpha + p.c_t_phi_alpha * u.phi))
 }
 
@@ -808,14 +747,13 @@ pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
     let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
 
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-
     // Strict-feedback form, (35)
+    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
+    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
+    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
+
     reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3)
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2)
 }

@@ -12,7 +12,7 @@ impl Dag {
         if exponent == 1 {
             return base;
         }
-        if self.names[base].is_none() {
+        if self.names[base].is_empty() {
             match self.nodes[base].clone() {
                 Node::Number(value) => return self.number(value.powi(exponent)),
                 Node::Power(inner, k) => return self.power(inner, k * exponent),
@@ -60,6 +60,6 @@ impl Dag {
             Node::Power(..) => Pass::SharedPowers,
             _ => return false,
         };
-        self.names[id].is_none() && !self.has(pass)
+        self.names[id].is_empty() && !self.has(pass)
     }
 }
