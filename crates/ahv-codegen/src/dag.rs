@@ -100,8 +100,8 @@ impl Dag {
             let id = dag.build(&quantity.expr, &quantity.name)?;
             let nameable = !matches!(dag.nodes[id], Node::Number(_) | Node::Leaf(..));
             if nameable && dag.names[id].is_none() {
-                dag.names[id] = Some(position);
                 dag.note_named_product(id);
+                dag.names[id] = Some(position);
             }
             dag.symbols.insert(quantity.name.clone(), id);
         }

@@ -386,10 +386,7 @@ impl<'a> ModelEmitter<'a> {
         let mentions = |name: &str| {
             functions().any(|f| {
                 let typed = |text: &String| text.contains(&format!("{name}<R>"));
-                let built = |text: &String| {
-                    text.contains(&format!("{name} {{"))
-                        || text.contains(&format!("{name}::splat("))
-                };
+                let built = |text: &String| text.contains(&format!("{name} {{"));
                 f.arguments.iter().any(typed)
                     || typed(&f.result)
                     || f.outputs.iter().any(|(_, value)| built(value))
@@ -407,12 +404,7 @@ impl<'a> ModelEmitter<'a> {
             units: self.document.units.in_words(),
             imports,
             paper_names: functions().any(|f| f.name.chars().any(char::is_uppercase)),
-            needs_vector: functions().any(|f| {
-                !f.zeros.is_empty()
-                    || f.outputs
-                        .iter()
-                        .any(|(_, value)| value.contains("::splat("))
-            }),
+            needs_vector: functions().any(|f| !f.zeros.is_empty()),
             items,
         })
     }
