@@ -4,6 +4,7 @@
 use std::sync::OnceLock;
 
 use ahv_paper::ensemble::{Drive, Reading};
+use ahv_paper::reduce::{Mode, ReducedMode, Reduction, section_5_1};
 use ahv_paper::reproduce::pairing::Kind;
 use ahv_paper::reproduce::vehicle::{Vehicle, vehicles};
 use ahv_paper::reproduce::{Random, Size, printed, random};
@@ -60,7 +61,6 @@ fn table_1_has_both_readings() {
 /// greatest it passes 2 deviations in nearly every run of 10 s, and 6 in none.
 #[test]
 fn the_greatest_error_of_the_mean_has_the_size_of_its_law() {
-    use ahv_paper::reduce::{ReducedMode, Reduction, section_5_1};
     let random = small();
     let white = &random.table1.cases[2];
     for (mode, result) in section_5_1().into_iter().zip(&white.modes) {
@@ -104,6 +104,19 @@ fn snapshots_and_forced_modes_agree_with_closed_forms() {
         }
         // Held noise is weak: what is left is the lag.
         assert!(held.error_rms[0].0.value >= 0.95 * white.error_rms_without_noise);
+    }
+}
+
+/// The force (37): mean squares of sine and noise add, and that of the noise is σ²/(4ζω³) soon.
+#[test]
+fn forced_modes_feel_the_noise_of_their_input() {
+    let [(_, white), _] = &small().forced.readings;
+    let modes = section_5_1().into_iter().zip(printed::INPUT_37);
+    for ((Mode { omega, zeta, .. }, (amplitude, sigma)), forced) in modes.zip(white) {
+        let sine = amplitude / (omega * omega - 1.0).hypot(2.0 * zeta * omega);
+        let noise = sigma * sigma / (4.0 * zeta * omega.powi(3));
+        let rms = (0.5 * sine * sine + noise).sqrt();
+        assert_relative_eq!(forced.eta_rms, rms, max_relative = 0.08);
     }
 }
 
