@@ -380,24 +380,6 @@ impl<'a> ModelEmitter<'a> {
         if functions().any(|f| f.arguments.iter().any(|a| a.contains("Noise<"))) {
             imports.push("Noise");
         }
-        // Named by what stands in the file: an alias hides the vectors that it is made of.
-        let mentions = |name: &str| {
-            functions().any(|f| {
-                let typed = |text: &String| text.contains(&format!("{name}<R>"));
-                let built = |text: &String| {
-                    text.contains(&format!("{name} {{"))
-                        || text.contains(&format!("{name}::splat("))
-                };
-                f.arguments.iter().any(typed)
-                    || typed(&f.result)
-                    || f.outputs.iter().any(|(_, value)| built(value))
-                    || f.zeros.iter().any(|(_, of, _)| *of == name)
-            }) || items.iter().any(|item| match item {
-                Item::Pattern(pattern) => pattern.shape.contains(&format!("{name}::")),
-                Item::Function(_) => false,
-            })
-        };
-        imports.retain(|name| mentions(name));
         imports.sort_unstable();
         imports.dedup();
         render(&FunctionsTemplate {
@@ -405,12 +387,7 @@ impl<'a> ModelEmitter<'a> {
             units: self.document.units.in_words(),
             imports,
             paper_names: functions().any(|f| f.name.chars().any(char::is_uppercase)),
-            needs_vector: functions().any(|f| {
-                !f.zeros.is_empty()
-                    || f.outputs
-                        .iter()
-                        .any(|(_, value)| value.contains("::splat("))
-            }),
+            needs_vector: functions().any(|f| !f.zeros.is_empty()),
             items,
         })
     }

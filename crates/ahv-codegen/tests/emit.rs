@@ -390,6 +390,15 @@ fn an_ir_that_was_edited_badly_is_refused() {
             "\"x.velocity\", 2.5]",
             "the exponent 2.5",
         ),
+        // A vector over the flexible modes is an array; what has more indices has no name for its fields.
+        (
+            "[\"state\", \"noise\", \"noise\"],
+              \"unit\": null,
+              \"symmetric\": false,
+              \"entries\": []",
+            "[\"state\", \"noise\", \"mode\"], \"unit\": null, \"entries\": []",
+            "an output over [State, Noise, Mode], which the emitter has no form for",
+        ),
     ];
     for (from, to, message) in edits {
         let mut irs = irs();

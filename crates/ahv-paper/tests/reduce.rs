@@ -65,6 +65,9 @@ fn moments_agree_with_quadrature_for_every_damping() {
             if zeta > 0.1 {
                 assert_relative_eq!(reduced.eta_autocorrelation(lag), eta, max_relative = 1e-6);
             }
+            let product = |s: f64| (-a * s).exp() * (-a * (s + lag)).exp();
+            let chi = b * b * integral(product, 20.0 / a);
+            assert_relative_eq!(reduced.chi_autocorrelation(lag), chi, max_relative = 1e-6);
             // The spectrum's integral over frequency is 2π times the variance.
             let tail = 1e5;
             let whole = integral(|x| reduced.eta_spectrum(x * x) * 2.0 * x, f64::sqrt(tail));

@@ -4,8 +4,11 @@
 use std::sync::OnceLock;
 
 use ahv_paper::ensemble::{Drive, Reading};
-use ahv_paper::reproduce::{Random, Size, printed, random, vehicle::vehicles};
-use approx::assert_relative_eq;
+use ahv_paper::reduce::{Mode, ReducedMode, Reduction, section_5_1};
+use ahv_paper::reproduce::pairing::Kind;
+use ahv_paper::reproduce::vehicle::{Vehicle, vehicles};
+use ahv_paper::reproduce::{Random, Size, printed, random};
+use approx::{assert_abs_diff_eq, assert_relative_eq};
 
 const SMALL: Size = Size {
     repeats: 20,
@@ -58,7 +61,6 @@ fn table_1_has_both_readings() {
 /// greatest it passes 2 deviations in nearly every run of 10 s, and 6 in none.
 #[test]
 fn the_greatest_error_of_the_mean_has_the_size_of_its_law() {
-    use ahv_paper::reduce::{ReducedMode, Reduction, section_5_1};
     let random = small();
     let white = &random.table1.cases[2];
     for (mode, result) in section_5_1().into_iter().zip(&white.modes) {
@@ -105,6 +107,19 @@ fn snapshots_and_forced_modes_agree_with_closed_forms() {
     }
 }
 
+/// The force (37): mean squares of sine and noise add, and that of the noise is σ²/(4ζω³) soon.
+#[test]
+fn forced_modes_feel_the_noise_of_their_input() {
+    let [(_, white), _] = &small().forced.readings;
+    let modes = section_5_1().into_iter().zip(printed::INPUT_37);
+    for ((Mode { omega, zeta, .. }, (amplitude, sigma)), forced) in modes.zip(white) {
+        let sine = amplitude / (omega * omega - 1.0).hypot(2.0 * zeta * omega);
+        let noise = sigma * sigma / (4.0 * zeta * omega.powi(3));
+        let rms = (0.5 * sine * sine + noise).sqrt();
+        assert_relative_eq!(forced.eta_rms, rms, max_relative = 0.08);
+    }
+}
+
 #[test]
 fn results_depend_on_the_seed_and_not_on_the_threads() {
     let tiny = Size {
@@ -133,22 +148,64 @@ fn results_depend_on_the_seed_and_not_on_the_threads() {
     assert_ne!(with(1, 1).table1, with(1, 2).table1);
 }
 
+/// White noise in Fig. 2: from 1 ms to the end of the runs, where the curve ends as that of the samples does.
+#[test]
+fn the_curves_of_white_noise_go_from_the_first_millisecond_to_the_end() {
+    let [_, white] = small().table1.curves.as_slice() else {
+        panic!("two cases have curves");
+    };
+    for curves in white {
+        let times = [curves.fine_time.first(), curves.fine_time.last()];
+        let [first, last] = times.map(|time| *time.expect("times"));
+        assert_relative_eq!(first, 1e-3, max_relative = 1e-12);
+        assert_relative_eq!(last, 10.0, max_relative = 1e-12);
+        for (fine, exact) in curves.fine_exact_std.iter().zip(&curves.exact_std) {
+            let ends = [fine, exact].map(|errors| *errors.last().expect("errors"));
+            assert_relative_eq!(ends[0], ends[1], max_relative = 1e-9);
+        }
+    }
+}
+
+/// The vehicle of this model, set, Earth and canard.
+fn find<'a>(
+    vehicles: &'a [Vehicle],
+    model: &str,
+    set: &str,
+    earth: &str,
+    canard: Option<&str>,
+) -> &'a Vehicle {
+    let mut found = vehicles.iter().filter(|vehicle| {
+        let condition = &vehicle.condition;
+        (
+            condition.model,
+            condition.set,
+            condition.earth,
+            condition.canard,
+        ) == (model, set, earth, canard)
+    });
+    found.next().expect("it is among the vehicles")
+}
+
+/// Deflections at the trim that were computed independently of this project: states of DCOM, and what SDCOM's modes follow.
+#[test]
+fn the_modes_stand_where_they_were_recomputed() {
+    let vehicles = vehicles();
+    let eta = |model, canard| {
+        let trim = &find(&vehicles, model, "section5.1", "flat", canard).trim;
+        trim.as_ref().expect("a trim").eta.as_slice()
+    };
+    for model in ["dcom", "sdcom"] {
+        let expected = [0.6276, -0.0137, -0.0372];
+        assert_abs_diff_eq!(eta(model, Some("none")), &expected[..], epsilon = 6e-5);
+    }
+    assert!(eta("com_rigid", None).is_empty());
+}
+
 /// Checked numbers of `science.md`, sections 5 and 6.
 #[test]
 fn trims_and_counts_of_roots_are_the_checked_ones() {
     let vehicles = vehicles();
-    let find = |model: &str, set: &str, earth: &str, canard: Option<&str>| {
-        let mut found = vehicles.iter().filter(|vehicle| {
-            let condition = &vehicle.condition;
-            (
-                condition.model,
-                condition.set,
-                condition.earth,
-                condition.canard,
-            ) == (model, set, earth, canard)
-        });
-        found.next().expect("it is among the vehicles")
-    };
+    let find = |model, set, earth, canard| find(&vehicles, model, set, earth, canard);
     for (model, set, earth, canard, [alpha, phi, delta_e]) in [
         (
             "com_rigid",
@@ -205,6 +262,13 @@ fn trims_and_counts_of_roots_are_the_checked_ones() {
         .as_ref()
         .expect("roots");
     assert_eq!(sdcom.poles.len(), 8);
+    // Three flexible pairs, or three coloured noises, which no input reaches: a zero stands on the pole of each.
+    for (roots, of, count) in [(dcom, Kind::Flexible, 6), (sdcom, Kind::Noise, 3)] {
+        for kinds in [&roots.pole_kinds, &roots.zero_kinds] {
+            let found = kinds.iter().filter(|&&kind| kind == of);
+            assert_eq!(found.count(), count, "{roots:?}");
+        }
+    }
     let real = |at: f64| {
         dcom.poles
             .iter()

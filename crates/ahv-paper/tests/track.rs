@@ -11,7 +11,7 @@ use ahv_models::sdcom;
 use ahv_paper::backstepping::{Backstepping, DESIGN, Design};
 use ahv_paper::track::{
     ACTUATORS, Controller, Flight, Increments, LinearTracker, LoopState, Manoeuvre, PERIOD, Sample,
-    Statistics, Trial, silent,
+    Statistics, Trial, bands, silent,
 };
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use nalgebra::{Complex, ComplexField, DMatrix, DVector};
@@ -128,6 +128,24 @@ fn with_noise_no_flight_leaves_the_validity_box() {
         // The noise acts: no two members are alike.
         assert!(flights[0].errors[1].rms != flights[1].errors[1].rms);
     }
+}
+
+/// A flight that was lost stands in the bands up to its last record.
+#[test]
+fn bands_are_of_the_flights_that_still_fly() {
+    let trial = Trial {
+        duration: 0.5,
+        ..Trial::standard(NOMINAL, 3, 7)
+    };
+    let flights = trial.fly(&trial.backstepping(), &Control::default());
+    let mut flights = flights.expect("a trim");
+    flights[0].samples.truncate(1);
+    let bands = bands(&flights, |sample| sample.state.gamma);
+    let flying: Vec<_> = bands.iter().map(|band| (band.time, band.flying)).collect();
+    assert_eq!(flying, [(0.0, 3), (0.25, 2), (0.5, 2)]);
+    // The median of two numbers is their mean.
+    let [a, b] = [1, 2].map(|flight: usize| flights[flight].samples[2].state.gamma);
+    assert_relative_eq!(bands[2].spread.value, 0.5 * (a + b), max_relative = 1e-12);
 }
 
 #[test]

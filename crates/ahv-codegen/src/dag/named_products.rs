@@ -6,16 +6,11 @@ use super::{Dag, Factor, Id, Node};
 use crate::passes::Pass;
 
 impl Dag {
-    /// Remembers a named quantity that is a product of several powers, without a number.
+    /// Remembers a quantity that is a product of several powers, without a number, before it has its name.
     pub(super) fn note_named_product(&mut self, id: Id) {
-        let Node::Product(coefficient, ids) = &self.nodes[id] else {
-            return;
-        };
         let mut factors = Vec::new();
-        let number = ids.iter().fold(*coefficient, |c, &factor| {
-            c * self.factors_of(factor, 1, &mut factors)
-        });
-        if number == 1.0 && factors.len() > 1 {
+        let is_product = matches!(self.nodes[id], Node::Product(..));
+        if is_product && self.factors_of(id, 1, &mut factors) == 1.0 {
             let first = factors[0];
             self.named_products
                 .entry(first)

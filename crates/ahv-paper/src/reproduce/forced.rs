@@ -228,3 +228,34 @@ fn noise_error_variance(reduced: &ReducedMode) -> Result<f64, ReduceError> {
     let [[eta, _, both], _, [_, _, chi]] = *joint.covariance();
     Ok(eta + chi - 2.0 * both)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::{Force, Reading, Size};
+    use crate::reduce::Mode;
+
+    /// A mode not far from the sine, with next to no noise: over its last period the first run shows the lag alone.
+    #[test]
+    fn without_noise_the_lag_is_left() {
+        let (omega, zeta, sigma) = (2.0, 0.4, 1e-9);
+        let force = Force {
+            mode: Mode { omega, zeta, sigma },
+            amplitude: 3.0,
+            reading: Reading::White,
+            channel: 0,
+        };
+        let size = Size {
+            forced_runs: 1,
+            steps: 5000,
+            dt: TAU / 500.0,
+            ..Size::PAPER
+        };
+        let flown = force.run(&size).expect("a mode");
+        for (error, _) in flown.error_rms {
+            let ratio = error.value / flown.error_rms_without_noise;
+            assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
+        }
+    }
+}

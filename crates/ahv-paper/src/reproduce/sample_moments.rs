@@ -189,9 +189,9 @@ fn cholesky(squares: &[Vector; STATES]) -> [Vector; STATES] {
 
 #[cfg(test)]
 mod tests {
-    use ahv_analysis::statistics::kolmogorov_smirnov;
+    use ahv_analysis::statistics::{kolmogorov_smirnov, mean_and_std};
 
-    use super::SampleMoments;
+    use super::{NormalStream, Normals, SampleMoments};
     use crate::ensemble::{Drive, Experiment, Reading};
     use crate::reduce::{ReducedMode, Reduction, section_5_1};
 
@@ -236,6 +236,51 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    /// χ² with 2 degrees of freedom is exponential with the mean 2.
+    #[test]
+    fn chi_squared_with_two_degrees_is_exponential() {
+        let mut normals = Normals {
+            stream: NormalStream::new(3, 0, 0),
+            next: 0,
+        };
+        let mut draws: Vec<f64> = (0..40_000).map(|_| normals.chi_squared(2.0)).collect();
+        draws.sort_by(f64::total_cmp);
+        let count = draws.len() as f64;
+        let distances = (1..).zip(draws).map(|(rank, draw)| {
+            let below = 1.0 - (-0.5 * draw).exp();
+            (f64::from(rank) / count - below).abs()
+        });
+        let distance = distances.fold(0.0, f64::max);
+        // The 99 % point of Kolmogorov's distribution.
+        assert!(distance * count.sqrt() < 1.63, "{distance}");
+    }
+
+    /// After one step of noise that η and χ share, their runs are one normal sample times D_η and D_χ: of n runs, n e_m² and
+    /// (n − 1) e_D², over (D_η − D_χ)², are χ² with 1 and n − 1 degrees of freedom.
+    #[test]
+    fn one_step_from_rest_has_the_moments_of_a_normal_sample() {
+        let [mode, ..] = section_5_1();
+        let reduced = ReducedMode::new(mode, Reduction::Printed).expect("a mode");
+        let experiment = Experiment {
+            reading: Reading::Held,
+            drive: Drive::Common,
+            runs: 6,
+            steps: 1,
+            dt: 0.01,
+            seed: 0,
+        };
+        let law = SampleMoments::new(&experiment, &reduced).expect("a law");
+        let exact = reduced.std_errors_held(0.01, 1, 1).expect("a period")[1];
+        let draws: Vec<[f64; 2]> = (0..20_000).map(|it| law.maxima(5, it, 0)).collect();
+        for (kind, number, freedom) in [(0, 6.0, 1.0), (1, 5.0, 5.0)] {
+            let squares = draws.iter().map(|draw| (draw[kind] / exact).powi(2));
+            let (mean, std) = mean_and_std(&squares.map(|it| number * it).collect::<Vec<_>>());
+            assert!((mean / freedom - 1.0).abs() < 0.05, "{kind}: {mean}");
+            let variance = std * std / (2.0 * freedom);
+            assert!((variance - 1.0).abs() < 0.1, "{kind}: {variance}");
         }
     }
 }
