@@ -1,13 +1,13 @@
 //! A flight and its linear closed loop: state and inputs together, with the root of their covariance.
 
-use ahv_core::{DifferentiableModel, GeneratedModel, ModeOfMotion, Model, StochasticModel, Vector};
+use ahv_core::{DifferentiableModel, GeneratedModel, ModeOfMotion, StochasticModel, Vector};
 use ahv_integrate::LinearTransition;
 use nalgebra::{DMatrix, DVector};
 
 use super::{CovarianceError, check, column, lyapunov, noise_intensity};
 use crate::linearize::LinearSystem;
 use crate::poles::poles;
-use crate::values::vector;
+use crate::values::{matrix, vector};
 
 /// States and inputs that a transition is made for.
 const MOST: usize = 16;
@@ -68,6 +68,36 @@ impl Spreading {
 /// State and input, as one column.
 type Joint = DVector<f64>;
 
+/// A model at a point, with the names of its states and inputs. What is written over it is compiled once for all models.
+trait Point {
+    fn states(&self) -> &'static [&'static str];
+
+    fn inputs(&self) -> &'static [&'static str];
+
+    /// Drift, its derivatives by state and input, and the intensity of the noise.
+    fn at(&self, x: &[f64], u: &[f64]) -> (Joint, [DMatrix<f64>; 2], DMatrix<f64>);
+}
+
+impl<M: DifferentiableModel<Scalar = f64> + StochasticModel> Point for M {
+    fn states(&self) -> &'static [&'static str] {
+        M::State::NAMES
+    }
+
+    fn inputs(&self) -> &'static [&'static str] {
+        M::Input::NAMES
+    }
+
+    fn at(&self, x: &[f64], u: &[f64]) -> (Joint, [DMatrix<f64>; 2], DMatrix<f64>) {
+        let (x, u): (M::State, M::Input) = (vector(x), vector(u));
+        let (drift, by_state, by_input) = self.drift_and_jacobians(&x, &u);
+        let slopes = [
+            matrix::<M::State, _>(&by_state),
+            matrix::<M::Input, _>(&by_input),
+        ];
+        (column(&drift), slopes, noise_intensity(self, &x, &u))
+    }
+}
+
 /// Rate, its derivatives and the intensity of the noise, of state and input together.
 struct Linear {
     rate: Joint,
@@ -102,9 +132,14 @@ impl Flight {
     where
         M: DifferentiableModel<Scalar = f64> + StochasticModel,
     {
+        self.spread(model, times)
+    }
+
+    fn spread(&self, model: &dyn Point, times: &[f64]) -> Result<Vec<Spreading>, CovarianceError> {
+        let states = model.states().len();
         let steps = self.steps(times)?;
-        let mut root = self.root::<M>()?;
-        let mut z = self.joint::<M>();
+        let mut root = self.root(states + model.inputs().len())?;
+        let mut z = self.joint(model);
         let mut trajectory = Vec::with_capacity(times.len());
         let mut before = 0.0;
         for (&time, (count, dt)) in times.iter().zip(steps) {
@@ -116,10 +151,10 @@ impl Flight {
             let covariance = &root * root.transpose();
             let spreading = Spreading {
                 time,
-                state: z.iter().take(M::State::LEN).copied().collect(),
-                covariance: of_states::<M>(&covariance),
+                state: z.iter().take(states).copied().collect(),
+                covariance: of_states(&covariance, states),
             };
-            spreading.check(M::State::NAMES)?;
+            spreading.check(model.states())?;
             trajectory.push(spreading);
         }
         Ok(trajectory)
@@ -150,17 +185,25 @@ impl Flight {
     where
         M: DifferentiableModel<Scalar = f64> + StochasticModel,
     {
-        let z = self.joint::<M>();
+        self.rest(model, modes)
+    }
+
+    fn rest(
+        &self,
+        model: &dyn Point,
+        modes: &[ModeOfMotion],
+    ) -> Result<DMatrix<f64>, CovarianceError> {
+        let states = model.states().len();
+        let z = self.joint(model);
         let linear = self.linear(model, &z, 0.0);
-        let names = names::<M>();
+        let names = names(model);
         for ((&name, &rate), &value) in names.iter().zip(linear.rate.iter()).zip(z.iter()) {
             let rests = rate.abs() <= REST * f64::max(1.0, value.abs());
             if !rests {
                 return Err(CovarianceError::NotAtRest { name, rate });
             }
         }
-        let moves =
-            |&index: &usize| index < M::State::LEN || self.bandwidth(index - M::State::LEN) > 0.0;
+        let moves = |&index: &usize| index < states || self.bandwidth(index - states) > 0.0;
         let moved: Vec<usize> = (0..names.len()).filter(moves).collect();
         let among = |matrix: &DMatrix<f64>| matrix.select_rows(&moved).select_columns(&moved);
         let system = LinearSystem {
@@ -188,16 +231,14 @@ impl Flight {
             });
         }
         let covariance = lyapunov(&system.a, &among(&linear.intensity))?;
-        Ok(of_states::<M>(&covariance))
+        Ok(of_states(&covariance, states))
     }
 
-    fn joint<M: Model<Scalar = f64>>(&self) -> Joint {
-        let (x, u): (M::State, M::Input) = (vector(&self.start), vector(&self.input));
-        let both = [column(&x), column(&u)];
-        Joint::from_iterator(
-            M::State::LEN + M::Input::LEN,
-            both.iter().flatten().copied(),
-        )
+    fn joint(&self, model: &dyn Point) -> Joint {
+        let lengths = [model.states().len(), model.inputs().len()];
+        let x = filled(&self.start, lengths[0]);
+        let u = filled(&self.input, lengths[1]);
+        Joint::from_iterator(lengths[0] + lengths[1], x.chain(u))
     }
 
     /// Bandwidth of an input's actuator; 0 where it is held.
@@ -207,34 +248,22 @@ impl Flight {
         bandwidth.copied().unwrap_or(0.0)
     }
 
-    fn linear<M>(&self, model: &M, z: &Joint, time: f64) -> Linear
-    where
-        M: DifferentiableModel<Scalar = f64> + StochasticModel,
-    {
-        let (n, size) = (M::State::LEN, M::State::LEN + M::Input::LEN);
-        let (x, u): (M::State, M::Input) = (part(z, 0), part(z, n));
-        let (drift, by_state, by_input) = model.drift_and_jacobians(&x, &u);
+    fn linear(&self, model: &dyn Point, z: &Joint, time: f64) -> Linear {
+        let (n, inputs, size) = (model.states().len(), model.inputs().len(), z.len());
+        let (x, u) = z.as_slice().split_at(n);
+        let (drift, [by_state, by_input], noise) = model.at(x, u);
         let mut a = DMatrix::zeros(size, size);
-        for row in 0..n {
-            for column in 0..size {
-                let entry = if column < n {
-                    by_state.get(row).and_then(|it: M::State| it.get(column))
-                } else {
-                    by_input
-                        .get(row)
-                        .and_then(|it: M::Input| it.get(column - n))
-                };
-                a[(row, column)] = entry.unwrap_or(0.0);
-            }
-        }
+        a.view_mut((0, 0), (n, n)).copy_from(&by_state);
+        a.view_mut((0, n), (n, inputs)).copy_from(&by_input);
         let mut rate = Joint::zeros(size);
-        rate.rows_mut(0, n).copy_from(&column(&drift));
+        rate.rows_mut(0, n).copy_from(&drift);
         if let Some(feedback) = &self.feedback {
-            let [state, moved]: [M::State; 2] = [vector(&feedback.state), vector(&feedback.rate)];
-            let reference = column(&state) + column(&moved) * time;
-            let command: M::Input = vector(&feedback.input);
-            let command = column(&command) - &feedback.gain * (column(&x) - reference);
-            for input in 0..M::Input::LEN {
+            let part =
+                |values: &[f64], length| Joint::from_iterator(length, filled(values, length));
+            let reference = part(&feedback.state, n) + part(&feedback.rate, n) * time;
+            let command =
+                part(&feedback.input, inputs) - &feedback.gain * (z.rows(0, n) - reference);
+            for input in 0..inputs {
                 let (row, bandwidth) = (n + input, self.bandwidth(input));
                 rate[row] = bandwidth * (command[input] - z[row]);
                 a[(row, row)] = -bandwidth;
@@ -243,23 +272,19 @@ impl Flight {
             }
         }
         let mut intensity = DMatrix::zeros(size, size);
-        let noise = noise_intensity(model, &x, &u);
         intensity.view_mut((0, 0), (n, n)).copy_from(&noise);
         Linear { rate, a, intensity }
     }
 
     /// State and input, and the root of their covariance, after a step of `dt` from `at`, which ends at `time` at the latest.
-    fn step<M>(
+    fn step(
         &self,
-        model: &M,
+        model: &dyn Point,
         [at, dt]: [f64; 2],
         z: &Joint,
         root: &DMatrix<f64>,
         time: f64,
-    ) -> Result<(Joint, DMatrix<f64>), CovarianceError>
-    where
-        M: DifferentiableModel<Scalar = f64> + StochasticModel,
-    {
+    ) -> Result<(Joint, DMatrix<f64>), CovarianceError> {
         let size = z.len();
         let start = self.linear(model, z, at);
         let half = 0.5 * dt;
@@ -274,7 +299,7 @@ impl Flight {
         // Half a step by the implicit Euler method: no mode decays too fast for it.
         let slope = implicit(&start.a)?.solve(&start.rate);
         let middle = z + slope.ok_or(CovarianceError::StepTooLong { time, dt })? * half;
-        finite::<M>(time, &middle)?;
+        finite(model, time, &middle)?;
         let linear = self.linear(model, &middle, at + half);
         implicit(&linear.a)?;
         let padded = |matrix: &DMatrix<f64>| -> [[f64; MOST]; MOST] {
@@ -290,7 +315,7 @@ impl Flight {
         };
         let constant = linear.rate + linear.a * (z - &middle);
         let next = z + trimmed(transition.forced()) * constant;
-        finite::<M>(time, &next)?;
+        finite(model, time, &next)?;
         // [Φ L, L_Q] times its transpose is Φ P Φᵀ + Q; the triangle of its QR decomposition is a root of that.
         let mut roots = DMatrix::zeros(2 * size, size);
         let carried = trimmed(transition.transition()) * root;
@@ -304,8 +329,7 @@ impl Flight {
     }
 
     /// A root of the initial covariance. Its correlations are factored, for units differ.
-    fn root<M: Model<Scalar = f64>>(&self) -> Result<DMatrix<f64>, CovarianceError> {
-        let size = M::State::LEN + M::Input::LEN;
+    fn root(&self, size: usize) -> Result<DMatrix<f64>, CovarianceError> {
         if size > MOST {
             return Err(CovarianceError::TooLarge {
                 found: size,
@@ -364,24 +388,24 @@ impl Spreading {
 }
 
 /// Names of states and inputs.
-fn names<M: Model<Scalar = f64>>() -> Vec<&'static str> {
-    let names = M::State::NAMES.iter().chain(M::Input::NAMES);
+fn names(model: &dyn Point) -> Vec<&'static str> {
+    let names = model.states().iter().chain(model.inputs());
     names.copied().collect()
 }
 
+/// So many values; 0 for those that are missing.
+fn filled(values: &[f64], length: usize) -> impl Iterator<Item = f64> {
+    let missing = std::iter::repeat(0.0);
+    values.iter().copied().chain(missing).take(length)
+}
+
 /// The part of the states of a matrix.
-fn of_states<M: Model<Scalar = f64>>(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let states = (M::State::LEN, M::State::LEN);
-    matrix.view((0, 0), states).into_owned()
+fn of_states(matrix: &DMatrix<f64>, states: usize) -> DMatrix<f64> {
+    matrix.view((0, 0), (states, states)).into_owned()
 }
 
-/// The components of a vector that begin at `first`.
-fn part<V: Vector<f64>>(z: &Joint, first: usize) -> V {
-    V::from_fn(|index| z.get(first + index).copied().unwrap_or(f64::NAN))
-}
-
-fn finite<M: Model<Scalar = f64>>(time: f64, z: &Joint) -> Result<(), CovarianceError> {
-    let mut named = names::<M>().into_iter().zip(z.iter());
+fn finite(model: &dyn Point, time: f64, z: &Joint) -> Result<(), CovarianceError> {
+    let mut named = names(model).into_iter().zip(z.iter());
     match named.find(|(_, value)| !value.is_finite()) {
         None => Ok(()),
         Some((name, &value)) => Err(CovarianceError::Diverged {

@@ -13,6 +13,7 @@ use crate::linearize::{LinearSystem, LinearizeError, with_outputs};
 use crate::monte_carlo::{Engine, Experiment, Feedback, MonteCarloError, Scheme, Unsteady};
 use crate::ordered::Control;
 use crate::trim::{SteadyState, Trim, TrimError, trim};
+use crate::values::matrix;
 
 /// The model `M` behind the interface.
 pub(super) struct Erased<M>(PhantomData<fn() -> M>);
@@ -25,14 +26,6 @@ impl<M: GeneratedModel> Erased<M> {
 
 fn model<M: GeneratedModel>(p: &[f64]) -> M {
     M::with_parameters(&vector(p))
-}
-
-/// A matrix of a vector of rows.
-fn matrix<Row: Vector<f64>, Rows: Vector<Row>>(rows: &Rows) -> DMatrix<f64> {
-    DMatrix::from_fn(Rows::LEN, Row::LEN, |row, column| {
-        let row: Option<Row> = rows.get(row);
-        row.and_then(|row| row.get(column)).unwrap_or(0.0)
-    })
 }
 
 impl<M: GeneratedModel> AnyModel for Erased<M> {

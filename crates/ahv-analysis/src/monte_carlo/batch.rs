@@ -257,7 +257,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
     /// The state of a member; of one that is lost the last that was finite.
     pub(super) fn last(&self, lane: usize) -> Vec<f64> {
         let flies = self.lost.get(lane).is_some_and(Option::is_none);
-        of_lane(if flies { &self.x } else { &self.last }, lane).collect()
+        of_lane(if flies { &self.x } else { &self.last }, lane)
     }
 
     /// Steps members again whose result is not finite: exactly, they may have one. Those that have none are lost.

@@ -98,6 +98,7 @@ impl Feedback {
     }
 
     /// The law over steps of `dt`, for members that have flown some steps.
+    #[inline(never)]
     pub(super) fn over<F: GeneratedModel>(&self, dt: f64, flown: [u64; LANES]) -> Law<F> {
         let gain = |at: (usize, usize)| self.gain.get(at).map_or(0.0, |gain: &f64| *gain);
         let rows = F::InputOf::from_fn(|index| {

@@ -71,6 +71,7 @@ impl Interval {
 
 impl<F: GeneratedModel> Watch<F> {
     /// States without bounds are not watched.
+    #[inline(never)]
     pub(super) fn new(bounds: &[Bounds]) -> Self {
         let open = Bounds::new(f64::NEG_INFINITY, f64::INFINITY);
         let intervals = F::StateOf::from_fn(|index| {
@@ -85,6 +86,7 @@ impl<F: GeneratedModel> Watch<F> {
     }
 
     /// Steps after which a member first was outside, state by state.
+    #[inline(never)]
     pub(super) fn left(&self, lane: usize) -> Vec<Option<u64>> {
         let intervals = values(&self.intervals).into_iter();
         let steps = intervals.map(|interval: Interval| interval.left[lane]);

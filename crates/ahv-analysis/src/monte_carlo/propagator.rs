@@ -14,7 +14,7 @@ use super::MonteCarloError;
 use super::arithmetic::{Called, In, Mode};
 use super::batch::{Batch, Dynamics, Member, Noise};
 use super::experiment::{Experiment, Particle, Seen};
-use super::lanes::{self, LANES, Packed, of_lane, packed};
+use super::lanes::{self, LANES, Packed, packed, push_lane};
 use super::observe::{Observers, Watch};
 use super::passage::{Goal, Passage, Passed, pass};
 use super::scheme::{MOST_NORMALS, OneByOne, Scheme, Steps};
@@ -161,6 +161,12 @@ fn generic_members<F: GeneratedModel>() -> (F::StateOf<Packed>, F::InputOf<Packe
     (F::map_state(&x, splat), F::map_input(&u, splat))
 }
 
+/// The rule that parameters break. Not inlined, as other work on all fields of a vector: each scheme would have a copy.
+#[inline(never)]
+fn broken_rule<F: GeneratedModel>(parameters: &[f64]) -> Option<&'static str> {
+    F::broken_rule(&vector(parameters)).map(|rule| rule.reason)
+}
+
 /// The scheme `S` for a model of this experiment.
 fn set_up<F: GeneratedModel, S: SdeScheme<F::With<Packed>>>(
     experiment: &Experiment,
@@ -238,7 +244,7 @@ where
             Some(draws) => {
                 let mut parameters = flying.map(|particle| draws.member_values(particle.origin));
                 for (parameters, broken) in parameters.iter_mut().zip(&mut broken) {
-                    *broken = F::broken_rule(&vector(parameters));
+                    *broken = broken_rule::<F>(parameters);
                     // The lane flies all the same, unseen.
                     if broken.is_some() {
                         parameters.clone_from(&experiment.parameters);
@@ -262,7 +268,7 @@ where
         let mut batch = Batch::new(dynamics, (x, u), experiment.dt, noise, law);
         for (lane, rule) in broken.into_iter().enumerate() {
             if let Some(rule) = rule {
-                batch.ground(lane, rule.reason);
+                batch.ground(lane, rule);
                 observers.close(lane);
             }
         }
@@ -310,8 +316,8 @@ where
             }
             for (lane, (states, inputs)) in at.iter_mut().enumerate() {
                 if batch.lost[lane].is_none() {
-                    states.extend(of_lane(&batch.x, lane));
-                    inputs.extend(of_lane(&batch.u, lane));
+                    push_lane(&batch.x, lane, states);
+                    push_lane(&batch.u, lane, inputs);
                 }
             }
         }
