@@ -1,6 +1,7 @@
 //! What cargo alone cannot do for this project. Run as `cargo xtask <command>`.
 #![forbid(unsafe_code)]
 
+mod audit;
 mod bench;
 mod book;
 mod demo;
@@ -28,15 +29,19 @@ enum Task {
     /// Make the Python environments for generation and for development
     Setup,
     /// Run everything that must hold before a change goes in
-    Test,
+    Test {
+        /// And what takes too long for every change: features that are off, and the audit in full
+        #[arg(long)]
+        all: bool,
+    },
     /// Compare the generated functions with 50-digit arithmetic at many random points, and the coverage of intervals with that
     /// which docs/monte-carlo.md has, over many seeds
     Audit {
         /// Number of points for each function
-        #[arg(long, default_value_t = 10_000)]
+        #[arg(long, default_value_t = audit::POINTS)]
         points: u32,
         /// Number of seeds for each interval
-        #[arg(long, default_value_t = 400)]
+        #[arg(long, default_value_t = audit::SEEDS)]
         seeds: u32,
     },
     /// Compare the bits of every stepper between builds of all optimisation levels
@@ -73,8 +78,8 @@ fn main() -> ExitCode {
     let done = match Task::parse() {
         Task::Generate(args) => return ahv_generate::run(&args).into(),
         Task::Setup => python::set_up(),
-        Task::Test => steps::run(),
-        Task::Audit { points, seeds } => audit(points).and_then(|()| coverage(seeds)),
+        Task::Test { all } => steps::run(all),
+        Task::Audit { points, seeds } => audit::run(points, seeds),
         Task::Determinism => determinism::run(),
         Task::OwnVehicle => own_vehicle::run(),
         Task::Vectors => vectors::run(),
@@ -91,38 +96,4 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-fn audit(points: u32) -> Result<(), String> {
-    let python = python::development()?;
-    let mut audit = shell::cargo();
-    audit.args([
-        "run",
-        "--release",
-        "--package",
-        "ahv-tests",
-        "--bin",
-        "audit",
-        "--",
-    ]);
-    audit
-        .args(["--points", &points.to_string(), "--python"])
-        .arg(python);
-    shell::run(&mut audit)
-}
-
-/// The test of the intervals' coverage, which the gate runs with few seeds.
-fn coverage(seeds: u32) -> Result<(), String> {
-    let mut test = shell::cargo();
-    test.args(["test", "--release", "--package", "ahv-analysis"]);
-    test.args([
-        "--test",
-        "ensembles",
-        "coverage",
-        "--",
-        "--nocapture",
-        "--test-threads",
-        "1",
-    ]);
-    shell::run(test.env("AHV_COVERAGE_SEEDS", seeds.to_string()))
 }

@@ -3,7 +3,9 @@
 use std::process::Command;
 use std::time::Instant;
 
-use crate::{book, determinism, firmware, instructions, no_panic, own_vehicle, python, shell};
+use crate::{
+    audit, book, determinism, firmware, instructions, no_panic, own_vehicle, python, shell,
+};
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.
 const XTASK: [&str; 4] = [
@@ -41,8 +43,8 @@ const STEPS: [Step; 22] = [
     }),
     ("clippy", || {
         cargo(
-            &["clippy", "--workspace", "--all-targets", "--all-features"],
-            &[],
+            &["clippy", "--workspace", "--all-targets"],
+            &FEATURES,
             &DENY,
         )
     }),
@@ -71,7 +73,7 @@ const STEPS: [Step; 22] = [
     }),
     ("generate --check", generate_check),
     ("cargo test", || {
-        cargo(&["test", "--workspace", "--all-features"], &[], &[])
+        cargo(&["test", "--workspace"], &FEATURES, &[])
     }),
     ("audit", accuracy),
     ("determinism", || {
@@ -92,17 +94,41 @@ const STEPS: [Step; 22] = [
     ("firmware", || bare_metal(emulated_flights)),
     ("instructions", counted_calls),
 ];
+/// What takes too long for every change, after all else.
+const MORE: [Step; 3] = [
+    ("clippy of every feature", || {
+        cargo(
+            &["clippy", "--workspace", "--all-targets", "--all-features"],
+            &[],
+            &DENY,
+        )
+    }),
+    ("commands with every feature", || {
+        cargo(&["test", "--package", "ahv", "--all-features"], &[], &[])
+    }),
+    ("audit in full", || {
+        audit::run(audit::POINTS, audit::SEEDS).map(|()| Outcome::Passed)
+    }),
+];
+/// All features but one: a writer of Parquet takes long to build.
+pub(crate) const FEATURES: [&str; 2] = [
+    "--features",
+    "ahv-core/std,ahv-integrate/rand,ahv-models/nalgebra",
+];
 const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
-/// Runs the steps in turn, up to the first that fails.
-pub(crate) fn run() -> Result<(), String> {
+/// Runs the steps in turn, up to the first that fails; with `all`, those too that take too long for every change.
+pub(crate) fn run(all: bool) -> Result<(), String> {
     let (mut passed, mut skipped, mut times) = (0, Vec::new(), Vec::new());
-    for (number, (name, step)) in (1..).zip(STEPS) {
-        println!("== {name} ({number} of {})", STEPS.len());
+    let more: &[Step] = if all { &MORE } else { &[] };
+    let steps = STEPS.iter().chain(more);
+    let count = STEPS.len() + more.len();
+    for (number, (name, step)) in (1..).zip(steps) {
+        println!("== {name} ({number} of {count})");
         let start = Instant::now();
         let outcome = step();
         let seconds = start.elapsed().as_secs_f64();
-        times.push((name, seconds));
+        times.push((*name, seconds));
         match outcome {
             Ok(Outcome::Passed) => {
                 passed += 1;
@@ -163,11 +189,7 @@ fn generate_check() -> Result<Outcome, String> {
 
 /// The audit of accuracy with as few points as a gate can wait for, by the program that `cargo test` has built.
 fn accuracy() -> Result<Outcome, String> {
-    cargo(
-        &["build", "--workspace", "--all-features", "--bin", "audit"],
-        &[],
-        &[],
-    )?;
+    cargo(&["build", "--workspace", "--bin", "audit"], &FEATURES, &[])?;
     let mut audit = shell::program(shell::target().join("debug/audit"));
     audit.args(["--points", "100", "--root"]).arg(shell::root());
     passed(audit.arg("--python").arg(python::development()?))
