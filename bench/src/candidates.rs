@@ -18,8 +18,6 @@ pub(crate) const REFERENCE: &str = "CasADi C";
 pub(crate) const PRODUCT: &str = "ahv";
 /// Members side by side: the same bits.
 pub(crate) const LANES: &str = "ahv, 8 lanes";
-/// Members side by side, in the mode with a fused multiply-add.
-pub(crate) const LANES_FMA: &str = "ahv, 8 lanes, fma";
 
 /// A way to compute the subjects.
 pub(crate) struct Candidate {
@@ -80,12 +78,6 @@ pub(crate) fn build(
         LANES,
         lanes::EXACT,
     ));
-    if lanes::has_fma() {
-        candidates.push(side_by_side::<lanes::Fma, lanes::Fma>(
-            LANES_FMA,
-            lanes::FMA,
-        ));
-    }
     if let Some(arrays) = arrays {
         candidates.push(symforce(setting)?);
         let numba = "`njit` of CasADi's instructions and of the loop over the points";

@@ -6,7 +6,7 @@ use std::time::Instant;
 use ahv_bench_kernels::lanes::{
     DcomDrift, DcomDriftJacobians, LANES, Packed, Pair, Scalar, SdcomDriftDiffusion, Side,
 };
-use ahv_core::{Fused, Lanes, Straight, Vector};
+use ahv_core::{Branchless, Lanes, Vector};
 use ahv_models::{dcom, sdcom};
 
 use crate::candidates::layout;
@@ -14,25 +14,13 @@ use crate::kernel::{Evaluate, PASSES};
 use crate::points::Points;
 use crate::subject::SUBJECTS;
 
-/// The exact mode, and the one with a fused multiply-add.
-pub(crate) type Exact = Straight<f64>;
-/// The exact mode of a short function.
+/// A scalar without branches.
+pub(crate) type Exact = Branchless<f64>;
+/// The same for a short function.
 pub(crate) type Short = Pair;
-/// Asks for a processor with the instruction.
-pub(crate) type Fma = Fused<Straight<f64>>;
 
 /// How they are built, for people.
 pub(crate) const EXACT: &str = "rustc -O, thin LTO, baseline target, x86-64-v3 chosen at run time";
-/// The same in the mode with a fused multiply-add.
-pub(crate) const FMA: &str = "the same, with a fused multiply-add";
-
-/// Whether this processor multiplies and adds in one rounding.
-pub(crate) fn has_fma() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return std::arch::is_x86_feature_detected!("fma");
-    #[cfg(not(target_arch = "x86_64"))]
-    return false;
-}
 
 /// Evaluates at points of which each [`LANES`] lie side by side, and leaves the results of the last of them.
 type Call<M, X, U, Y> = fn(&M, &[X], &[U], &mut Y);

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use ahv_bench_kernels::lanes::{
     DcomDrift, DcomDriftJacobians, DcomRk4, Packed, Pair, SdcomDriftDiffusion, Side,
 };
-use ahv_core::Straight;
+use ahv_core::Branchless;
 use ahv_integrate::{ItoEulerMaruyama, Rk4};
 use ahv_models::{dcom, sdcom};
 use pulp::WithSimd;
@@ -125,7 +125,7 @@ const COUNTED: [(&str, Calls); 10] = [
 const BLOCKS: usize = 100;
 
 /// The scalar of the lanes of long functions.
-type R = Straight<f64>;
+type R = Branchless<f64>;
 
 fn packed(value: &f64) -> Packed {
     Packed::splat(*value)

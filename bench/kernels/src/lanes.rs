@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::marker::PhantomData;
 
-use ahv_core::{Fused, Lanes, Real, Straight, Vector as _};
+use ahv_core::{Branchless, Lanes, Real, Vector as _};
 use ahv_integrate::Rk4;
 use ahv_models::{dcom, sdcom};
 
@@ -40,7 +40,7 @@ pub trait Scalar: Real + Side<Packed = Packed> {
     fn pick(numbers: &Packed, turn: usize) -> Self;
 }
 
-impl Scalar for Straight<f64> {
+impl Scalar for Branchless<f64> {
     #[inline(always)]
     fn pick(numbers: &Packed, turn: usize) -> Self {
         Self(numbers.0[turn])
@@ -50,14 +50,14 @@ impl Scalar for Straight<f64> {
 /// Two members in a turn: operations of one fill the time in which those of the other wait for each other.
 ///
 /// That is faster for a short function. Of long ones the compiler no longer makes vector instructions.
-pub type Pair = Lanes<Straight<f64>, 2>;
+pub type Pair = Lanes<Branchless<f64>, 2>;
 
 impl Scalar for Pair {
     const TURNS: usize = LANES / 2;
 
     #[inline(always)]
     fn pick(numbers: &Packed, turn: usize) -> Self {
-        Self([numbers.0[turn], numbers.0[turn + LANES / 2]].map(Straight))
+        Self([numbers.0[turn], numbers.0[turn + LANES / 2]].map(Branchless))
     }
 }
 
@@ -79,7 +79,7 @@ impl Side for Pair {
     }
 }
 
-impl Side for Straight<f64> {
+impl Side for Branchless<f64> {
     type Packed = Packed;
 
     fn empty() -> Packed {
@@ -89,30 +89,6 @@ impl Side for Straight<f64> {
     #[inline(always)]
     fn put(self, places: &mut Packed, turn: usize) {
         places.0[turn] = self.0;
-    }
-
-    fn tell(places: &Packed, lane: usize, numbers: &mut Vec<f64>) {
-        numbers.push(places.0[lane]);
-    }
-}
-
-impl Scalar for Fused<Straight<f64>> {
-    #[inline(always)]
-    fn pick(numbers: &Packed, turn: usize) -> Self {
-        Self::new(Straight(numbers.0[turn]))
-    }
-}
-
-impl Side for Fused<Straight<f64>> {
-    type Packed = Packed;
-
-    fn empty() -> Packed {
-        Packed::ZERO
-    }
-
-    #[inline(always)]
-    fn put(self, places: &mut Packed, turn: usize) {
-        self.value().put(places, turn);
     }
 
     fn tell(places: &Packed, lane: usize, numbers: &mut Vec<f64>) {

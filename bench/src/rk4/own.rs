@@ -9,7 +9,7 @@ use ahv_models::dcom::{Model, State};
 
 use super::{DT, FLIGHTS, REPEATS, STEPS, UNITS, flight};
 use crate::candidates;
-use crate::lanes::{Exact, Fma, has_fma};
+use crate::lanes::Exact;
 use crate::race::Runner;
 
 /// Times that [`LANES`] members fly in a turn.
@@ -27,9 +27,8 @@ pub(crate) fn runners() -> Result<Vec<Runner<'static>>, String> {
     }
     let alone = "rustc -O, thin LTO, baseline target; one flight after the other";
     let lanes = "the same, 8 flights side by side, x86-64-v3 chosen at run time";
-    let fma = "the same, with a fused multiply-add";
     let values = |x: &State<f64>| x.to_array().to_vec();
-    let mut runners = vec![
+    Ok(vec![
         Runner::new(PRODUCT, alone, UNITS[0], scalar, values),
         Runner::new(
             candidates::LANES,
@@ -38,18 +37,7 @@ pub(crate) fn runners() -> Result<Vec<Runner<'static>>, String> {
             side_by_side::<Exact>,
             values,
         ),
-    ];
-    if has_fma() {
-        let name = candidates::LANES_FMA;
-        runners.push(Runner::new(
-            name,
-            fma,
-            LANE_UNITS,
-            side_by_side::<Fma>,
-            values,
-        ));
-    }
-    Ok(runners)
+    ])
 }
 
 /// One flight after the other.

@@ -19,7 +19,7 @@ use crate::ordered::Control;
 use crate::trim::{SteadyState, Trim, TrimError};
 
 pub use crate::values::{values, vector};
-pub use steppers::{Advance, Calm, StepperError};
+pub use steppers::{Advance, DeterministicScheme, StepperError};
 
 /// Names and units of the components of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,13 +186,17 @@ pub trait AnyModel: Send + Sync {
     /// # Errors
     ///
     /// [`StepperError::FlexibleModes`]
-    fn calm(&self, p: &[f64], stepper: Calm) -> Result<Advance, StepperError>;
+    fn deterministic(
+        &self,
+        p: &[f64],
+        stepper: DeterministicScheme,
+    ) -> Result<Advance, StepperError>;
     /// The steps of a single flight with the noise of `seed`: that of member 0 of an ensemble.
     ///
     /// # Errors
     ///
     /// [`StepperError::NoColouredNoise`], [`StepperError::Noise`]
-    fn noisy(&self, p: &[f64], scheme: Scheme, seed: u64) -> Result<Advance, StepperError>;
+    fn stochastic(&self, p: &[f64], scheme: Scheme, seed: u64) -> Result<Advance, StepperError>;
     /// As [`Experiment::engine`].
     ///
     /// # Errors

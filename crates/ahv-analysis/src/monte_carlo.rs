@@ -26,7 +26,7 @@ use scheme::MOST_NORMALS;
 pub use arithmetic::Mode;
 pub use batch::Loss;
 pub use engine::{Engine, Point};
-pub use experiment::{Experiment, Particle, Seen};
+pub use experiment::{Experiment, MemberRecord, Particle};
 pub use feedback::{Feedback, Unsteady};
 pub use lanes::{LANES, Packed};
 pub use outcome::{Outcome, Snapshot, StateSpread};

@@ -245,6 +245,11 @@ pub(crate) fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     Some(low + (place - place.floor()) * (high - low))
 }
 
+/// The standard deviation of this variance: rounding may have made a small one negative, and one that is no number stays so.
+pub fn deviation_of(variance: f64) -> f64 {
+    if variance < 0.0 { 0.0 } else { variance.sqrt() }
+}
+
 /// Sample mean and standard deviation (n − 1) of numbers; 0 where there are too few.
 pub fn mean_and_std(sample: &[f64]) -> (f64, f64) {
     let count = sample.len() as f64;

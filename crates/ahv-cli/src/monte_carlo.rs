@@ -10,7 +10,7 @@ mod trajectories;
 
 use std::path::PathBuf;
 
-use ahv_analysis::monte_carlo::{Outcome, Seen};
+use ahv_analysis::monte_carlo::{MemberRecord, Outcome};
 use ahv_core::Bounds;
 use clap::Args;
 
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// What was flown, and what came of it.
-struct Told<'a> {
+struct Summary<'a> {
     arguments: &'a Arguments,
     ready: Ready,
     outcome: Outcome,
@@ -118,16 +118,21 @@ impl Arguments {
         let mut kept = Kept::default();
         let outcome = watched(progress, |control| {
             let engine = ready.vehicle.model.engine(&ready.experiment)?;
-            engine.run_and_list(self.members, threads, control, |first, seen: &[Seen]| {
-                kept.add(&ready, first, seen);
-                if let Some(list) = &mut list {
-                    list.add(first, seen);
-                }
-            })
+            engine.run_and_list(
+                self.members,
+                threads,
+                control,
+                |first, seen: &[MemberRecord]| {
+                    kept.add(&ready, first, seen);
+                    if let Some(list) = &mut list {
+                        list.add(first, seen);
+                    }
+                },
+            )
         })?;
         let complete = outcome.members == outcome.asked;
         let listed = list.map_or(Ok(()), |list| list.finish(complete));
-        let told = Told {
+        let told = Summary {
             arguments: self,
             causes: kept.causes(&ready),
             ready,

@@ -49,7 +49,7 @@ impl Progress {
             let wait = |time| ended.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
             let done = || watched.done.load(Ordering::Relaxed);
             if io::stderr().is_terminal() {
-                show_bar(work, wait, done);
+                show_bar(work, wait, || work.line(done(), started.elapsed()), done);
             } else {
                 say_lines(wait, || complain(&work.line(done(), started.elapsed())));
             }
@@ -89,26 +89,24 @@ fn say_lines(mut wait: impl FnMut(Duration) -> bool, mut say: impl FnMut()) {
     }
 }
 
-fn show_bar(work: Work, wait: impl Fn(Duration) -> bool, done: impl Fn() -> u64) {
+fn show_bar(
+    work: Work,
+    wait: impl Fn(Duration) -> bool,
+    line: impl Fn() -> String,
+    done: impl Fn() -> u64,
+) {
     if !wait(BAR_AFTER) {
         return;
     }
-    let unit = work.unit;
     let (bar, template) = match work.total {
-        Some(total) => (
-            ProgressBar::new(total),
-            format!("{{bar:40}} {{percent:>3}} % {{per_sec}} {unit}, {{eta}} left"),
-        ),
-        None if unit.is_empty() => (ProgressBar::new_spinner(), "{spinner} {elapsed}".to_owned()),
-        None => (
-            ProgressBar::new_spinner(),
-            format!("{{spinner}} {{human_pos}} {unit}, {{per_sec}}"),
-        ),
+        Some(total) => (ProgressBar::new(total), "{bar:30} {msg}"),
+        None => (ProgressBar::new_spinner(), "{spinner} {msg}"),
     };
-    let style = ProgressStyle::with_template(&template);
+    let style = ProgressStyle::with_template(template);
     let bar = bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     while wait(BAR_INTERVAL) {
         bar.set_position(done());
+        bar.set_message(line());
         bar.tick();
     }
     bar.finish_and_clear();

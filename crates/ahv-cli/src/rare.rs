@@ -90,7 +90,7 @@ impl Arguments {
         // There it was found.
         let (name, unit) = states.iter().nth(state).unwrap_or_default();
         let estimate = found.map_err(|error| failure(&error, self.effort, unit))?;
-        let told = Told {
+        let told = Summary {
             ready,
             name,
             unit,
@@ -136,13 +136,13 @@ fn failure(error: &RareError, effort: u64, unit: &str) -> Failure {
             "the members come no nearer to the limit than {}; a greater --effort may",
             show(*level, unit)
         )),
-        RareError::NoSpread { .. } => Failure::Numeric(error.to_string()),
+        RareError::NoSpread { .. } | RareError::Lost => Failure::Numeric(error.to_string()),
         _ => Failure::Request(format!("--passes: {error}")),
     }
 }
 
 /// What was asked, and what came of it.
-struct Told {
+struct Summary {
     ready: Ready,
     /// Name and unit of the state.
     name: &'static str,
@@ -169,7 +169,7 @@ struct Json<'a> {
     settings: Settings,
 }
 
-impl Told {
+impl Summary {
     /// Whether all repetitions were flown that were asked for.
     fn is_complete(&self) -> bool {
         self.estimate.repetitions == self.event.repetitions
@@ -230,7 +230,7 @@ impl Told {
         }
         let _ = write!(
             text,
-            "\n{repetitions} of {} members a level, {} {} s, {}, seed {}\n{:.3e} member-steps; for an interval as wide, plain sampling takes {:.3e}, {:.2e} times as many\nlost, with a state that was no longer finite: {}",
+            "\n{repetitions} of {} members a level, {} {} s, {}, seed {}\n{:.3e} member-steps; for an interval as wide, plain sampling takes {:.3e}, {:.2e} times as many\nlost, with a state that was no longer finite, or parameters that break a rule: {}",
             self.event.effort,
             experiment.scheme.name(),
             Shown(experiment.dt),

@@ -6,7 +6,7 @@ mod report;
 
 use std::path::PathBuf;
 
-use ahv_analysis::erased::Calm;
+use ahv_analysis::erased::DeterministicScheme;
 use ahv_analysis::monte_carlo::Scheme;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -68,13 +68,13 @@ pub(crate) struct Arguments {
 
 /// The steppers without noise, then the schemes of `ahv montecarlo`, each name once.
 fn scheme_names() -> Vec<&'static str> {
-    let mut names = Vec::from(Calm::ALL.map(Calm::name));
+    let mut names = Vec::from(DeterministicScheme::ALL.map(DeterministicScheme::name));
     let noisy = Scheme::ALL.map(Scheme::name);
-    names.extend(
-        noisy
-            .iter()
-            .filter(|name| !Calm::ALL.map(Calm::name).contains(name)),
-    );
+    names.extend(noisy.iter().filter(|name| {
+        !DeterministicScheme::ALL
+            .map(DeterministicScheme::name)
+            .contains(name)
+    }));
     names
 }
 
@@ -111,16 +111,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let noisy = arguments.stochastic || model.coloured_states() > 0;
     let default = match noisy {
         true => Scheme::EulerMaruyama.name(),
-        false => Calm::Rk4.name(),
+        false => DeterministicScheme::Rk4.name(),
     };
     let asked = asked.unwrap_or(default);
     let advance = if noisy {
-        let scheme = scheme(asked, Scheme::ALL, Scheme::name, "with noise")?;
         needs_noise("--stochastic", model, "")?;
-        model.noisy(parameters, scheme, arguments.seed)
+        let scheme = scheme(asked, Scheme::ALL, Scheme::name, "with noise")?;
+        model.stochastic(parameters, scheme, arguments.seed)
     } else {
-        let stepper = scheme(asked, Calm::ALL, Calm::name, "without noise")?;
-        model.calm(parameters, stepper)
+        let stepper = scheme(
+            asked,
+            DeterministicScheme::ALL,
+            DeterministicScheme::name,
+            "without noise",
+        )?;
+        model.deterministic(parameters, stepper)
     };
     let advance = advance.map_err(|error| Failure::Request(format!("--scheme: {error}")))?;
     let grid = grid(arguments.t_end, arguments.dt)?;

@@ -69,7 +69,7 @@ impl Names<'_> {
             Node::Leaf(_, name) => name.clone(),
             Node::Power(base, exponent) => {
                 let text = self.spell(*base)?;
-                match (exponent, self.is_open_sum(*base)) {
+                match (exponent, self.is_open(*base)) {
                     (-1, false) => format!("inv_{text}"),
                     (-1, true) => format!("inv_of_{text}"),
                     (k, true) if *k < 0 => format!("inv_power_{}_of_{text}", -k),
@@ -94,12 +94,14 @@ impl Names<'_> {
             Call::Exp => "exp",
             Call::Sqrt => "sqrt",
         };
-        let of = if self.is_open_sum(argument) {
-            "_of"
-        } else {
-            ""
-        };
+        let of = if self.is_open(argument) { "_of" } else { "" };
         Some(format!("{function}{of}_{}", self.spell(argument)?))
+    }
+
+    /// Whether what follows a node's name would read as a part of it: of its last addend, or of what it is differentiated by.
+    fn is_open(&self, id: Id) -> bool {
+        self.spell(id)
+            .is_some_and(|name| is_sum(&name) || is_derivative(&name))
     }
 
     /// Whether a node is spelled as a sum: what stands beside it must not read as a part of its last addend.
@@ -130,11 +132,12 @@ impl Names<'_> {
 
     fn spell_product(&self, coefficient: f64, factors: &[Id]) -> Option<String> {
         let (mut sums, mut above, mut below) = (Vec::new(), Vec::new(), Vec::new());
+        let mut number = Vec::new();
         if coefficient < 0.0 {
-            above.push("minus".to_owned());
+            number.push("minus");
         }
         if coefficient.abs() != 1.0 {
-            above.push(number_word(coefficient.abs())?);
+            number.push(number_word(coefficient.abs())?);
         }
         for &factor in factors {
             match self.dag.node(factor) {
@@ -148,11 +151,16 @@ impl Names<'_> {
                 _ => above.push(self.spell(factor)?),
             }
         }
-        let above = above.join("_");
+        let open = above.iter().any(|name| is_derivative(name));
+        let above = above.join(if open { "_times_" } else { "_" });
+        let below = below.join("_");
+        number.extend(Some(&*above).filter(|it| !it.is_empty()));
+        let above = number.join("_");
         let product = match (above.is_empty(), below.is_empty()) {
             (_, true) => above,
-            (true, false) => format!("inv_{}", below.join("_")),
-            (false, false) => format!("{above}_over_{}", below.join("_")),
+            (true, false) => format!("inv_{below}"),
+            (false, false) if open => format!("{above}_times_inv_{below}"),
+            (false, false) => format!("{above}_over_{below}"),
         };
         // Of two sums one would read as a part of the other, and a sign as one of an addend.
         match sums.as_slice() {
@@ -169,22 +177,23 @@ fn is_sum(name: &str) -> bool {
     name.contains("_plus_") || name.contains("_minus_")
 }
 
+fn is_derivative(name: &str) -> bool {
+    name.contains("_d_")
+}
+
 /// Whether a name only says whose part a value is.
 fn is_numbered(name: &str) -> bool {
     name.contains("_term_") || name.contains("_constant_")
 }
 
-fn number_word(value: f64) -> Option<String> {
-    Some(
-        match value {
-            0.5 => "half",
-            2.0 => "two",
-            3.0 => "three",
-            4.0 => "four",
-            5.0 => "five",
-            6.0 => "six",
-            _ => return None,
-        }
-        .to_owned(),
-    )
+fn number_word(value: f64) -> Option<&'static str> {
+    Some(match value {
+        0.5 => "half",
+        2.0 => "two",
+        3.0 => "three",
+        4.0 => "four",
+        5.0 => "five",
+        6.0 => "six",
+        _ => return None,
+    })
 }

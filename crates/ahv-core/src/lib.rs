@@ -1,11 +1,10 @@
 //! Traits that the flight models, the steppers and the analyses share.
 //!
 //! * [`Real`]: the scalar, with elementary functions that give the same bits on every machine.
-//! * [`Lanes`]: several numbers side by side as one scalar; [`Straight`]: a scalar without branches, for loops over members;
-//!   by the feature `std`, `Fused`: a scalar that multiplies and adds in one rounding.
+//! * [`Lanes`]: several numbers side by side as one scalar; [`Branchless`]: a scalar without branches, for loops over members.
 //! * [`Vector`]: a vector whose components have names and units (a state, an input, a row of a Jacobian).
 //! * [`Model`], [`DifferentiableModel`], [`StochasticModel`]: what a generated model can do.
-//! * [`Outlined`]: a model whose functions are called where others are inlined.
+//! * [`NoInline`]: a model whose functions are called where others are inlined.
 //! * [`ItoCorrected`], [`DifferentiableNoise`], [`AdditiveNoise`], [`CommutativeNoise`], [`ColouredNoise`]: what schemes
 //!   for stochastic equations ask for.
 //! * [`GeneratedModel`]: what a generated model and its [`Table`] say of themselves, for commands and analyses that never saw
@@ -60,26 +59,23 @@
 extern crate std;
 
 mod bounds;
+mod branchless;
 mod elementary;
-#[cfg(feature = "std")]
-mod fused;
 mod generated;
 mod lanes;
 mod model;
 mod nalgebra;
+mod no_inline;
 mod noise;
-mod outlined;
 mod pattern;
 mod provenance;
 mod real;
 mod shown;
-mod straight;
 mod table;
 mod vector;
 
 pub use bounds::{Bounds, Outside, first_outside};
-#[cfg(feature = "std")]
-pub use fused::{Fused, MulAdd};
+pub use branchless::Branchless;
 pub use generated::{
     Component, CountVisitor, Equation, GeneratedModel, Given, ModeOfMotion, ModelList,
     ModelVisitor, ParameterSetOf, Sought, TrimProblem,
@@ -89,13 +85,12 @@ pub use model::{
     AdditiveNoise, ColouredNoise, CommutativeNoise, DifferentiableModel, DifferentiableNoise,
     ItoCorrected, Model, StochasticModel,
 };
+pub use no_inline::NoInline;
 pub use noise::{NoNoise, NoiseClass};
-pub use outlined::Outlined;
 pub use pattern::Pattern;
 pub use provenance::{Provenance, Status};
 pub use real::Real;
 pub use shown::Shown;
-pub use straight::Straight;
 pub use table::{
     Choice, ChoiceOption, Entry, EntryKind, Interval, ParameterSet, Rule, Sign, Table, Term,
 };

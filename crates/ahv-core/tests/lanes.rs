@@ -1,9 +1,9 @@
-//! What [`Lanes`] and [`Straight`] promise: the bits of the numbers that stand in them.
+//! What [`Lanes`] and [`Branchless`] promise: the bits of the numbers that stand in them.
 #![forbid(unsafe_code)]
 
 mod common;
 
-use ahv_core::{Lane, Lanes, Real, Straight};
+use ahv_core::{Branchless, Lane, Lanes, Real};
 
 const WIDTH: usize = 4;
 
@@ -118,8 +118,8 @@ fn lanes_of_singles_have_the_bits_of_singles() {
 
 #[test]
 fn lanes_of_straight_numbers_have_the_bits_of_those() {
-    lanes_have_the_bits_of_their_numbers::<Straight<f64>>(&[core::f64::consts::FRAC_PI_4, 708.0]);
-    lanes_have_the_bits_of_their_numbers::<Straight<f32>>(&[core::f64::consts::FRAC_PI_4, 87.0]);
+    lanes_have_the_bits_of_their_numbers::<Branchless<f64>>(&[core::f64::consts::FRAC_PI_4, 708.0]);
+    lanes_have_the_bits_of_their_numbers::<Branchless<f32>>(&[core::f64::consts::FRAC_PI_4, 87.0]);
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn straight_numbers_have_the_bits_of_theirs<T: Lane>(range: &Range, parting: &[f
             .into_iter()
             .chain([magnitude <= range.exponent]);
         let known = known.chain([true; 4]);
-        for ((found, exact), known) in functions(Straight(x))
+        for ((found, exact), known) in functions(Branchless(x))
             .into_iter()
             .zip(functions(x))
             .zip(known)
@@ -167,9 +167,9 @@ fn straight_numbers_have_the_bits_of_theirs<T: Lane>(range: &Range, parting: &[f
             }
         }
         let y = numbers[(index + 7) % numbers.len()];
-        let found = operations(Straight(x), Straight(y)).map(|value| bits(value.to_f64()));
+        let found = operations(Branchless(x), Branchless(y)).map(|value| bits(value.to_f64()));
         assert_eq!(found, operations(x, y).map(|value| bits(value.to_f64())));
-        assert!(Real::is_finite(Straight(x)));
+        assert!(Real::is_finite(Branchless(x)));
     }
     assert!(inside > 500 && outside > 500);
 }

@@ -1,9 +1,9 @@
-//! What a model says of its noise without an implementation of its own, and what [`Outlined`] hands on.
+//! What a model says of its noise without an implementation of its own, and what [`NoInline`] hands on.
 #![forbid(unsafe_code)]
 
 use ahv_core::{
-    ColouredNoise, DifferentiableModel, DifferentiableNoise, ItoCorrected, Model, NoiseClass,
-    Outlined, Pattern, StochasticModel,
+    ColouredNoise, DifferentiableModel, DifferentiableNoise, ItoCorrected, Model, NoInline,
+    NoiseClass, Pattern, StochasticModel,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,7 +150,7 @@ fn a_model_that_says_nothing_promises_nothing() {
 
 #[test]
 fn an_outlined_model_is_the_model() {
-    let outlined = Outlined(Known);
+    let outlined = NoInline(Known);
     assert_eq!(outlined.drift(&X, &U), Known.drift(&X, &U));
     assert_eq!(outlined.jacobians(&X, &U), Known.jacobians(&X, &U));
     assert_eq!(
@@ -176,19 +176,19 @@ fn an_outlined_model_is_the_model() {
     );
     for (first, second) in [(0, 0), (0, 1), (1, 2), (2, 1)] {
         assert_eq!(
-            Outlined::<Known>::noise_commutes(first, second),
+            NoInline::<Known>::noise_commutes(first, second),
             Known::noise_commutes(first, second)
         );
     }
     for index in 0..2 {
         assert_eq!(
-            Outlined::<Known>::noise_class(index),
+            NoInline::<Known>::noise_class(index),
             Known::noise_class(index)
         );
         assert_eq!(outlined.decay(index), Known.decay(index));
     }
     assert_eq!(
-        <Outlined<Known> as DifferentiableModel>::STATE_JACOBIAN_PATTERN,
+        <NoInline<Known> as DifferentiableModel>::STATE_JACOBIAN_PATTERN,
         Known::STATE_JACOBIAN_PATTERN
     );
 }

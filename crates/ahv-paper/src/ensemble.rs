@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use ahv_analysis::statistics::deviation_of;
 use ahv_integrate::{LinearTransition, NormalStream};
 use rayon::prelude::*;
 
@@ -198,7 +199,7 @@ fn moments(sums: &Sums, process: usize, runs: f64) -> Moments {
         let mean = sum / runs;
         let variance = (squares - runs * mean * mean) / (runs - 1.0).max(1.0);
         moments.mean.push(mean);
-        moments.std.push(variance.max(0.0).sqrt());
+        moments.std.push(deviation_of(variance));
     }
     moments
 }

@@ -155,10 +155,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to altitude
     let radius_ratio_3 = radius_ratio * radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let d_radius_ratio_d_altitude_2 = d_radius_ratio_d_altitude
+    let power_2_of_d_radius_ratio_d_altitude = d_radius_ratio_d_altitude
         * d_radius_ratio_d_altitude;
     let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * d_radius_ratio_d_altitude_2
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
             + R::TWO * radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     let density_ratio_over_h_s = density_ratio * p.inv_h_s;
     let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2

@@ -511,20 +511,20 @@ pub fn noise_increment<R: Real>(
     let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_gamma_rate_d_gamma_w_gamma_dw_gamma = d_gamma_rate_d_gamma * p.w_gamma
-        * dw.w_gamma;
-    let d_force_turn_d_alpha_w_alpha_dw_alpha = d_force_turn_d_alpha * p.w_alpha
-        * dw.w_alpha;
+    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = d_gamma_rate_d_gamma
+        * p.w_gamma * dw.w_gamma;
+    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = d_force_turn_d_alpha
+        * p.w_alpha * dw.w_alpha;
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {
         velocity: d_velocity_rate_d_gamma * p.w_gamma * dw.w_gamma
             + d_velocity_rate_d_alpha * p.w_alpha * dw.w_alpha,
         altitude: d_altitude_rate_d_gamma * p.w_gamma * dw.w_gamma,
-        gamma: d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            + d_force_turn_d_alpha_w_alpha_dw_alpha,
-        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            - d_force_turn_d_alpha_w_alpha_dw_alpha,
+        gamma: d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
+            + d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
+        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
+            - d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
         pitch_rate: d_pitch_acceleration_d_alpha * p.w_alpha * dw.w_alpha,
         eta_1: R::ZERO,
         eta_dot_1: d_generalized_force_1_d_alpha * p.w_alpha * dw.w_alpha
@@ -701,10 +701,10 @@ pub fn drift_and_noise_increment<R: Real>(
     let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
     let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_gamma_rate_d_gamma_w_gamma_dw_gamma = d_gamma_rate_d_gamma * p.w_gamma
-        * dw.w_gamma;
-    let d_force_turn_d_alpha_w_alpha_dw_alpha = d_force_turn_d_alpha * p.w_alpha
-        * dw.w_alpha;
+    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = d_gamma_rate_d_gamma
+        * p.w_gamma * dw.w_gamma;
+    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = d_force_turn_d_alpha
+        * p.w_alpha * dw.w_alpha;
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     // Result
@@ -725,10 +725,10 @@ pub fn drift_and_noise_increment<R: Real>(
         velocity: d_velocity_rate_d_gamma * p.w_gamma * dw.w_gamma
             + d_velocity_rate_d_alpha * p.w_alpha * dw.w_alpha,
         altitude: d_altitude_rate_d_gamma * p.w_gamma * dw.w_gamma,
-        gamma: d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            + d_force_turn_d_alpha_w_alpha_dw_alpha,
-        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            - d_force_turn_d_alpha_w_alpha_dw_alpha,
+        gamma: d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
+            + d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
+        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
+            - d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
         pitch_rate: d_pitch_acceleration_d_alpha * p.w_alpha * dw.w_alpha,
         eta_1: R::ZERO,
         eta_dot_1: d_generalized_force_1_d_alpha * p.w_alpha * dw.w_alpha

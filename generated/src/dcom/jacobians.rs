@@ -451,7 +451,7 @@ pub fn jacobians_values<R: Real>(
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_delta_e = turn_factor * p.elevator_lift; // 1/s
-    let d_pitching_moment_d_delta_e = p.c_bar_d_c_m_d_delta_e * reference_force; // lb/rad
+    let d_pitching_moment_d_delta_e = p.c_bar_times_d_c_m_d_delta_e * reference_force; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
@@ -817,7 +817,7 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_delta_e = turn_factor * p.elevator_lift; // 1/s
-    let d_pitching_moment_d_delta_e = p.c_bar_d_c_m_d_delta_e * reference_force; // lb/rad
+    let d_pitching_moment_d_delta_e = p.c_bar_times_d_c_m_d_delta_e * reference_force; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
     let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad

@@ -193,7 +193,7 @@ pub struct Prepared<R> {
     /// `c_l_delta_c * canard_command`.
     pub c_l_delta_c_canard_command: R,
     /// `c_bar * d_c_m_d_delta_e`.
-    pub c_bar_d_c_m_d_delta_e: R,
+    pub c_bar_times_d_c_m_d_delta_e: R,
     /// `c_bar * c_m_delta_c * canard_command`.
     pub c_bar_c_m_delta_c_canard_command: R,
     /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, ft^0.5/slug^0.5/rad.
@@ -452,7 +452,7 @@ impl<R> Prepared<R> {
             two_c_d_delta_e_2: f(&self.two_c_d_delta_e_2),
             two_c_d_delta_c_2: f(&self.two_c_d_delta_c_2),
             c_l_delta_c_canard_command: f(&self.c_l_delta_c_canard_command),
-            c_bar_d_c_m_d_delta_e: f(&self.c_bar_d_c_m_d_delta_e),
+            c_bar_times_d_c_m_d_delta_e: f(&self.c_bar_times_d_c_m_d_delta_e),
             c_bar_c_m_delta_c_canard_command: f(&self.c_bar_c_m_delta_c_canard_command),
             d_c_n_1_d_delta_e: f(&self.d_c_n_1_d_delta_e),
             c_n_1_delta_c_canard_command: f(&self.c_n_1_delta_c_canard_command),
@@ -695,7 +695,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         two_c_d_delta_e_2: R::TWO * p.c_d_delta_e_2,
         two_c_d_delta_c_2: R::TWO * p.c_d_delta_c_2,
         c_l_delta_c_canard_command: p.c_l_delta_c * p.canard_command,
-        c_bar_d_c_m_d_delta_e: p.c_bar * d_c_m_d_delta_e,
+        c_bar_times_d_c_m_d_delta_e: p.c_bar * d_c_m_d_delta_e,
         c_bar_c_m_delta_c_canard_command: p.c_bar * p.c_m_delta_c * p.canard_command,
         d_c_n_1_d_delta_e,
         c_n_1_delta_c_canard_command: p.c_n_1_delta_c * p.canard_command,

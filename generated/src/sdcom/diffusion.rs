@@ -616,20 +616,20 @@ pub fn noise_increment<R: Real>(
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-    let d_gamma_rate_d_gamma_w_gamma_dw_gamma = d_gamma_rate_d_gamma * p.w_gamma
-        * dw.w_gamma;
-    let d_force_turn_d_alpha_w_alpha_dw_alpha = d_force_turn_d_alpha * p.w_alpha
-        * dw.w_alpha;
+    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = d_gamma_rate_d_gamma
+        * p.w_gamma * dw.w_gamma;
+    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = d_force_turn_d_alpha
+        * p.w_alpha * dw.w_alpha;
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {
         velocity: d_velocity_rate_d_gamma * p.w_gamma * dw.w_gamma
             + d_velocity_rate_d_alpha * p.w_alpha * dw.w_alpha,
         altitude: d_altitude_rate_d_gamma * p.w_gamma * dw.w_gamma,
-        gamma: d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            + d_force_turn_d_alpha_w_alpha_dw_alpha,
-        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            - d_force_turn_d_alpha_w_alpha_dw_alpha,
+        gamma: d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
+            + d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
+        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
+            - d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
         pitch_rate: d_pitch_acceleration_d_alpha * p.w_alpha * dw.w_alpha,
         chi_1: p.chi_diffusion_1 * dw.xi_1,
         chi_2: p.chi_diffusion_2 * (shared_noise_dxi_1 + p.own_noise * dw.xi_2),
@@ -820,10 +820,10 @@ pub fn drift_and_noise_increment<R: Real>(
     let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-    let d_gamma_rate_d_gamma_w_gamma_dw_gamma = d_gamma_rate_d_gamma * p.w_gamma
-        * dw.w_gamma;
-    let d_force_turn_d_alpha_w_alpha_dw_alpha = d_force_turn_d_alpha * p.w_alpha
-        * dw.w_alpha;
+    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = d_gamma_rate_d_gamma
+        * p.w_gamma * dw.w_gamma;
+    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = d_force_turn_d_alpha
+        * p.w_alpha * dw.w_alpha;
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     // Result
@@ -841,10 +841,10 @@ pub fn drift_and_noise_increment<R: Real>(
         velocity: d_velocity_rate_d_gamma * p.w_gamma * dw.w_gamma
             + d_velocity_rate_d_alpha * p.w_alpha * dw.w_alpha,
         altitude: d_altitude_rate_d_gamma * p.w_gamma * dw.w_gamma,
-        gamma: d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            + d_force_turn_d_alpha_w_alpha_dw_alpha,
-        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_w_gamma_dw_gamma
-            - d_force_turn_d_alpha_w_alpha_dw_alpha,
+        gamma: d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
+            + d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
+        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
+            - d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
         pitch_rate: d_pitch_acceleration_d_alpha * p.w_alpha * dw.w_alpha,
         chi_1: p.chi_diffusion_1 * dw.xi_1,
         chi_2: p.chi_diffusion_2 * (shared_noise_dxi_1 + p.own_noise * dw.xi_2),

@@ -423,19 +423,19 @@ pub fn noise_derivatives_values<R: Real>(
     let noise_derivatives_term_1 = d2_gamma_rate_d_gamma_d_velocity * d_velocity_rate_d_gamma
         + d2_gamma_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
         + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_gamma = d2_force_turn_d_alpha_d_velocity
+    let noise_derivatives_term_2 = d2_force_turn_d_alpha_d_velocity
         * d_velocity_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_altitude_d_altitude_rate_d_gamma = d2_force_turn_d_alpha_d_altitude
+    let noise_derivatives_term_3 = d2_force_turn_d_alpha_d_altitude
         * d_altitude_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_alpha_d_gamma_rate_d_gamma = d2_force_turn_d_alpha_d_alpha
+    let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = d2_force_turn_d_alpha_d_alpha
         * d_gamma_rate_d_gamma;
-    let noise_derivatives_term_2 = d2_gamma_rate_d_gamma_d_velocity
+    let noise_derivatives_term_4 = d2_gamma_rate_d_gamma_d_velocity
         * d_velocity_rate_d_alpha + d2_gamma_rate_d_gamma_d_gamma * d_force_turn_d_alpha;
-    let d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha = d2_force_turn_d_alpha_d_velocity
+    let noise_derivatives_term_5 = d2_force_turn_d_alpha_d_velocity
         * d_velocity_rate_d_alpha;
-    let d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
+    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
         * d_force_turn_d_alpha;
-    let noise_derivatives_term_3 = p.shared_noise
+    let noise_derivatives_term_6 = p.shared_noise
         * (p.chi_diffusion_2 * d2_force_turn_d_alpha_d_chi_2
             + p.chi_diffusion_3 * d2_force_turn_d_alpha_d_chi_3)
         + p.chi_diffusion_1 * d2_force_turn_d_alpha_d_chi_1;
@@ -468,28 +468,26 @@ pub fn noise_derivatives_values<R: Real>(
                 + d2_altitude_rate_d_gamma_d_gamma * d_force_turn_d_alpha),
         p.w_gamma_2 * noise_derivatives_term_1,
         p.w_alpha_w_gamma
-            * (d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_gamma
-                + d2_force_turn_d_alpha_d_altitude_d_altitude_rate_d_gamma
-                - d2_force_turn_d_alpha_d_alpha_d_gamma_rate_d_gamma),
-        p.w_alpha_w_gamma * noise_derivatives_term_2,
+            * (noise_derivatives_term_2 + noise_derivatives_term_3
+                - d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma),
+        p.w_alpha_w_gamma * noise_derivatives_term_4,
         p.w_alpha_2
-            * (d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha
-                - d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha),
+            * (noise_derivatives_term_5
+                - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_force_turn_d_alpha_d_alpha,
-        p.w_alpha * noise_derivatives_term_3,
+        p.w_alpha * noise_derivatives_term_6,
         p.w_alpha_chi_diffusion_2_own_noise * d2_force_turn_d_alpha_d_chi_2,
         p.w_alpha_chi_diffusion_3_own_noise * d2_force_turn_d_alpha_d_chi_3,
         -p.w_gamma_2 * noise_derivatives_term_1,
         p.w_alpha_w_gamma
-            * (d2_force_turn_d_alpha_d_alpha_d_gamma_rate_d_gamma
-                - d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_gamma
-                - d2_force_turn_d_alpha_d_altitude_d_altitude_rate_d_gamma),
-        -p.w_alpha_w_gamma * noise_derivatives_term_2,
+            * (d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
+                - noise_derivatives_term_2 - noise_derivatives_term_3),
+        -p.w_alpha_w_gamma * noise_derivatives_term_4,
         p.w_alpha_2
-            * (d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha
-                - d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha),
+            * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
+                - noise_derivatives_term_5),
         -p.w_alpha_w_q * d2_force_turn_d_alpha_d_alpha,
-        -p.w_alpha * noise_derivatives_term_3,
+        -p.w_alpha * noise_derivatives_term_6,
         -p.w_alpha_chi_diffusion_2_own_noise * d2_force_turn_d_alpha_d_chi_2,
         -p.w_alpha_chi_diffusion_3_own_noise * d2_force_turn_d_alpha_d_chi_3,
         p.w_alpha_w_gamma
@@ -788,9 +786,9 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         * (d2_gamma_rate_d_gamma_d_velocity * d_velocity_rate_d_gamma
             + d2_gamma_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
             + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma);
-    let d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha = d2_force_turn_d_alpha_d_velocity
+    let ito_correction_term_2 = d2_force_turn_d_alpha_d_velocity
         * d_velocity_rate_d_alpha;
-    let d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
+    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
         * d_force_turn_d_alpha;
 
     State {
@@ -805,12 +803,11 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
                 + d2_altitude_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
         gamma: ito_correction_term_1
             + p.half_w_alpha_2
-                * (d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha
-                    - d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha),
+                * (ito_correction_term_2
+                    - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
         alpha: p.half_w_alpha_2
-            * (d2_force_turn_d_alpha_d_alpha_d_force_turn_d_alpha
-                - d2_force_turn_d_alpha_d_velocity_d_velocity_rate_d_alpha)
-            - ito_correction_term_1,
+            * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
+                - ito_correction_term_2) - ito_correction_term_1,
         pitch_rate: p.half_w_alpha_2
             * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_alpha
                 - d2_pitch_acceleration_d_alpha_d_alpha * d_force_turn_d_alpha),

@@ -306,9 +306,9 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let sin_alpha_d_c_t_d_alpha = sin_alpha * d_c_t_d_alpha;
+    let sin_alpha_times_d_c_t_d_alpha = sin_alpha * d_c_t_d_alpha;
     let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha_d_c_t_d_alpha
+        + sin_alpha_times_d_c_t_d_alpha
         + d_c_l_d_alpha; // 1/rad
     let slope_of_c_m_in_incidence = p.two_c_m_alpha_2 * incidence + p.c_m_alpha; // 1/rad
     let d_c_m_d_alpha = slope_of_c_m_in_incidence
@@ -326,7 +326,8 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d_normal_coefficient_d_chi_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d_normal_coefficient_d_alpha_gust = sin_alpha_d_c_t_d_alpha + d_c_l_d_alpha; // 1/rad
+    let d_normal_coefficient_d_alpha_gust = sin_alpha_times_d_c_t_d_alpha
+        + d_c_l_d_alpha; // 1/rad
 
     // Derivatives with respect to velocity
     let d2_generalized_force_1_d_velocity_d_velocity = c_n_1 * p.s * density; // slug^0.5/ft^1.5
@@ -413,10 +414,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + p.c_d_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
     let d2_drag_d_velocity_d_alpha = d_reference_force_d_velocity * d_c_d_d_alpha
         + reference_force * d2_c_d_d_velocity_d_alpha; // lb*s/ft^2/rad
-    let cos_alpha_d2_thrust_d_velocity_d_alpha = cos_alpha
+    let cos_alpha_times_d2_thrust_d_velocity_d_alpha = cos_alpha
         * d2_thrust_d_velocity_d_alpha;
     let d2_path_force_d_velocity_d_alpha = d_thrust_d_velocity * d_cos_alpha_d_alpha
-        + cos_alpha_d2_thrust_d_velocity_d_alpha
+        + cos_alpha_times_d2_thrust_d_velocity_d_alpha
         - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
     let d2_velocity_rate_d_velocity_d_alpha = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
 
@@ -442,7 +443,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_velocity_rate_d_velocity_d_chi_3 = d2_path_force_d_velocity_d_chi_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d2_path_force_d_velocity_d_alpha_gust = cos_alpha_d2_thrust_d_velocity_d_alpha
+    let d2_path_force_d_velocity_d_alpha_gust = cos_alpha_times_d2_thrust_d_velocity_d_alpha
         - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
     let d2_velocity_rate_d_velocity_d_alpha_gust = d2_path_force_d_velocity_d_alpha_gust
         * p.inv_m; // 1/s/rad
@@ -450,10 +451,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to altitude
     let radius_ratio_3 = radius_ratio * radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let d_radius_ratio_d_altitude_2 = d_radius_ratio_d_altitude
+    let power_2_of_d_radius_ratio_d_altitude = d_radius_ratio_d_altitude
         * d_radius_ratio_d_altitude;
     let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * d_radius_ratio_d_altitude_2
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
             + R::TWO * radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     let density_ratio_over_h_s = density_ratio * p.inv_h_s;
     let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
@@ -518,10 +519,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + p.c_d_eta_3 * d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
     let d2_drag_d_altitude_d_alpha = d_reference_force_d_altitude * d_c_d_d_alpha
         + reference_force * d2_c_d_d_altitude_d_alpha; // lb/ft^2/rad
-    let cos_alpha_d2_thrust_d_altitude_d_alpha = cos_alpha
+    let cos_alpha_times_d2_thrust_d_altitude_d_alpha = cos_alpha
         * d2_thrust_d_altitude_d_alpha;
     let d2_path_force_d_altitude_d_alpha = d_thrust_d_altitude * d_cos_alpha_d_alpha
-        + cos_alpha_d2_thrust_d_altitude_d_alpha
+        + cos_alpha_times_d2_thrust_d_altitude_d_alpha
         - d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
     let d2_velocity_rate_d_altitude_d_alpha = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
 
@@ -547,7 +548,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_velocity_rate_d_altitude_d_chi_3 = d2_path_force_d_altitude_d_chi_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d2_path_force_d_altitude_d_alpha_gust = cos_alpha_d2_thrust_d_altitude_d_alpha
+    let d2_path_force_d_altitude_d_alpha_gust = cos_alpha_times_d2_thrust_d_altitude_d_alpha
         - d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
     let d2_velocity_rate_d_altitude_d_alpha_gust = d2_path_force_d_altitude_d_alpha_gust
         * p.inv_m; // 1/s^2/rad
@@ -581,11 +582,13 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_alpha
         + R::TWO * p.c_d_alpha_2; // 1/rad^2
     let d2_drag_d_alpha_d_alpha = reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    let d_thrust_d_alpha_d_cos_alpha_d_alpha = d_thrust_d_alpha * d_cos_alpha_d_alpha;
-    let cos_alpha_d2_thrust_d_alpha_d_alpha = cos_alpha * d2_thrust_d_alpha_d_alpha;
-    let d2_path_force_d_alpha_d_alpha = R::TWO * d_thrust_d_alpha_d_cos_alpha_d_alpha
+    let d_thrust_d_alpha_times_d_cos_alpha_d_alpha = d_thrust_d_alpha
+        * d_cos_alpha_d_alpha;
+    let cos_alpha_times_d2_thrust_d_alpha_d_alpha = cos_alpha
+        * d2_thrust_d_alpha_d_alpha;
+    let d2_path_force_d_alpha_d_alpha = R::TWO * d_thrust_d_alpha_times_d_cos_alpha_d_alpha
         + thrust * d2_cos_alpha_d_alpha_d_alpha
-        + cos_alpha_d2_thrust_d_alpha_d_alpha
+        + cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
@@ -605,12 +608,12 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_velocity_rate_d_alpha_d_chi_3 = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d2_path_force_d_alpha_d_alpha_gust = d_thrust_d_alpha_d_cos_alpha_d_alpha
-        + cos_alpha_d2_thrust_d_alpha_d_alpha
+    let d2_path_force_d_alpha_d_alpha_gust = d_thrust_d_alpha_times_d_cos_alpha_d_alpha
+        + cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha_gust = d2_path_force_d_alpha_d_alpha_gust
         * p.inv_m; // ft/s^2/rad^2
-    let d2_path_force_d_alpha_gust_d_alpha_gust = cos_alpha_d2_thrust_d_alpha_d_alpha
+    let d2_path_force_d_alpha_gust_d_alpha_gust = cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_gust_d_alpha_gust = d2_path_force_d_alpha_gust_d_alpha_gust
         * p.inv_m; // ft/s^2/rad^2
@@ -656,9 +659,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    let sin_alpha_d2_c_t_d_velocity_d_alpha = sin_alpha * d2_c_t_d_velocity_d_alpha;
+    let sin_alpha_times_d2_c_t_d_velocity_d_alpha = sin_alpha
+        * d2_c_t_d_velocity_d_alpha;
     let d2_normal_coefficient_d_velocity_d_alpha = d_c_t_d_velocity * cos_alpha
-        + sin_alpha_d2_c_t_d_velocity_d_alpha
+        + sin_alpha_times_d2_c_t_d_velocity_d_alpha
         + d2_c_l_d_velocity_d_alpha; // s/ft/rad
     let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
         * d_normal_coefficient_d_alpha
@@ -677,7 +681,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_normal_coefficient_d_chi_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d2_normal_coefficient_d_velocity_d_alpha_gust = sin_alpha_d2_c_t_d_velocity_d_alpha
+    let d2_normal_coefficient_d_velocity_d_alpha_gust = sin_alpha_times_d2_c_t_d_velocity_d_alpha
         + d2_c_l_d_velocity_d_alpha; // s/ft/rad
     let d2_force_turn_d_velocity_d_alpha_gust = d_turn_factor_d_velocity
         * d_normal_coefficient_d_alpha_gust
@@ -708,9 +712,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_altitude_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_altitude_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    let sin_alpha_d2_c_t_d_altitude_d_alpha = sin_alpha * d2_c_t_d_altitude_d_alpha;
+    let sin_alpha_times_d2_c_t_d_altitude_d_alpha = sin_alpha
+        * d2_c_t_d_altitude_d_alpha;
     let d2_normal_coefficient_d_altitude_d_alpha = d_c_t_d_altitude * cos_alpha
-        + sin_alpha_d2_c_t_d_altitude_d_alpha
+        + sin_alpha_times_d2_c_t_d_altitude_d_alpha
         + d2_c_l_d_altitude_d_alpha; // 1/ft/rad
     let d2_force_turn_d_altitude_d_alpha = d_turn_factor_d_altitude
         * d_normal_coefficient_d_alpha
@@ -729,7 +734,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d_normal_coefficient_d_chi_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d2_normal_coefficient_d_altitude_d_alpha_gust = sin_alpha_d2_c_t_d_altitude_d_alpha
+    let d2_normal_coefficient_d_altitude_d_alpha_gust = sin_alpha_times_d2_c_t_d_altitude_d_alpha
         + d2_c_l_d_altitude_d_alpha; // 1/ft/rad
     let d2_force_turn_d_altitude_d_alpha_gust = d_turn_factor_d_altitude
         * d_normal_coefficient_d_alpha_gust
@@ -743,10 +748,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d_c_t_d_alpha_cos_alpha = d_c_t_d_alpha * cos_alpha;
-    let sin_alpha_d2_c_t_d_alpha_d_alpha = sin_alpha * d2_c_t_d_alpha_d_alpha;
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha_cos_alpha
-        + sin_alpha_d2_c_t_d_alpha_d_alpha
+    let d_c_t_d_alpha_times_cos_alpha = d_c_t_d_alpha * cos_alpha;
+    let sin_alpha_times_d2_c_t_d_alpha_d_alpha = sin_alpha * d2_c_t_d_alpha_d_alpha;
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha_times_cos_alpha
+        + sin_alpha_times_d2_c_t_d_alpha_d_alpha
         + c_t * d_cos_alpha_d_alpha
         + d2_c_l_d_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha = turn_factor
@@ -768,12 +773,12 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_normal_coefficient_d_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d2_normal_coefficient_d_alpha_d_alpha_gust = d_c_t_d_alpha_cos_alpha
-        + sin_alpha_d2_c_t_d_alpha_d_alpha
+    let d2_normal_coefficient_d_alpha_d_alpha_gust = d_c_t_d_alpha_times_cos_alpha
+        + sin_alpha_times_d2_c_t_d_alpha_d_alpha
         + d2_c_l_d_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_d_alpha_gust = turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha_gust; // 1/s/rad
-    let d2_normal_coefficient_d_alpha_gust_d_alpha_gust = sin_alpha_d2_c_t_d_alpha_d_alpha
+    let d2_normal_coefficient_d_alpha_gust_d_alpha_gust = sin_alpha_times_d2_c_t_d_alpha_d_alpha
         + d2_c_l_d_alpha_d_alpha; // 1/rad^2
     let d2_force_turn_d_alpha_gust_d_alpha_gust = turn_factor
         * d2_normal_coefficient_d_alpha_gust_d_alpha_gust; // 1/s/rad

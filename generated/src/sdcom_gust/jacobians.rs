@@ -411,18 +411,18 @@ pub fn jacobians_values<R: Real>(
         + p.c_d_eta_2 * d_eta_static_2_d_alpha
         + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
     let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let cos_alpha_d_thrust_d_alpha = cos_alpha * d_thrust_d_alpha;
+    let cos_alpha_times_d_thrust_d_alpha = cos_alpha * d_thrust_d_alpha;
     let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha_d_thrust_d_alpha
+        + cos_alpha_times_d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
     let d_c_l_d_alpha = p.c_l_alpha
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let sin_alpha_d_c_t_d_alpha = sin_alpha * d_c_t_d_alpha;
+    let sin_alpha_times_d_c_t_d_alpha = sin_alpha * d_c_t_d_alpha;
     let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha_d_c_t_d_alpha
+        + sin_alpha_times_d_c_t_d_alpha
         + d_c_l_d_alpha; // 1/rad
     let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let slope_of_c_m_in_incidence = p.two_c_m_alpha_2 * incidence + p.c_m_alpha; // 1/rad
@@ -465,9 +465,10 @@ pub fn jacobians_values<R: Real>(
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d_path_force_d_alpha_gust = cos_alpha_d_thrust_d_alpha - d_drag_d_alpha; // lb/ft/rad
+    let d_path_force_d_alpha_gust = cos_alpha_times_d_thrust_d_alpha - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha_gust = d_path_force_d_alpha_gust * p.inv_m; // ft/s^2/rad
-    let d_normal_coefficient_d_alpha_gust = sin_alpha_d_c_t_d_alpha + d_c_l_d_alpha; // 1/rad
+    let d_normal_coefficient_d_alpha_gust = sin_alpha_times_d_c_t_d_alpha
+        + d_c_l_d_alpha; // 1/rad
     let d_force_turn_d_alpha_gust = turn_factor * d_normal_coefficient_d_alpha_gust; // 1/s
 
     // Derivatives with respect to phi
@@ -876,18 +877,18 @@ pub fn drift_and_jacobians_values<R: Real>(
         + p.c_d_eta_2 * d_eta_static_2_d_alpha
         + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
     let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let cos_alpha_d_thrust_d_alpha = cos_alpha * d_thrust_d_alpha;
+    let cos_alpha_times_d_thrust_d_alpha = cos_alpha * d_thrust_d_alpha;
     let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha_d_thrust_d_alpha
+        + cos_alpha_times_d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
     let d_c_l_d_alpha = p.c_l_alpha
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let sin_alpha_d_c_t_d_alpha = sin_alpha * d_c_t_d_alpha;
+    let sin_alpha_times_d_c_t_d_alpha = sin_alpha * d_c_t_d_alpha;
     let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha_d_c_t_d_alpha
+        + sin_alpha_times_d_c_t_d_alpha
         + d_c_l_d_alpha; // 1/rad
     let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
     let slope_of_c_m_in_incidence = p.two_c_m_alpha_2 * incidence + p.c_m_alpha; // 1/rad
@@ -930,9 +931,10 @@ pub fn drift_and_jacobians_values<R: Real>(
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d_path_force_d_alpha_gust = cos_alpha_d_thrust_d_alpha - d_drag_d_alpha; // lb/ft/rad
+    let d_path_force_d_alpha_gust = cos_alpha_times_d_thrust_d_alpha - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha_gust = d_path_force_d_alpha_gust * p.inv_m; // ft/s^2/rad
-    let d_normal_coefficient_d_alpha_gust = sin_alpha_d_c_t_d_alpha + d_c_l_d_alpha; // 1/rad
+    let d_normal_coefficient_d_alpha_gust = sin_alpha_times_d_c_t_d_alpha
+        + d_c_l_d_alpha; // 1/rad
     let d_force_turn_d_alpha_gust = turn_factor * d_normal_coefficient_d_alpha_gust; // 1/s
 
     // Derivatives with respect to phi

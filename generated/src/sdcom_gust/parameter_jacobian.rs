@@ -341,8 +341,9 @@ pub fn parameter_jacobian_values<R: Real>(
             + p.c_t_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
     let d_thrust_d_s = c_t * dynamic_pressure + reference_force * d_c_t_d_s; // lb/ft^2
     let d_c_d_d_s = dynamic_pressure
-        * (p.c_d_eta_1_inv_omega_1_2 * c_n_1 + p.c_d_eta_2_inv_omega_2_2 * c_n_2
-            + p.c_d_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
+        * (p.c_d_eta_1_times_inv_omega_1_2 * c_n_1
+            + p.c_d_eta_2_times_inv_omega_2_2 * c_n_2
+            + p.c_d_eta_3_times_inv_omega_3_2 * c_n_3); // 1/ft
     let d_drag_d_s = c_d * dynamic_pressure + reference_force * d_c_d_d_s; // lb/ft^2
     let d_path_force_d_s = cos_alpha * d_thrust_d_s - d_drag_d_s; // lb/ft^2
     let d_velocity_rate_d_s = d_path_force_d_s * p.inv_m; // 1/s^2
@@ -366,9 +367,9 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_thrust_d_rho_0 = c_t * p.half_s * velocity_2 * density_ratio
         + reference_force * d_c_t_d_rho_0; // lb*ft^2/slug
     let d_c_d_d_rho_0 = p.s * density_ratio
-        * (p.half_c_d_eta_1_inv_omega_1_2 * c_n_1 * velocity_2
-            + p.half_c_d_eta_2_inv_omega_2_2 * c_n_2 * velocity_2
-            + p.half_c_d_eta_3_inv_omega_3_2 * c_n_3 * velocity_2); // ft^3/slug
+        * (p.half_c_d_eta_1_times_inv_omega_1_2 * c_n_1 * velocity_2
+            + p.half_c_d_eta_2_times_inv_omega_2_2 * c_n_2 * velocity_2
+            + p.half_c_d_eta_3_times_inv_omega_3_2 * c_n_3 * velocity_2); // ft^3/slug
     let d_drag_d_rho_0 = c_d * p.half_s * velocity_2 * density_ratio
         + reference_force * d_c_d_d_rho_0; // lb*ft^2/slug
     let d_path_force_d_rho_0 = cos_alpha * d_thrust_d_rho_0 - d_drag_d_rho_0; // lb*ft^2/slug
@@ -509,9 +510,9 @@ pub fn parameter_jacobian_values<R: Real>(
             + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c);
     let d_thrust_d_canard_command = reference_force * d_c_t_d_canard_command; // lb/ft
     let d_c_d_d_canard_command = reference_force
-        * (p.c_d_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
-            + p.c_d_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
-            + p.c_d_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c)
+        * (p.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 * u.delta_c
+            + p.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2 * u.delta_c
+            + p.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 * u.delta_c)
         + slope_of_c_d_in_canard_deflection * u.delta_c;
     let d_drag_d_canard_command = reference_force * d_c_d_d_canard_command; // lb/ft
     let d_path_force_d_canard_command = cos_alpha * d_thrust_d_canard_command
@@ -542,9 +543,9 @@ pub fn parameter_jacobian_values<R: Real>(
         * d_c_t_d_canard_slaving_term_1;
     let d_thrust_d_canard_slaving = reference_force * d_c_t_d_canard_slaving; // lb/ft
     let d_c_d_d_canard_slaving_term_1 = reference_force
-        * (p.c_d_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
-            + p.c_d_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
-            + p.c_d_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e)
+        * (p.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 * u.delta_e
+            + p.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2 * u.delta_e
+            + p.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 * u.delta_e)
         + slope_of_c_d_in_canard_deflection * u.delta_e;
     let d_c_d_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * d_c_d_d_canard_slaving_term_1;

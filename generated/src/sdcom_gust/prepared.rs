@@ -215,11 +215,11 @@ pub struct Prepared<R> {
     /// `c_t_eta_3 * inv_omega_3_2`.
     pub c_t_eta_3_inv_omega_3_2: R,
     /// `c_d_eta_1 * inv_omega_1_2`.
-    pub c_d_eta_1_inv_omega_1_2: R,
+    pub c_d_eta_1_times_inv_omega_1_2: R,
     /// `c_d_eta_2 * inv_omega_2_2`.
-    pub c_d_eta_2_inv_omega_2_2: R,
+    pub c_d_eta_2_times_inv_omega_2_2: R,
     /// `c_d_eta_3 * inv_omega_3_2`.
-    pub c_d_eta_3_inv_omega_3_2: R,
+    pub c_d_eta_3_times_inv_omega_3_2: R,
     /// `R::HALF * s`.
     pub half_s: R,
     /// `R::HALF * c_t_eta_1 * inv_omega_1_2`.
@@ -229,11 +229,11 @@ pub struct Prepared<R> {
     /// `R::HALF * c_t_eta_3 * inv_omega_3_2`.
     pub half_c_t_eta_3_inv_omega_3_2: R,
     /// `R::HALF * c_d_eta_1 * inv_omega_1_2`.
-    pub half_c_d_eta_1_inv_omega_1_2: R,
+    pub half_c_d_eta_1_times_inv_omega_1_2: R,
     /// `R::HALF * c_d_eta_2 * inv_omega_2_2`.
-    pub half_c_d_eta_2_inv_omega_2_2: R,
+    pub half_c_d_eta_2_times_inv_omega_2_2: R,
     /// `R::HALF * c_d_eta_3 * inv_omega_3_2`.
-    pub half_c_d_eta_3_inv_omega_3_2: R,
+    pub half_c_d_eta_3_times_inv_omega_3_2: R,
     /// `inv_h_s * inv_h_s`.
     pub inv_h_s_2: R,
     /// `2 * g * earth_curvature * inv_r_e`.
@@ -257,11 +257,11 @@ pub struct Prepared<R> {
     /// `c_t_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
     pub c_t_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
     /// `c_d_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
-    pub c_d_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
+    pub c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2: R,
     /// `c_d_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
-    pub c_d_eta_2_c_n_2_delta_c_inv_omega_2_2: R,
+    pub c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2: R,
     /// `c_d_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
-    pub c_d_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
+    pub c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2: R,
     /// `c_l_delta_e * inv_c_l_delta_c`.
     pub c_l_delta_e_over_c_l_delta_c: R,
     /// `R::from_f64(-2.0) * g * inv_r_e`.
@@ -517,16 +517,22 @@ impl<R> Prepared<R> {
             c_t_eta_1_inv_omega_1_2: f(&self.c_t_eta_1_inv_omega_1_2),
             c_t_eta_2_inv_omega_2_2: f(&self.c_t_eta_2_inv_omega_2_2),
             c_t_eta_3_inv_omega_3_2: f(&self.c_t_eta_3_inv_omega_3_2),
-            c_d_eta_1_inv_omega_1_2: f(&self.c_d_eta_1_inv_omega_1_2),
-            c_d_eta_2_inv_omega_2_2: f(&self.c_d_eta_2_inv_omega_2_2),
-            c_d_eta_3_inv_omega_3_2: f(&self.c_d_eta_3_inv_omega_3_2),
+            c_d_eta_1_times_inv_omega_1_2: f(&self.c_d_eta_1_times_inv_omega_1_2),
+            c_d_eta_2_times_inv_omega_2_2: f(&self.c_d_eta_2_times_inv_omega_2_2),
+            c_d_eta_3_times_inv_omega_3_2: f(&self.c_d_eta_3_times_inv_omega_3_2),
             half_s: f(&self.half_s),
             half_c_t_eta_1_inv_omega_1_2: f(&self.half_c_t_eta_1_inv_omega_1_2),
             half_c_t_eta_2_inv_omega_2_2: f(&self.half_c_t_eta_2_inv_omega_2_2),
             half_c_t_eta_3_inv_omega_3_2: f(&self.half_c_t_eta_3_inv_omega_3_2),
-            half_c_d_eta_1_inv_omega_1_2: f(&self.half_c_d_eta_1_inv_omega_1_2),
-            half_c_d_eta_2_inv_omega_2_2: f(&self.half_c_d_eta_2_inv_omega_2_2),
-            half_c_d_eta_3_inv_omega_3_2: f(&self.half_c_d_eta_3_inv_omega_3_2),
+            half_c_d_eta_1_times_inv_omega_1_2: f(
+                &self.half_c_d_eta_1_times_inv_omega_1_2,
+            ),
+            half_c_d_eta_2_times_inv_omega_2_2: f(
+                &self.half_c_d_eta_2_times_inv_omega_2_2,
+            ),
+            half_c_d_eta_3_times_inv_omega_3_2: f(
+                &self.half_c_d_eta_3_times_inv_omega_3_2,
+            ),
             inv_h_s_2: f(&self.inv_h_s_2),
             two_g_earth_curvature_over_r_e: f(&self.two_g_earth_curvature_over_r_e),
             inv_omega_1: f(&self.inv_omega_1),
@@ -544,14 +550,14 @@ impl<R> Prepared<R> {
             c_t_eta_3_c_n_3_delta_c_inv_omega_3_2: f(
                 &self.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2,
             ),
-            c_d_eta_1_c_n_1_delta_c_inv_omega_1_2: f(
-                &self.c_d_eta_1_c_n_1_delta_c_inv_omega_1_2,
+            c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2: f(
+                &self.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2,
             ),
-            c_d_eta_2_c_n_2_delta_c_inv_omega_2_2: f(
-                &self.c_d_eta_2_c_n_2_delta_c_inv_omega_2_2,
+            c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2: f(
+                &self.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2,
             ),
-            c_d_eta_3_c_n_3_delta_c_inv_omega_3_2: f(
-                &self.c_d_eta_3_c_n_3_delta_c_inv_omega_3_2,
+            c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2: f(
+                &self.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2,
             ),
             c_l_delta_e_over_c_l_delta_c: f(&self.c_l_delta_e_over_c_l_delta_c),
             minus_two_g_over_r_e: f(&self.minus_two_g_over_r_e),
@@ -852,16 +858,16 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_t_eta_1_inv_omega_1_2: p.c_t_eta_1 * inv_omega_1_2,
         c_t_eta_2_inv_omega_2_2: p.c_t_eta_2 * inv_omega_2_2,
         c_t_eta_3_inv_omega_3_2: p.c_t_eta_3 * inv_omega_3_2,
-        c_d_eta_1_inv_omega_1_2: p.c_d_eta_1 * inv_omega_1_2,
-        c_d_eta_2_inv_omega_2_2: p.c_d_eta_2 * inv_omega_2_2,
-        c_d_eta_3_inv_omega_3_2: p.c_d_eta_3 * inv_omega_3_2,
+        c_d_eta_1_times_inv_omega_1_2: p.c_d_eta_1 * inv_omega_1_2,
+        c_d_eta_2_times_inv_omega_2_2: p.c_d_eta_2 * inv_omega_2_2,
+        c_d_eta_3_times_inv_omega_3_2: p.c_d_eta_3 * inv_omega_3_2,
         half_s: R::HALF * p.s,
         half_c_t_eta_1_inv_omega_1_2: R::HALF * p.c_t_eta_1 * inv_omega_1_2,
         half_c_t_eta_2_inv_omega_2_2: R::HALF * p.c_t_eta_2 * inv_omega_2_2,
         half_c_t_eta_3_inv_omega_3_2: R::HALF * p.c_t_eta_3 * inv_omega_3_2,
-        half_c_d_eta_1_inv_omega_1_2: R::HALF * p.c_d_eta_1 * inv_omega_1_2,
-        half_c_d_eta_2_inv_omega_2_2: R::HALF * p.c_d_eta_2 * inv_omega_2_2,
-        half_c_d_eta_3_inv_omega_3_2: R::HALF * p.c_d_eta_3 * inv_omega_3_2,
+        half_c_d_eta_1_times_inv_omega_1_2: R::HALF * p.c_d_eta_1 * inv_omega_1_2,
+        half_c_d_eta_2_times_inv_omega_2_2: R::HALF * p.c_d_eta_2 * inv_omega_2_2,
+        half_c_d_eta_3_times_inv_omega_3_2: R::HALF * p.c_d_eta_3 * inv_omega_3_2,
         inv_h_s_2,
         two_g_earth_curvature_over_r_e: R::TWO * p.g * earth_curvature * inv_r_e,
         inv_omega_1,
@@ -876,11 +882,11 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
             * inv_omega_2_2,
         c_t_eta_3_c_n_3_delta_c_inv_omega_3_2: p.c_t_eta_3 * p.c_n_3_delta_c
             * inv_omega_3_2,
-        c_d_eta_1_c_n_1_delta_c_inv_omega_1_2: p.c_d_eta_1 * p.c_n_1_delta_c
+        c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2: p.c_d_eta_1 * p.c_n_1_delta_c
             * inv_omega_1_2,
-        c_d_eta_2_c_n_2_delta_c_inv_omega_2_2: p.c_d_eta_2 * p.c_n_2_delta_c
+        c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2: p.c_d_eta_2 * p.c_n_2_delta_c
             * inv_omega_2_2,
-        c_d_eta_3_c_n_3_delta_c_inv_omega_3_2: p.c_d_eta_3 * p.c_n_3_delta_c
+        c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2: p.c_d_eta_3 * p.c_n_3_delta_c
             * inv_omega_3_2,
         c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
         minus_two_g_over_r_e: R::from_f64(-2.0) * p.g * inv_r_e,

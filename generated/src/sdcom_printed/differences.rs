@@ -78,12 +78,12 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_d_alpha_alpha = p.c_d_alpha * x.alpha;
+    let c_d_alpha_times_alpha = p.c_d_alpha * x.alpha;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = canard_deflection * canard_deflection;
     let c_d = p.c_d_0
         + p.c_d_alpha_2 * alpha_2
-        + c_d_alpha_alpha
+        + c_d_alpha_times_alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
@@ -110,8 +110,8 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
             + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft/s^2
     let f_velocity = reference_force * p.inv_m
-        * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - c_d_alpha_alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e - p.c_d_0)
+        * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - c_d_alpha_times_alpha
+            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
         - gravity_sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (c_t_phi_alpha_alpha + p.c_t_phi); // ft/s^2

@@ -206,7 +206,7 @@ pub fn drift_and_diffusion<R: Real>(
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e - p.c_d_0)
+            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
         - gravity * sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
@@ -463,7 +463,7 @@ pub fn drift_and_noise_increment<R: Real>(
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e - p.c_d_0)
+            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
         - gravity * sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2

@@ -140,8 +140,9 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
     let slope_of_f_velocity_in_dynamic_pressure = (cos_alpha * c_t_alpha_alpha_plus_c_t_0
-        - p.c_d_alpha * x.alpha - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
-        - p.c_d_0) * p.s_over_m; // ft^3/s^2/lb
+        - p.c_d_alpha * x.alpha
+        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
+        * p.s_over_m; // ft^3/s^2/lb
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
     let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
@@ -404,10 +405,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_density_d_altitude_d_altitude; // lb/ft^4
     let radius_ratio_3 = radius_ratio * radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let d_radius_ratio_d_altitude_2 = d_radius_ratio_d_altitude
+    let power_2_of_d_radius_ratio_d_altitude = d_radius_ratio_d_altitude
         * d_radius_ratio_d_altitude;
     let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * d_radius_ratio_d_altitude_2
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
             + R::TWO * radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     let d2_reference_force_d_altitude_d_altitude = p.s
         * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
@@ -561,10 +562,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
         + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
         + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let cos_gamma_d2_gravity_turn_d_velocity_d_velocity = cos_gamma
+    let cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity = cos_gamma
         * d2_gravity_turn_d_velocity_d_velocity;
     let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
-        - cos_gamma_d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+        - cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * d_density_d_altitude; // 1/ft^2
@@ -589,10 +590,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
         + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
         + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
-    let cos_gamma_d2_gravity_turn_d_velocity_d_altitude = cos_gamma
+    let cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude = cos_gamma
         * d2_gravity_turn_d_velocity_d_altitude;
     let d2_f_gamma_d_velocity_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        - cos_gamma_d2_gravity_turn_d_velocity_d_altitude
+        - cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
     let d2_g_gamma_d_velocity_d_altitude = slope_of_g_gamma_in_turn_factor
         * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
@@ -664,10 +665,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
         + slope_of_f_gamma_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let cos_gamma_d2_gravity_turn_d_altitude_d_altitude = cos_gamma
+    let cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = cos_gamma
         * d2_gravity_turn_d_altitude_d_altitude;
     let d2_f_gamma_d_altitude_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
-        - cos_gamma_d2_gravity_turn_d_altitude_d_altitude
+        - cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
     let d2_g_gamma_d_altitude_d_altitude = slope_of_g_gamma_in_turn_factor
         * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
@@ -758,7 +759,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
         + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
     let velocity_cos_gamma = x.velocity * cos_gamma;
-    let d2_f_alpha_d_velocity_d_velocity = cos_gamma_d2_gravity_turn_d_velocity_d_velocity
+    let d2_f_alpha_d_velocity_d_velocity = cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity
         - gravity_turn
             * (cos_gamma * inv_velocity_2
                 + (cos_gamma * inv_velocity - velocity_cos_gamma * inv_velocity_2)
@@ -783,7 +784,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
         + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
     let d2_f_alpha_d_velocity_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + cos_gamma_d2_gravity_turn_d_velocity_d_altitude
+        + cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
     let d2_alpha_rate_printed_d_velocity_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
         * d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
@@ -843,7 +844,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
         + slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_alpha_d_altitude_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
-        + cos_gamma_d2_gravity_turn_d_altitude_d_altitude
+        + cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
     let d2_alpha_rate_printed_d_altitude_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
         * d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
@@ -892,11 +893,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
         + slope_of_f_alpha_eta_in_sin_alpha * d_cos_alpha_d_alpha
         + cos_alpha * d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha; // 1/s/rad
-    let cos_alpha_d_slope_of_f_alpha_in_sin_alpha_d_alpha = cos_alpha
+    let cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = cos_alpha
         * d_slope_of_f_alpha_in_sin_alpha_d_alpha;
     let d2_f_alpha_d_alpha_d_alpha = slope_of_f_alpha_in_sin_alpha * d_cos_alpha_d_alpha
         - d_g_gamma_d_alpha
-        + cos_alpha_d_slope_of_f_alpha_in_sin_alpha_d_alpha
+        + cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
         + d2_f_alpha_eta_d_alpha_d_alpha; // 1/s/rad
     let d2_alpha_rate_printed_d_alpha_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
         * d_cos_alpha_d_alpha + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad

@@ -233,8 +233,9 @@ pub fn jacobians_values<R: Real>(
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
     let slope_of_f_velocity_in_dynamic_pressure = (cos_alpha * c_t_alpha_alpha_plus_c_t_0
-        - p.c_d_alpha * x.alpha - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
-        - p.c_d_0) * p.s_over_m; // ft^3/s^2/lb
+        - p.c_d_alpha * x.alpha
+        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
+        * p.s_over_m; // ft^3/s^2/lb
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
     let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
@@ -296,9 +297,10 @@ pub fn jacobians_values<R: Real>(
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
-    let cos_gamma_d_gravity_turn_d_velocity = cos_gamma * d_gravity_turn_d_velocity;
+    let cos_gamma_times_d_gravity_turn_d_velocity = cos_gamma
+        * d_gravity_turn_d_velocity;
     let d_f_gamma_d_velocity = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_velocity
-        - cos_gamma_d_gravity_turn_d_velocity
+        - cos_gamma_times_d_gravity_turn_d_velocity
         + d_f_gamma_eta_d_velocity; // rad/ft
     let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
         * d_turn_factor_d_velocity; // 1/ft
@@ -320,7 +322,7 @@ pub fn jacobians_values<R: Real>(
         + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
-    let d_f_alpha_d_velocity = cos_gamma_d_gravity_turn_d_velocity
+    let d_f_alpha_d_velocity = cos_gamma_times_d_gravity_turn_d_velocity
         + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_velocity
         + d_f_alpha_eta_d_velocity; // rad/ft
     let d_alpha_rate_printed_d_velocity = slope_of_alpha_rate_printed_in_turn_factor
@@ -387,9 +389,10 @@ pub fn jacobians_values<R: Real>(
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
-    let cos_gamma_d_gravity_turn_d_altitude = cos_gamma * d_gravity_turn_d_altitude;
+    let cos_gamma_times_d_gravity_turn_d_altitude = cos_gamma
+        * d_gravity_turn_d_altitude;
     let d_f_gamma_d_altitude = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_altitude
-        - cos_gamma_d_gravity_turn_d_altitude
+        - cos_gamma_times_d_gravity_turn_d_altitude
         + d_f_gamma_eta_d_altitude; // rad/s/ft
     let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
         * d_turn_factor_d_altitude; // 1/s/ft
@@ -400,7 +403,7 @@ pub fn jacobians_values<R: Real>(
         + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
-    let d_f_alpha_d_altitude = cos_gamma_d_gravity_turn_d_altitude
+    let d_f_alpha_d_altitude = cos_gamma_times_d_gravity_turn_d_altitude
         + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_altitude
         + d_f_alpha_eta_d_altitude; // rad/s/ft
     let d_alpha_rate_printed_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
@@ -551,7 +554,7 @@ pub fn jacobians_values<R: Real>(
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m; // ft/s^2/rad
+        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
     let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
@@ -735,7 +738,7 @@ pub fn drift_and_jacobians_values<R: Real>(
     let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
     let f_velocity_term_1 = cos_alpha * c_t_alpha_alpha_plus_c_t_0
         - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
+        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e
         - p.c_d_0;
     let f_velocity = reference_force * p.inv_m * f_velocity_term_1
         - gravity * sin_gamma
@@ -851,9 +854,10 @@ pub fn drift_and_jacobians_values<R: Real>(
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
-    let cos_gamma_d_gravity_turn_d_velocity = cos_gamma * d_gravity_turn_d_velocity;
+    let cos_gamma_times_d_gravity_turn_d_velocity = cos_gamma
+        * d_gravity_turn_d_velocity;
     let d_f_gamma_d_velocity = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_velocity
-        - cos_gamma_d_gravity_turn_d_velocity
+        - cos_gamma_times_d_gravity_turn_d_velocity
         + d_f_gamma_eta_d_velocity; // rad/ft
     let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
         * d_turn_factor_d_velocity; // 1/ft
@@ -870,7 +874,7 @@ pub fn drift_and_jacobians_values<R: Real>(
         + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
-    let d_f_alpha_d_velocity = cos_gamma_d_gravity_turn_d_velocity
+    let d_f_alpha_d_velocity = cos_gamma_times_d_gravity_turn_d_velocity
         + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_velocity
         + d_f_alpha_eta_d_velocity; // rad/ft
     let d_alpha_rate_printed_d_velocity = slope_of_alpha_rate_printed_in_turn_factor
@@ -927,9 +931,10 @@ pub fn drift_and_jacobians_values<R: Real>(
         + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
-    let cos_gamma_d_gravity_turn_d_altitude = cos_gamma * d_gravity_turn_d_altitude;
+    let cos_gamma_times_d_gravity_turn_d_altitude = cos_gamma
+        * d_gravity_turn_d_altitude;
     let d_f_gamma_d_altitude = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_altitude
-        - cos_gamma_d_gravity_turn_d_altitude
+        - cos_gamma_times_d_gravity_turn_d_altitude
         + d_f_gamma_eta_d_altitude; // rad/s/ft
     let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
         * d_turn_factor_d_altitude; // 1/s/ft
@@ -940,7 +945,7 @@ pub fn drift_and_jacobians_values<R: Real>(
         + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
         + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
-    let d_f_alpha_d_altitude = cos_gamma_d_gravity_turn_d_altitude
+    let d_f_alpha_d_altitude = cos_gamma_times_d_gravity_turn_d_altitude
         + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_altitude
         + d_f_alpha_eta_d_altitude; // rad/s/ft
     let d_alpha_rate_printed_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
@@ -1090,7 +1095,7 @@ pub fn drift_and_jacobians_values<R: Real>(
         + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m; // ft/s^2/rad
+        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
     let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s

@@ -67,7 +67,7 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (p.c_t_alpha * x.alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e - p.c_d_0)
+            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
         - gravity * sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
@@ -114,7 +114,7 @@ pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> 
         + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m; // ft/s^2/rad
+        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
 
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = reference_force
@@ -358,7 +358,7 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
             + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
     let f_velocity = reference_force * p.inv_m
         * (cos_alpha * (p.c_t_alpha * x.alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e - p.c_d_0)
+            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
         - gravity * sin_gamma + f_velocity_eta; // ft/s^2
     let g_velocity = reference_force * p.inv_m * cos_alpha
         * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
@@ -455,7 +455,7 @@ pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
         + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m; // ft/s^2/rad
+        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
     let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s

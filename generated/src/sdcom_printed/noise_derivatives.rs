@@ -76,14 +76,14 @@ pub fn noise_derivatives_values<R: Real>(
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
 
     // Derivatives with respect to altitude
-    let s_d_dynamic_pressure_d_altitude = p.s * d_dynamic_pressure_d_altitude;
+    let s_times_d_dynamic_pressure_d_altitude = p.s * d_dynamic_pressure_d_altitude;
     let d_alpha_slope_velocity_d_altitude = alpha_slope_velocity_term_1
-        * s_d_dynamic_pressure_d_altitude * p.inv_m; // 1/s^2/rad
+        * s_times_d_dynamic_pressure_d_altitude * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let s_d_dynamic_pressure_d_velocity = p.s * d_dynamic_pressure_d_velocity;
+    let s_times_d_dynamic_pressure_d_velocity = p.s * d_dynamic_pressure_d_velocity;
     let d_alpha_slope_velocity_d_velocity = alpha_slope_velocity_term_1
-        * s_d_dynamic_pressure_d_velocity * p.inv_m; // 1/s/rad
+        * s_times_d_dynamic_pressure_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to alpha
     let slope_of_alpha_slope_velocity_in_cos_alpha = dynamic_pressure_s * p.inv_m
@@ -123,11 +123,11 @@ pub fn noise_derivatives_values<R: Real>(
     let d_alpha_slope_pitch_rate_d_altitude_term_1 = p.c_bar_c_m_alpha
         + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi;
     let d_alpha_slope_pitch_rate_d_altitude = d_alpha_slope_pitch_rate_d_altitude_term_1
-        * s_d_dynamic_pressure_d_altitude * p.inv_i_yy; // 1/s^2/ft
+        * s_times_d_dynamic_pressure_d_altitude * p.inv_i_yy; // 1/s^2/ft
 
     // Derivatives with respect to velocity
     let d_alpha_slope_pitch_rate_d_velocity = d_alpha_slope_pitch_rate_d_altitude_term_1
-        * s_d_dynamic_pressure_d_velocity * p.inv_i_yy; // 1/s/ft
+        * s_times_d_dynamic_pressure_d_velocity * p.inv_i_yy; // 1/s/ft
 
     [
         p.w_alpha_w_gamma * d_alpha_slope_velocity_d_altitude * x.velocity,
@@ -201,9 +201,9 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
     let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
 
     // Derivatives with respect to velocity
-    let s_d_dynamic_pressure_d_velocity = p.s * d_dynamic_pressure_d_velocity;
+    let s_times_d_dynamic_pressure_d_velocity = p.s * d_dynamic_pressure_d_velocity;
     let d_alpha_slope_velocity_d_velocity = alpha_slope_velocity_term_1
-        * s_d_dynamic_pressure_d_velocity * p.inv_m; // 1/s/rad
+        * s_times_d_dynamic_pressure_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to alpha
     let slope_of_alpha_slope_velocity_in_cos_alpha = dynamic_pressure_s * p.inv_m
@@ -235,8 +235,8 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
 
     // Derivatives with respect to velocity
     let d_alpha_slope_pitch_rate_d_velocity = (p.c_bar_c_m_alpha
-        + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi) * s_d_dynamic_pressure_d_velocity
-        * p.inv_i_yy; // 1/s/ft
+        + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi)
+        * s_times_d_dynamic_pressure_d_velocity * p.inv_i_yy; // 1/s/ft
 
     State {
         velocity: p.half_w_alpha_2

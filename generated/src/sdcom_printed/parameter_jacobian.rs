@@ -253,7 +253,7 @@ pub fn parameter_jacobian_values<R: Real>(
     let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let slope_of_f_velocity_in_dynamic_pressure_term_1 = cos_alpha * (c_t_alpha_alpha + p.c_t_0)
         - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e
+        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e
         - p.c_d_0;
     let slope_of_f_velocity_in_dynamic_pressure = slope_of_f_velocity_in_dynamic_pressure_term_1
         * p.s_over_m; // ft^3/s^2/lb
@@ -646,7 +646,7 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_f_velocity_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft/s^2
     let d_f_velocity_d_canard_slaving = reference_force
-        * p.c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c * u.delta_e
+        * p.c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_canard_slaving; // ft/s^2
     let d_f_gamma_eta_d_canard_slaving_term_1 =
         slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
@@ -708,7 +708,7 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_f_velocity_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
         * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_e = reference_force
-        * p.c_d_delta_c_canard_slaving_over_m_c_l_delta_c * u.delta_e
+        * p.c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_c_l_delta_e; // ft*rad/s^2
     let d_f_gamma_eta_d_c_l_delta_e = -reference_force
         * p.canard_slaving_over_c_l_delta_c * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s

@@ -37,7 +37,7 @@ pub struct Prepared<R> {
     /// Coefficient of alpha in C_D, 1/rad.
     pub c_d_alpha: R,
     /// `c_d_delta_e + c_d_delta_c * canard_gain`.
-    pub c_d_delta_e_plus_c_d_delta_c_canard_gain: R,
+    pub c_d_delta_e_plus_c_d_delta_c_times_canard_gain: R,
     /// Constant part of C_D, dimensionless.
     pub c_d_0: R,
     /// Acceleration of gravity at sea level, ft/s^2.
@@ -168,8 +168,8 @@ pub struct Prepared<R> {
     pub d_c_n_2_d_delta_e: R,
     /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, ft^0.5/slug^0.5/rad.
     pub d_c_n_3_d_delta_e: R,
-    /// `inv_m * c_d_delta_e_plus_c_d_delta_c_canard_gain`.
-    pub c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m: R,
+    /// `inv_m * c_d_delta_e_plus_c_d_delta_c_times_canard_gain`.
+    pub c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m: R,
     /// `c_n_1_delta_c * canard_command`.
     pub c_n_1_delta_c_canard_command: R,
     /// `c_n_2_delta_c * canard_command`.
@@ -203,13 +203,13 @@ pub struct Prepared<R> {
     /// `inv_omega_3_2 * c_n_3_delta_c`.
     pub inv_omega_3_2_c_n_3_delta_c: R,
     /// `inv_m * c_d_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-    pub c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c: R,
+    pub c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c: R,
     /// `c_l_delta_e * inv_c_l_delta_c`.
     pub c_l_delta_e_over_c_l_delta_c: R,
     /// `R::from_f64(-2.0) * g * inv_r_e`.
     pub minus_two_g_over_r_e: R,
     /// `inv_m * c_d_delta_c * canard_slaving * inv_c_l_delta_c`.
-    pub c_d_delta_c_canard_slaving_over_m_c_l_delta_c: R,
+    pub c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c: R,
     /// `canard_slaving * inv_c_l_delta_c`.
     pub canard_slaving_over_c_l_delta_c: R,
     /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
@@ -387,8 +387,8 @@ impl<R> Prepared<R> {
             c_t_alpha: f(&self.c_t_alpha),
             c_t_0: f(&self.c_t_0),
             c_d_alpha: f(&self.c_d_alpha),
-            c_d_delta_e_plus_c_d_delta_c_canard_gain: f(
-                &self.c_d_delta_e_plus_c_d_delta_c_canard_gain,
+            c_d_delta_e_plus_c_d_delta_c_times_canard_gain: f(
+                &self.c_d_delta_e_plus_c_d_delta_c_times_canard_gain,
             ),
             c_d_0: f(&self.c_d_0),
             g: f(&self.g),
@@ -475,8 +475,8 @@ impl<R> Prepared<R> {
             d_c_n_1_d_delta_e: f(&self.d_c_n_1_d_delta_e),
             d_c_n_2_d_delta_e: f(&self.d_c_n_2_d_delta_e),
             d_c_n_3_d_delta_e: f(&self.d_c_n_3_d_delta_e),
-            c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m: f(
-                &self.c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m,
+            c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m: f(
+                &self.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m,
             ),
             c_n_1_delta_c_canard_command: f(&self.c_n_1_delta_c_canard_command),
             c_n_2_delta_c_canard_command: f(&self.c_n_2_delta_c_canard_command),
@@ -494,13 +494,13 @@ impl<R> Prepared<R> {
             inv_omega_1_2_c_n_1_delta_c: f(&self.inv_omega_1_2_c_n_1_delta_c),
             inv_omega_2_2_c_n_2_delta_c: f(&self.inv_omega_2_2_c_n_2_delta_c),
             inv_omega_3_2_c_n_3_delta_c: f(&self.inv_omega_3_2_c_n_3_delta_c),
-            c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c: f(
-                &self.c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c,
+            c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c: f(
+                &self.c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c,
             ),
             c_l_delta_e_over_c_l_delta_c: f(&self.c_l_delta_e_over_c_l_delta_c),
             minus_two_g_over_r_e: f(&self.minus_two_g_over_r_e),
-            c_d_delta_c_canard_slaving_over_m_c_l_delta_c: f(
-                &self.c_d_delta_c_canard_slaving_over_m_c_l_delta_c,
+            c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c: f(
+                &self.c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c,
             ),
             canard_slaving_over_c_l_delta_c: f(&self.canard_slaving_over_c_l_delta_c),
             canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: f(
@@ -679,7 +679,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
     let inv_h_s = p.h_s.recip();
     let inv_m = p.m.recip();
-    let c_d_delta_e_plus_c_d_delta_c_canard_gain = p.c_d_delta_e
+    let c_d_delta_e_plus_c_d_delta_c_times_canard_gain = p.c_d_delta_e
         + p.c_d_delta_c * canard_gain;
     let inv_omega_1_2 = inv_omega_1 * inv_omega_1;
     let inv_omega_2_2 = inv_omega_2 * inv_omega_2;
@@ -709,7 +709,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         c_t_alpha: p.c_t_alpha,
         c_t_0: p.c_t_0,
         c_d_alpha: p.c_d_alpha,
-        c_d_delta_e_plus_c_d_delta_c_canard_gain,
+        c_d_delta_e_plus_c_d_delta_c_times_canard_gain,
         c_d_0: p.c_d_0,
         g: p.g,
         earth_curvature,
@@ -782,8 +782,8 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         d_c_n_1_d_delta_e,
         d_c_n_2_d_delta_e,
         d_c_n_3_d_delta_e,
-        c_d_delta_e_plus_c_d_delta_c_canard_gain_times_inv_m: inv_m
-            * c_d_delta_e_plus_c_d_delta_c_canard_gain,
+        c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m: inv_m
+            * c_d_delta_e_plus_c_d_delta_c_times_canard_gain,
         c_n_1_delta_c_canard_command: p.c_n_1_delta_c * p.canard_command,
         c_n_2_delta_c_canard_command: p.c_n_2_delta_c * p.canard_command,
         c_n_3_delta_c_canard_command: p.c_n_3_delta_c * p.canard_command,
@@ -800,11 +800,11 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         inv_omega_1_2_c_n_1_delta_c: inv_omega_1_2 * p.c_n_1_delta_c,
         inv_omega_2_2_c_n_2_delta_c: inv_omega_2_2 * p.c_n_2_delta_c,
         inv_omega_3_2_c_n_3_delta_c: inv_omega_3_2 * p.c_n_3_delta_c,
-        c_d_delta_c_c_l_delta_e_over_m_c_l_delta_c: inv_m * p.c_d_delta_c * p.c_l_delta_e
-            * inv_c_l_delta_c,
+        c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c: inv_m * p.c_d_delta_c
+            * p.c_l_delta_e * inv_c_l_delta_c,
         c_l_delta_e_over_c_l_delta_c: p.c_l_delta_e * inv_c_l_delta_c,
         minus_two_g_over_r_e: R::from_f64(-2.0) * p.g * inv_r_e,
-        c_d_delta_c_canard_slaving_over_m_c_l_delta_c: inv_m * p.c_d_delta_c
+        c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c: inv_m * p.c_d_delta_c
             * p.canard_slaving * inv_c_l_delta_c,
         canard_slaving_over_c_l_delta_c: p.canard_slaving * inv_c_l_delta_c,
         canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: p.canard_slaving * p.c_l_delta_e

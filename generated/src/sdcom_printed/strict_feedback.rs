@@ -66,7 +66,7 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     reference_force * p.inv_m
         * (cos_alpha * (p.c_t_alpha * x.alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_canard_gain * u.delta_e - p.c_d_0)
+            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
         - gravity * sin_gamma + f_velocity_eta
 }
 

@@ -10,7 +10,7 @@ mod controlled;
 mod fixed;
 mod stochastic;
 
-use ahv_core::{Bounds, Model, Outlined, Real, Vector};
+use ahv_core::{Bounds, Model, NoInline, Real, Vector};
 use ahv_models::{com, com_rigid, dcom, flexible_mode, sdcom, sdcom_gust, sdcom_printed};
 use core::hint::black_box;
 
@@ -104,7 +104,7 @@ macro_rules! place {
         Place {
             name: stringify!($module),
             // Called, not inlined: the schemes of all models would take minutes to compile.
-            model: Outlined($module::Model::new(&parameters)),
+            model: NoInline($module::Model::new(&parameters)),
             x: within($visitor, &$module::STATE_BOUNDS),
             u: within($visitor, &$module::INPUT_BOUNDS),
         }

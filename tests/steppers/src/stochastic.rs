@@ -1,7 +1,7 @@
 //! Schemes for stochastic models, and the sources of their noise.
 
 use ahv_core::{
-    AdditiveNoise, ColouredNoise, DifferentiableNoise, ItoCorrected, NoiseClass, Outlined, Real,
+    AdditiveNoise, ColouredNoise, DifferentiableNoise, ItoCorrected, NoInline, NoiseClass, Real,
     StochasticModel, Vector,
 };
 use ahv_integrate::{
@@ -249,7 +249,7 @@ pub(crate) fn splitting<M, const N: usize, const C: usize>(
 
 /// The exact transitions of a mode, of its reduction, and of both with their common noise.
 pub(crate) fn transitions<R: Real>(
-    at: &Place<Outlined<flexible_mode::Model<R>>>,
+    at: &Place<NoInline<flexible_mode::Model<R>>>,
     visitor: &mut dyn Visitor<R>,
 ) {
     let dt = step_size();

@@ -359,7 +359,8 @@ impl Flight {
         let mut steps = Vec::with_capacity(times.len());
         let mut before = 0.0;
         for &time in times {
-            let count = ((time - before) / self.dt - 1e-9).ceil().max(0.0);
+            let least = if time > before { 1.0 } else { 0.0 };
+            let count = ((time - before) / self.dt - 1e-9).ceil().max(least);
             let sound = self.dt > 0.0 && time >= before && time.is_finite() && count < 1e9;
             if !sound {
                 return Err(CovarianceError::Times);

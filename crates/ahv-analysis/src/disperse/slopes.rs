@@ -8,6 +8,7 @@ use super::quantity::{Kind, Quantity};
 use super::{Nominal, SolutionError};
 use crate::linearize::{LinearSystem, linearize};
 use crate::sensitivity::RootVectors;
+use crate::statistics::deviation_of;
 use crate::trim::{Shift, Trim, response};
 use crate::values::vector;
 
@@ -64,7 +65,7 @@ impl Slopes {
         let products =
             pairs.map(|(a, b)| a.effect * b.effect * draws.correlation(a.parameter, b.parameter));
         let variance: f64 = products.sum();
-        Some(variance.max(0.0).sqrt())
+        Some(deviation_of(variance))
     }
 }
 

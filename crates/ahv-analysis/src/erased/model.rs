@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use ahv_core::{Bounds, GeneratedModel, ModeOfMotion, Table, TrimProblem, Vector};
 use nalgebra::DMatrix;
 
-use super::steppers::{self, Advance, Calm, StepperError};
+use super::steppers::{self, Advance, DeterministicScheme, StepperError};
 use super::{AnyModel, Components, ParameterValues, values, vector};
 use crate::covariance::{CovarianceError, Flight, Spreading};
 use crate::disperse::{self, Draws, Member, Nominal, Slopes, SolutionError};
@@ -180,12 +180,16 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
         feedback.unsteady(&model::<M>(p))
     }
 
-    fn calm(&self, p: &[f64], stepper: Calm) -> Result<Advance, StepperError> {
+    fn deterministic(
+        &self,
+        p: &[f64],
+        stepper: DeterministicScheme,
+    ) -> Result<Advance, StepperError> {
         stepper.advance(model::<M>(p))
     }
 
-    fn noisy(&self, p: &[f64], scheme: Scheme, seed: u64) -> Result<Advance, StepperError> {
-        steppers::noisy(scheme, model::<M>(p), seed)
+    fn stochastic(&self, p: &[f64], scheme: Scheme, seed: u64) -> Result<Advance, StepperError> {
+        steppers::stochastic(scheme, model::<M>(p), seed)
     }
 
     fn engine<'e>(&self, experiment: &'e Experiment) -> Result<Engine<'e>, MonteCarloError> {

@@ -1,6 +1,6 @@
 //! The steppers of a single flight, by name.
 
-use ahv_core::{CountVisitor, GeneratedModel, Outlined, Vector};
+use ahv_core::{CountVisitor, GeneratedModel, NoInline, Vector};
 use ahv_integrate::{
     Checked, DormandPrince54, DormandPrince853, Euler, Exponential, Fixed, FlexibleMode, Heun,
     ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, ItoStrangSplitting, NoiseError,
@@ -43,7 +43,7 @@ pub enum StepperError {
 
 /// A stepper for flights without noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Calm {
+pub enum DeterministicScheme {
     /// [`Euler`].
     Euler,
     /// [`Heun`].
@@ -62,7 +62,7 @@ pub enum Calm {
     Exponential,
 }
 
-impl Calm {
+impl DeterministicScheme {
     /// All of them.
     pub const ALL: [Self; 8] = [
         Self::Euler,
@@ -92,7 +92,7 @@ impl Calm {
     /// The stepper for a model.
     pub(super) fn advance<M: GeneratedModel>(self, model: M) -> Result<Advance, StepperError> {
         // Called, not inlined: a copy of every model in every method takes long to compile.
-        let model = Outlined(model);
+        let model = NoInline(model);
         Ok(match self {
             Self::Euler => alone::<M>(move |x, u, _, dt| Euler::new(dt).step(&model, x, u)),
             Self::Heun => alone::<M>(move |x, u, _, dt| Heun::new(dt).step(&model, x, u)),
@@ -130,7 +130,7 @@ fn alone<M: GeneratedModel>(
 }
 
 fn exponential<M: GeneratedModel, const N: usize>(
-    model: Outlined<M>,
+    model: NoInline<M>,
     modes: [FlexibleMode; N],
 ) -> Advance {
     alone::<M>(move |x, u, _, dt| Exponential::new(dt, modes).step(&model, x, u))
@@ -157,12 +157,12 @@ fn flexible_modes<M: GeneratedModel>(model: &M) -> Vec<FlexibleMode> {
 }
 
 /// A scheme for flights with noise, of the normal numbers of `seed`.
-pub(super) fn noisy<M: GeneratedModel>(
+pub(super) fn stochastic<M: GeneratedModel>(
     scheme: Scheme,
     model: M,
     seed: u64,
 ) -> Result<Advance, StepperError> {
-    let model = Outlined(model);
+    let model = NoInline(model);
     match scheme {
         Scheme::Splitting => M::coloured(BySplitting::<M> { model, seed })
             .unwrap_or(Err(StepperError::NoColouredNoise { model: M::NAME })),
@@ -176,7 +176,7 @@ pub(super) fn noisy<M: GeneratedModel>(
 }
 
 struct BySplitting<M> {
-    model: Outlined<M>,
+    model: NoInline<M>,
     seed: u64,
 }
 
@@ -189,10 +189,10 @@ impl<M: GeneratedModel> CountVisitor for BySplitting<M> {
 }
 
 /// Steps by the scheme `S`, which is set up again where the length of the step changes.
-fn by<M, S>(scheme: Scheme, model: Outlined<M>, seed: u64) -> Result<Advance, StepperError>
+fn by<M, S>(scheme: Scheme, model: NoInline<M>, seed: u64) -> Result<Advance, StepperError>
 where
     M: GeneratedModel,
-    S: SdeScheme<Outlined<M>> + 'static,
+    S: SdeScheme<NoInline<M>> + 'static,
 {
     let (x, u) = generic_point::<M>();
     let set_up = move |dt| S::set_up(&model, &x, &u, dt);

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use ahv_core::{GeneratedModel, Outlined, Real, Straight};
+use ahv_core::{Branchless, GeneratedModel, NoInline, Real};
 
 use super::batch::Member;
 use super::lanes::Packed;
@@ -49,7 +49,7 @@ impl Arithmetic for f64 {
     }
 }
 
-impl Arithmetic for Straight<f64> {
+impl Arithmetic for Branchless<f64> {
     #[inline(always)]
     fn of(value: f64) -> Self {
         Self(value)
@@ -85,11 +85,11 @@ impl<F: GeneratedModel, K: Member<F>> Member<F> for Called<K> {
     const SIDE_BY_SIDE: bool = false;
 
     type Scalar = K::Scalar;
-    type Model = Outlined<K::Model>;
+    type Model = NoInline<K::Model>;
 
     #[inline(always)]
     fn model(model: &F::With<Packed>, lane: usize) -> Self::Model {
-        Outlined(K::model(model, lane))
+        NoInline(K::model(model, lane))
     }
 }
 

@@ -7,7 +7,7 @@ use ahv_core::{GeneratedModel, Real};
 use ahv_integrate::{NormalLanes, Precision, StepError};
 
 use super::arithmetic::{Arithmetic, Called};
-use super::feedback::Law;
+use super::feedback::SampledFeedback;
 use super::lanes::{LANES, Packed, of_lane};
 use super::observe::Observers;
 use super::scheme::{MOST_NORMALS, Steps};
@@ -78,7 +78,7 @@ pub(super) struct Dynamics<F: GeneratedModel, S> {
 /// [`LANES`] members in flight.
 pub(super) struct Batch<'c, F: GeneratedModel, S: Copy> {
     dynamics: Cow<'c, Dynamics<F, S>>,
-    law: Option<Law<F>>,
+    law: Option<SampledFeedback<F>>,
     noise: Noise,
     dt: f64,
     /// Step that comes next.
@@ -197,7 +197,7 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
         (x, u): (F::StateOf<Packed>, F::InputOf<Packed>),
         dt: f64,
         noise: Noise,
-        law: Option<Law<F>>,
+        law: Option<SampledFeedback<F>>,
     ) -> Self {
         Self {
             dynamics,

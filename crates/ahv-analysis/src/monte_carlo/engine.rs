@@ -7,7 +7,7 @@ use ahv_core::{GeneratedModel, Vector};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::MonteCarloError;
-use super::experiment::{Experiment, Seen, row};
+use super::experiment::{Experiment, MemberRecord, row};
 use super::lanes::LANES;
 use super::outcome::{Collector, Outcome};
 use super::propagator::{Propagator, propagator};
@@ -19,6 +19,7 @@ const GROUP: u64 = 2048;
 const TASK_STEPS: u64 = 1000;
 /// Most batches of [`LANES`] members that one task flies.
 const MOST_BATCHES: u64 = 8;
+
 /// A member at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
@@ -89,7 +90,7 @@ impl<'e> Engine<'e> {
         members: u64,
         threads: usize,
         control: &Control,
-        mut list: impl FnMut(u64, &[Seen]),
+        mut list: impl FnMut(u64, &[MemberRecord]),
     ) -> Result<Outcome, MonteCarloError> {
         let pool = pool(threads)?;
         let started = Instant::now();
@@ -124,7 +125,7 @@ impl<'e> Engine<'e> {
         &self,
         members: &[u64],
         control: &Control,
-    ) -> Result<Option<Vec<Seen>>, MonteCarloError> {
+    ) -> Result<Option<Vec<MemberRecord>>, MonteCarloError> {
         let snapshots = &self.experiment.snapshots;
         self.propagator.fly(members, snapshots, control)
     }
@@ -157,7 +158,11 @@ impl<'e> Engine<'e> {
     }
 
     /// Flies members; stopped, it returns those before the first that was not flown.
-    fn group(&self, members: Range<u64>, control: &Control) -> Result<Vec<Seen>, MonteCarloError> {
+    fn group(
+        &self,
+        members: Range<u64>,
+        control: &Control,
+    ) -> Result<Vec<MemberRecord>, MonteCarloError> {
         let batches = (TASK_STEPS / self.experiment.steps().max(1)).clamp(1, MOST_BATCHES);
         let task = batches * LANES as u64;
         let end = members.end;

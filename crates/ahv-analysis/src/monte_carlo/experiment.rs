@@ -56,7 +56,7 @@ pub struct Particle {
 
 /// What was seen of a member.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct MemberRecord {
     /// States at the snapshots that it lived to see, one after the other.
     pub states: Vec<f64>,
     /// Inputs at the same.
@@ -69,7 +69,7 @@ pub struct Seen {
     pub left: Vec<Vec<Option<u64>>>,
 }
 
-impl Seen {
+impl MemberRecord {
     /// State at a snapshot; `None` if it did not live to see it.
     pub fn state(&self, snapshot: usize) -> Option<&[f64]> {
         row(&self.states, self.last.len(), snapshot)

@@ -49,7 +49,7 @@ struct Row<F: GeneratedModel> {
 
 /// The law over steps of fixed length.
 #[derive(Clone, Copy)]
-pub(super) struct Law<F: GeneratedModel> {
+pub(super) struct SampledFeedback<F: GeneratedModel> {
     state: F::StateOf<f64>,
     rate: F::StateOf<f64>,
     /// Whether the reference moves.
@@ -99,7 +99,11 @@ impl Feedback {
 
     /// The law over steps of `dt`, for members that have flown some steps.
     #[inline(never)]
-    pub(super) fn over<F: GeneratedModel>(&self, dt: f64, flown: [u64; LANES]) -> Law<F> {
+    pub(super) fn over<F: GeneratedModel>(
+        &self,
+        dt: f64,
+        flown: [u64; LANES],
+    ) -> SampledFeedback<F> {
         let gain = |at: (usize, usize)| self.gain.get(at).map_or(0.0, |gain: &f64| *gain);
         let rows = F::InputOf::from_fn(|index| {
             let actuator = self.actuators.get(index).copied()??;
@@ -109,7 +113,7 @@ impl Feedback {
                 actuator: actuator.over(dt),
             })
         });
-        Law {
+        SampledFeedback {
             state: vector(&self.state),
             rate: vector(&self.rate),
             moves: self.rate.iter().any(|&rate| rate != 0.0),
@@ -126,7 +130,7 @@ fn size<V: Vector<f64>>(slopes: &V, point: &V) -> f64 {
     terms.map(f64::abs).sum()
 }
 
-impl<F: GeneratedModel> Law<F> {
+impl<F: GeneratedModel> SampledFeedback<F> {
     /// Moves the inputs over step number `step`, towards what the law wants at its start.
     #[inline(always)]
     pub(super) fn apply(&self, x: &F::StateOf<Packed>, u: &mut F::InputOf<Packed>, step: u64) {

@@ -11,7 +11,7 @@ pub(super) const NEVER: u64 = u64::MAX;
 /// Who looks at the members of a batch after each step.
 pub(super) struct Observers<'o, F: GeneratedModel> {
     /// The box of validity, and the limits if there are any: they are looked at within the loop over steps.
-    pub(super) watches: &'o mut [Watch<F>],
+    pub(super) watches: &'o mut [BoundsMonitor<F>],
     /// Whatever else.
     pub(super) other: Option<&'o mut dyn Observer<F>>,
 }
@@ -47,7 +47,7 @@ pub(super) trait Observer<F: GeneratedModel> {
 }
 
 /// Intervals of the states, and when each was left first.
-pub(super) struct Watch<F: GeneratedModel> {
+pub(super) struct BoundsMonitor<F: GeneratedModel> {
     intervals: F::StateOf<Interval>,
 }
 
@@ -69,7 +69,7 @@ impl Interval {
     }
 }
 
-impl<F: GeneratedModel> Watch<F> {
+impl<F: GeneratedModel> BoundsMonitor<F> {
     /// States without bounds are not watched.
     #[inline(never)]
     pub(super) fn new(bounds: &[Bounds]) -> Self {

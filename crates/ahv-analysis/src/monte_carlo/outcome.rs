@@ -6,12 +6,12 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use super::Loss;
-use super::experiment::{Experiment, Seen};
+use super::experiment::{Experiment, MemberRecord};
 use super::spread::{Bin, QUANTILES, Spread};
-use crate::statistics::{Estimate, OpenEstimate, mean_and_std};
+use crate::statistics::{Estimate, OpenEstimate, deviation_of, mean_and_std};
 
 /// Losses that are told one by one.
-const TOLD: usize = 20;
+const LISTED_LOSSES: usize = 20;
 
 /// What members show together.
 #[derive(Clone, Debug)]
@@ -24,6 +24,8 @@ pub struct Outcome {
     pub snapshots: Vec<Snapshot>,
     /// Members that were lost, and the first of them.
     pub lost: u64,
+    /// Of these, members whose parameters break a rule: they do not fly.
+    pub not_flown: u64,
     /// The first that were lost, by number of the member.
     pub losses: Vec<(u64, Loss)>,
     /// SHA-256 of the bits of the members' last states: component by component, little end first, member by member.
@@ -32,6 +34,13 @@ pub struct Outcome {
     pub member_steps: u64,
     /// Time that it took.
     pub elapsed: Duration,
+}
+
+impl Outcome {
+    /// Members that flew.
+    pub fn flown(&self) -> u64 {
+        self.members - self.not_flown
+    }
 }
 
 /// What is seen of the members at one time.
@@ -71,7 +80,7 @@ pub struct StateSpread {
 }
 
 /// Bins of the histograms that are told.
-const TOLD_BINS: usize = 60;
+const HISTOGRAM_BINS: usize = 60;
 
 /// Sums over members, in their order.
 pub(super) struct Collector<'e> {
@@ -79,6 +88,7 @@ pub(super) struct Collector<'e> {
     sums: Vec<Sums>,
     members: u64,
     lost: u64,
+    not_flown: u64,
     losses: Vec<(u64, Loss)>,
     hash: Sha256,
 }
@@ -186,20 +196,22 @@ impl<'e> Collector<'e> {
             experiment,
             members: 0,
             lost: 0,
+            not_flown: 0,
             losses: Vec::new(),
             hash: Sha256::new(),
         }
     }
 
     /// Members from number `first` on.
-    pub(super) fn add(&mut self, first: u64, seen: &[Seen]) {
+    pub(super) fn add(&mut self, first: u64, seen: &[MemberRecord]) {
         for (member, seen) in (first..).zip(seen) {
             for value in &seen.last {
                 self.hash.update(value.to_le_bytes());
             }
             if let Some(loss) = seen.lost {
                 self.lost += 1;
-                if self.losses.len() < TOLD {
+                self.not_flown += u64::from(loss.rule.is_some());
+                if self.losses.len() < LISTED_LOSSES {
                     self.losses.push((member, loss));
                 }
             }
@@ -231,6 +243,7 @@ impl<'e> Collector<'e> {
                 .map(|(sums, &step)| sums.snapshot(step as f64 * dt))
                 .collect(),
             lost: self.lost,
+            not_flown: self.not_flown,
             losses: self.losses,
             digest: self
                 .hash
@@ -238,7 +251,7 @@ impl<'e> Collector<'e> {
                 .iter()
                 .map(|byte| format!("{byte:02x}"))
                 .collect(),
-            member_steps: self.members.saturating_mul(self.experiment.steps()),
+            member_steps: (self.members - self.not_flown).saturating_mul(self.experiment.steps()),
             elapsed,
         }
     }
@@ -333,7 +346,7 @@ impl Sums {
                 row.and_then(|row| row.get(index).copied())
                     .unwrap_or(f64::NAN)
             };
-            let std = entry(&covariance).max(0.0).sqrt();
+            let std = deviation_of(entry(&covariance));
             let mean = sums.origin + sums.first / n;
             let kurtosis = sums.kurtosis(entry(&self.second), n);
             // One number has no spread.
@@ -346,7 +359,7 @@ impl Sums {
                 std_of_stayed: of_stayed.filter(|std| std.is_finite()),
                 quantiles: QUANTILES.map(|share| spread.quantile(share)),
                 resolution: spread.resolution(),
-                histogram: spread.histogram(TOLD_BINS),
+                histogram: spread.histogram(HISTOGRAM_BINS),
             }
         });
         Snapshot {

@@ -13,7 +13,7 @@ use super::scheme::Steps;
 use crate::ordered::Control;
 
 /// Steps between two looks at whether members still have to fly.
-const STRETCH: u64 = 16;
+const STEPS_PER_PASSAGE_CHECK: u64 = 16;
 
 /// A level of a state, passed where `sign` times the state is beyond `height`.
 #[derive(Clone, Copy)]
@@ -28,7 +28,7 @@ pub(super) struct Goal {
 
 /// What became of a member.
 #[derive(Clone)]
-pub(super) struct Passed {
+pub(super) struct PassageRecord {
     /// Greatest height until it passed the goal, was lost, or time was over.
     pub(super) most: f64,
     /// Where it passed the goal.
@@ -40,7 +40,7 @@ pub(super) struct Passed {
 }
 
 /// Where the lanes of a batch pass a goal.
-pub(super) struct Passage<F: GeneratedModel> {
+pub(super) struct FirstPassage<F: GeneratedModel> {
     goal: Goal,
     /// Step from which on nothing is looked for: time is over, or the lane is done.
     until: [u64; LANES],
@@ -51,7 +51,7 @@ pub(super) struct Passage<F: GeneratedModel> {
     u: F::InputOf<Packed>,
 }
 
-impl<F: GeneratedModel> Observer<F> for Passage<F> {
+impl<F: GeneratedModel> Observer<F> for FirstPassage<F> {
     fn after_step(&mut self, x: &F::StateOf<Packed>, u: &F::InputOf<Packed>, step: u64) {
         let Some(values) = x.get(self.goal.state) else {
             return;
@@ -79,7 +79,7 @@ impl<F: GeneratedModel> Observer<F> for Passage<F> {
     }
 }
 
-impl<F: GeneratedModel> Passage<F> {
+impl<F: GeneratedModel> FirstPassage<F> {
     /// Before a flight of `steps`, of which these have flown a part.
     pub(super) fn new(goal: &Goal, steps: u64, flying: &[Particle]) -> Self {
         let mut until = [0; LANES];
@@ -107,10 +107,10 @@ impl<F: GeneratedModel> Passage<F> {
 /// Who is beyond the goal already passes it at once: a step may lead past several levels.
 pub(super) fn pass<F, S, A, E>(
     mut batch: Batch<'_, F, S>,
-    mut passage: Passage<F>,
+    mut passage: FirstPassage<F>,
     flying: &[Particle],
     control: &Control,
-) -> Option<Vec<Passed>>
+) -> Option<Vec<PassageRecord>>
 where
     F: GeneratedModel,
     A: Member<F>,
@@ -124,7 +124,7 @@ where
         if control.stop.load(Ordering::Relaxed) {
             return None;
         }
-        let (from, until) = (batch.step, end.min(batch.step + STRETCH));
+        let (from, until) = (batch.step, end.min(batch.step + STEPS_PER_PASSAGE_CHECK));
         let mut observers = Observers {
             watches: &mut [],
             other: Some(&mut passage),
@@ -141,7 +141,7 @@ where
         .enumerate()
         .map(|(lane, particle)| {
             let step = Some(passage.step[lane]).filter(|&step| step != NEVER);
-            Passed {
+            PassageRecord {
                 most: passage.most[lane],
                 at: step.map(|step| Particle {
                     member: particle.member,

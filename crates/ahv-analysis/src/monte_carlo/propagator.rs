@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::marker::PhantomData;
 use std::sync::atomic::Ordering;
 
-use ahv_core::{Bounds, CountVisitor, GeneratedModel, Outlined, Straight};
+use ahv_core::{Bounds, Branchless, CountVisitor, GeneratedModel, NoInline};
 use ahv_integrate::{
     Checked, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, ItoStrangSplitting,
     SdeScheme, StratonovichHeun,
@@ -13,16 +13,16 @@ use ahv_integrate::{
 use super::MonteCarloError;
 use super::arithmetic::{Called, In, Mode};
 use super::batch::{Batch, Dynamics, Member, Noise};
-use super::experiment::{Experiment, Particle, Seen};
+use super::experiment::{Experiment, MemberRecord, Particle};
 use super::lanes::{self, LANES, Packed, packed, push_lane};
-use super::observe::{Observers, Watch};
-use super::passage::{Goal, Passage, Passed, pass};
+use super::observe::{BoundsMonitor, Observers};
+use super::passage::{FirstPassage, Goal, PassageRecord, pass};
 use super::scheme::{MOST_NORMALS, OneByOne, Scheme, Steps};
 use crate::ordered::Control;
 use crate::values::vector;
 
 /// Steps between two looks at whether to stop.
-const PATIENCE: u64 = 1024;
+const STEPS_PER_STOP_CHECK: u64 = 1024;
 /// Where in the validity box it is asked which noise moves the states; there is nothing special about it.
 const FRACTION: f64 = 0.618;
 
@@ -39,7 +39,7 @@ pub(super) trait Propagator: Send + Sync {
         members: &[u64],
         snapshots: &[u64],
         control: &Control,
-    ) -> Result<Option<Vec<Seen>>, MonteCarloError>;
+    ) -> Result<Option<Vec<MemberRecord>>, MonteCarloError>;
 
     /// Flies members, at most [`LANES`], from where they are until they pass the goal or time is over; `None` if the work was
     /// stopped.
@@ -52,7 +52,7 @@ pub(super) trait Propagator: Send + Sync {
         flying: &[Particle],
         goal: &Goal,
         control: &Control,
-    ) -> Result<Option<Vec<Passed>>, MonteCarloError>;
+    ) -> Result<Option<Vec<PassageRecord>>, MonteCarloError>;
 }
 
 /// The propagator of the members, with the scheme that is asked for.
@@ -76,11 +76,11 @@ fn side_by_side<F, S>(experiment: &Experiment) -> Result<Box<dyn Propagator + '_
 where
     F: GeneratedModel,
     S: SdeScheme<F::With<Packed>>
-        + Steps<F::With<Straight<f64>>>
-        + Steps<Outlined<F::With<f64>>>
+        + Steps<F::With<Branchless<f64>>>
+        + Steps<NoInline<F::With<f64>>>
         + 'static,
 {
-    BatchPropagator::<F, S, In<Straight<f64>>, In<f64>>::new::<S>(experiment)
+    BatchPropagator::<F, S, In<Branchless<f64>>, In<f64>>::new::<S>(experiment)
 }
 
 /// Members one after the other, all schemes in one loop.
@@ -288,14 +288,17 @@ where
         members: &[u64],
         snapshots: &[u64],
         control: &Control,
-    ) -> Result<Option<Vec<Seen>>, MonteCarloError> {
+    ) -> Result<Option<Vec<MemberRecord>>, MonteCarloError> {
         let experiment = self.experiment;
         let flying: Vec<_> = members
             .iter()
             .map(|&member| experiment.particle(member))
             .collect();
-        let mut watches: Vec<Watch<F>> =
-            experiment.watched.iter().map(|it| Watch::new(it)).collect();
+        let mut watches: Vec<BoundsMonitor<F>> = experiment
+            .watched
+            .iter()
+            .map(|it| BoundsMonitor::new(it))
+            .collect();
         let mut observers = Observers {
             watches: &mut watches,
             other: None,
@@ -308,7 +311,7 @@ where
                 if control.stop.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
-                let (from, until) = (batch.step, snapshot.min(batch.step + PATIENCE));
+                let (from, until) = (batch.step, snapshot.min(batch.step + STEPS_PER_STOP_CHECK));
                 batch.advance::<A, E>(until, &mut observers);
                 control
                     .done
@@ -322,7 +325,7 @@ where
             }
         }
         let at = at.into_iter().enumerate();
-        let seen = at.map(|(lane, (states, inputs))| Seen {
+        let seen = at.map(|(lane, (states, inputs))| MemberRecord {
             states,
             inputs,
             last: batch.last(lane),
@@ -337,9 +340,9 @@ where
         flying: &[Particle],
         goal: &Goal,
         control: &Control,
-    ) -> Result<Option<Vec<Passed>>, MonteCarloError> {
+    ) -> Result<Option<Vec<PassageRecord>>, MonteCarloError> {
         let steps = self.experiment.steps();
-        let mut passage = Passage::new(goal, steps, flying);
+        let mut passage = FirstPassage::new(goal, steps, flying);
         let mut observers = Observers {
             watches: &mut [],
             other: Some(&mut passage),

@@ -14,7 +14,7 @@ use super::MonteCarloError;
 use super::engine::{Engine, pool};
 use super::experiment::{Experiment, Particle};
 use super::lanes::LANES;
-use super::passage::{Goal, Passed};
+use super::passage::{Goal, PassageRecord};
 use crate::ordered::Control;
 use crate::statistics::{Estimate, Z_95, mean_and_std, student_95};
 
@@ -107,6 +107,11 @@ pub enum RareError {
         /// Steps of members, the pilot's included.
         member_steps: u64,
     },
+    /// Members that are all lost on their way.
+    #[error(
+        "all members are lost, by parameters that break a rule or a state that is no longer finite"
+    )]
+    Lost,
     /// Repetitions that say nothing of their error.
     #[error("every repetition gave {}; more members from each level, or more repetitions, tell them apart", Shown(*value))]
     NoSpread {
@@ -298,7 +303,12 @@ impl Search<'_> {
         let mut flying = self.starts();
         while heights.len() < MOST_LEVELS {
             let flown = self.fly(&flying, limit)?;
-            let mut most: Vec<f64> = flown.iter().map(|passed| passed.most).collect();
+            // Of those that fly: who is lost tells nothing of a level.
+            let flying_on = flown.iter().filter(|passed| !passed.lost);
+            let mut most: Vec<f64> = flying_on.map(|passed| passed.most).collect();
+            if most.is_empty() {
+                return Err(RareError::Lost.into());
+            }
             most.sort_by(|a, b| b.total_cmp(a));
             let place = (SHARE * most.len() as f64).ceil() as usize;
             let height = most.get(place.min(most.len() - 1)).copied().unwrap_or(last);
@@ -449,12 +459,16 @@ impl Search<'_> {
     }
 
     /// Flies members until they pass this height.
-    fn fly(&mut self, flying: &[Particle], height: f64) -> Result<Vec<Passed>, MonteCarloError> {
+    fn fly(
+        &mut self,
+        flying: &[Particle],
+        height: f64,
+    ) -> Result<Vec<PassageRecord>, MonteCarloError> {
         let goal = Goal {
             height,
             ..self.goal
         };
-        let flown: Vec<Option<Vec<Passed>>> = flying
+        let flown: Vec<Option<Vec<PassageRecord>>> = flying
             .par_chunks(LANES)
             .map(|batch| self.engine.propagator.pass(batch, &goal, self.control))
             .collect::<Result<_, _>>()?;
@@ -471,7 +485,7 @@ impl Search<'_> {
 }
 
 /// Where a level was passed, by time: those that fly on side by side then have about as long to go.
-fn entrances(flown: Vec<Passed>) -> Vec<Particle> {
+fn entrances(flown: Vec<PassageRecord>) -> Vec<Particle> {
     let mut entrances: Vec<_> = flown.into_iter().filter_map(|passed| passed.at).collect();
     entrances.sort_by_key(|entrance| entrance.step);
     entrances

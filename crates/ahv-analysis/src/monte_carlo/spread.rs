@@ -6,6 +6,9 @@ use crate::statistics::{OpenEstimate, ranks};
 const BINS: usize = 2000;
 /// What the bins reach beyond the first numbers, in units of their range, on either side.
 const MARGIN: f64 = 0.5;
+/// What of the first numbers lies farther from the middle half than so many times its width does not choose the bins: a number
+/// that diverges would leave one bin for all others. Of normal numbers it is 27 standard deviations.
+const REACH: f64 = 20.0;
 
 /// Shares of the members at whose quantiles is looked.
 pub const QUANTILES: [f64; 7] = [0.005, 0.05, 0.25, 0.5, 0.75, 0.95, 0.995];
@@ -38,10 +41,21 @@ pub struct Bin {
 impl Spread {
     /// Of the first numbers; there may be more.
     pub(super) fn new(first: Vec<f64>) -> Self {
-        let min = first.iter().copied().fold(f64::INFINITY, f64::min);
-        let max = first.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let range = max - min;
-        let low = min - MARGIN * range;
+        let mut sorted = first.clone();
+        sorted.sort_by(f64::total_cmp);
+        let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
+        let min = sorted.first().copied().unwrap_or(f64::INFINITY);
+        let max = sorted.last().copied().unwrap_or(f64::NEG_INFINITY);
+        let [lower, upper] = [at(0.25).unwrap_or(min), at(0.75).unwrap_or(max)];
+        let reach = REACH * (upper - lower);
+        // Where half of them are equal, all choose.
+        let [from, to] = if reach > 0.0 {
+            [min.max(lower - reach), max.min(upper + reach)]
+        } else {
+            [min, max]
+        };
+        let range = to - from;
+        let low = from - MARGIN * range;
         let width = (1.0 + 2.0 * MARGIN) * range / BINS as f64;
         let mut spread = Self {
             exact: None,
@@ -89,10 +103,12 @@ impl Spread {
         }
         let [low, high] = ranks(share, self.count);
         let edges = |rank: Option<u64>| rank.and_then(|rank| self.edges(rank));
+        let value = self.binned(share);
+        // Where bins are wide beside where they lie, rounding may put an edge on the other side.
         OpenEstimate {
-            value: self.binned(share),
-            low: edges(low).map(|[low, _]| low),
-            high: edges(high).map(|[_, high]| high),
+            value,
+            low: edges(low).map(|[low, _]| low.min(value.unwrap_or(low))),
+            high: edges(high).map(|[_, high]| high.max(value.unwrap_or(high))),
         }
     }
 
@@ -195,6 +211,26 @@ mod tests {
         }
         assert_eq!(Spread::new(Vec::new()).histogram(7), []);
         assert_eq!(counts(&Spread::new(vec![4.0; 5]).histogram(3)), [5, 0, 0]);
+    }
+
+    /// Of two thousand numbers that choose the bins one has diverged, and of those that follow one more.
+    #[test]
+    fn a_number_that_diverges_leaves_the_quantiles_of_the_others() {
+        let place = |it: u32| (f64::from(it) * 0.618_033_988_749_895).fract();
+        let mut first: Vec<f64> = (0..2000).map(place).collect();
+        first[7] = 1e230;
+        let mut spread = Spread::new(first);
+        (2000..10_000).for_each(|it| spread.add(place(it)));
+        spread.add(-1e90);
+        for (share, known) in [(0.05, 0.05), (0.5, 0.5), (0.995, 0.995)] {
+            let found = spread.quantile(share);
+            let value = found.value.expect("within the bins");
+            assert!((value - known).abs() < 0.02, "{share}: {value}");
+            assert!(found.low <= found.value && found.value <= found.high);
+        }
+        assert!(spread.resolution() < 0.05);
+        // Who is beyond the bins is counted, but where is not known.
+        assert_eq!(spread.quantile(1.0).value, None);
     }
 
     /// Evenly spread numbers, of which the first hundred choose the bins; then two that lie far beyond.

@@ -312,6 +312,20 @@ fn an_initial_covariance_moves_with_the_flight() {
     assert_relative_eq!(spread[0].covariance[(0, 0)], expected, max_relative = 1e-12);
 }
 
+/// However long the longest step may be, there is one: at a trim without error.
+#[test]
+fn a_step_longer_than_the_flight_is_the_flight() {
+    let model = sdcom::Model::new(&sdcom::NOMINAL);
+    let [short, long] = [0.05, 1e12].map(|dt| {
+        let spread = held(&model, dt).covariance(&model, &[0.05]);
+        spread.expect("a flight")[0].std()
+    });
+    assert!(long[0] > 0.0);
+    for (short, long) in short.into_iter().zip(long) {
+        assert_relative_eq!(short, long, max_relative = 1e-9);
+    }
+}
+
 /// What is known for sure, what is known to 1e-9 and what is known to 1e6 stand beside each other in an initial covariance.
 /// Correlations are what they are, however small the variances.
 #[test]

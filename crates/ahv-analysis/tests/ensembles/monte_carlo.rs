@@ -6,7 +6,7 @@ use crate::common::level;
 use ahv_analysis::actuator::Actuator;
 use ahv_analysis::erased::{values, vector};
 use ahv_analysis::monte_carlo::{
-    Experiment, Feedback, Mode, MonteCarloError, Outcome, Point, QUANTILES, Scheme, Seen,
+    Experiment, Feedback, MemberRecord, Mode, MonteCarloError, Outcome, Point, QUANTILES, Scheme,
 };
 use ahv_analysis::ordered::Control;
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
@@ -64,7 +64,7 @@ fn experiment(scheme: Scheme, dt: f64, snapshots: Vec<u64>) -> Experiment {
 fn fly<M: GeneratedModel>(
     experiment: &Experiment,
     members: &[u64],
-) -> Result<Vec<Seen>, MonteCarloError> {
+) -> Result<Vec<MemberRecord>, MonteCarloError> {
     let seen = experiment
         .engine::<M>()?
         .fly(members, &Control::default())?;
@@ -394,6 +394,19 @@ fn the_first_step_outside_is_found() {
         assert_eq!(seen.left[1][alpha], first);
         assert!(first.is_some(), "it leaves");
     }
+}
+
+/// Numbers whose squares are none have no deviation, and no interval of the mean, in the place of one of width 0.
+#[test]
+fn a_moment_beyond_numbers_is_open() {
+    let mut far = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, 1]);
+    far.state[1][index("chi_1")] = 1e200;
+    let outcome = run::<Sdcom>(&far, 64, 1);
+    let start = &outcome.snapshots[0];
+    let chi = &start.states[index("chi_1")];
+    assert_eq!((chi.mean, chi.std), (None, None));
+    assert!(chi.quantiles[3].value.is_some_and(f64::is_finite));
+    assert!(start.states[index("chi_2")].std.is_some());
 }
 
 #[test]

@@ -295,6 +295,33 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     assert!((mean / known - 1.0).abs() < 0.15);
 }
 
+/// A damping ratio that is drawn below 0 breaks a rule of the table: such a member does not fly, and passes nothing.
+#[test]
+fn members_whose_parameters_break_a_rule_are_lost() {
+    let uncertainty = Parameters {
+        zeta_1: 1.5,
+        ..Parameters::splat(0.0)
+    };
+    let draws = Draws::new(NOMINAL, uncertainty, Distribution::Uniform, Vec::new(), 4);
+    let experiment = Experiment {
+        dispersion: Some(draws.expect("draws")),
+        ..open_loop(4)
+    };
+    // Nearly all that fly pass the limit.
+    let event = RareEvent {
+        effort: 256,
+        levels: Some(Vec::new()),
+        repetitions: 10,
+        ..passage(Chain::of(Scheme::EulerMaruyama), 1e-3)
+    };
+    let found = estimate(&experiment, &event, 2);
+    let share = Estimate::of_share(found.lost, 2560);
+    // A sixth of what is drawn from −0.5 to 2.5 times the value, and four standard errors.
+    let error = (share.value - 1.0 / 6.0).abs();
+    assert!(error < 4.0 * (5.0 / 36.0 / 2560.0_f64).sqrt(), "{share:?}");
+    assert!(found.probability.value < 5.0 / 6.0, "{found:?}");
+}
+
 #[test]
 fn alpha_leaves_a_limit_in_closed_loop_as_often_as_in_plain_flights() {
     let mut experiment = closed_loop(7);

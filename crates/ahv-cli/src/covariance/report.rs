@@ -5,7 +5,7 @@ use std::path::Path;
 
 use ahv_analysis::covariance::Spreading;
 use ahv_analysis::monte_carlo::Snapshot;
-use ahv_analysis::statistics::{Estimate, OpenEstimate};
+use ahv_analysis::statistics::{Estimate, OpenEstimate, deviation_of};
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -35,7 +35,7 @@ pub(super) struct Json<'a> {
     dt: f64,
     scheme: &'static str,
     feedback: bool,
-    share_inside: f64,
+    share_inside: Option<f64>,
     worst_ratio: Option<JsonRatio>,
     stationary_std: Option<Pairs<f64>>,
     stationary_covariance: Option<Vec<Vec<f64>>>,
@@ -107,10 +107,11 @@ impl Outcome<'_> {
     }
 
     /// Share of the standard deviations, over states and times, that lie in the interval of the ensemble; what does not
-    /// spread does not count.
-    fn share_inside(&self) -> f64 {
+    /// spread does not count, nor what has no interval with two ends.
+    fn share_inside(&self) -> Option<f64> {
         let inside: Vec<bool> = self.ratios().map(|it| it.ratio.holds(1.0)).collect();
-        inside.iter().filter(|&&it| it).count() as f64 / inside.len().max(1) as f64
+        let share = inside.iter().filter(|&&it| it).count() as f64 / inside.len() as f64;
+        Some(share).filter(|share| share.is_finite())
     }
 
     /// The mark of a part of the flights.
@@ -148,12 +149,7 @@ impl Outcome<'_> {
 
     fn stationary_std(&self) -> Option<Vec<f64>> {
         let variances = self.stationary()?.diagonal();
-        Some(
-            variances
-                .iter()
-                .map(|variance| variance.max(0.0).sqrt())
-                .collect(),
-        )
+        Some(variances.iter().copied().map(deviation_of).collect())
     }
 
     pub(super) fn json(&self) -> Json<'_> {
@@ -240,11 +236,14 @@ impl Outcome<'_> {
             );
         }
         let lost = self.members - self.sampled.last().map_or(0, |it| it.members);
-        let _ = write!(
-            text,
-            "\n{:.1} % of the standard deviations lie in their interval; {lost} flights broke down",
-            Shown(100.0 * self.share_inside())
+        let inside = self.share_inside().map_or_else(
+            || "no standard deviation has an interval with two ends".to_owned(),
+            |share| {
+                let percent = Shown(100.0 * share);
+                format!("{percent:.1} % of the standard deviations lie in their interval")
+            },
         );
+        let _ = write!(text, "\n{inside}; {lost} flights broke down");
         text
     }
 

@@ -1,6 +1,6 @@
 //! Which drawn parameters the lost members, and the states at the end, have to do with.
 
-use ahv_analysis::monte_carlo::Seen;
+use ahv_analysis::monte_carlo::MemberRecord;
 use ahv_analysis::statistics::{chance_of_rank_correlation, rank_correlation};
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub(super) struct Kept {
 
 impl Kept {
     /// Keeps members from number `first` on.
-    pub(super) fn add(&mut self, ready: &Ready, first: u64, seen: &[Seen]) {
+    pub(super) fn add(&mut self, ready: &Ready, first: u64, seen: &[MemberRecord]) {
         let Some(draws) = &ready.experiment.dispersion else {
             return;
         };

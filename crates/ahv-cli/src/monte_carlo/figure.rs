@@ -3,7 +3,7 @@
 use ahv_analysis::monte_carlo::{QUANTILES, StateSpread};
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, PlotError};
 
-use super::Told;
+use super::Summary;
 use crate::output::readable;
 use crate::signals::interrupted;
 
@@ -11,7 +11,7 @@ use crate::signals::interrupted;
 const COLUMNS: usize = 4;
 
 /// Fans and distributions.
-pub(super) fn draw(told: &Told<'_>) -> Result<String, PlotError> {
+pub(super) fn draw(told: &Summary<'_>) -> Result<String, PlotError> {
     let states = told.ready.vehicle.states.iter().enumerate();
     let panels = states.flat_map(|(index, (name, unit))| {
         let (unit, factor) = readable(unit);
@@ -24,7 +24,7 @@ pub(super) fn draw(told: &Told<'_>) -> Result<String, PlotError> {
     Figure::new(title, COLUMNS, panels.collect()).svg()
 }
 
-fn fan(told: &Told<'_>, index: usize, name: &str, unit: &str, factor: f64) -> Panel {
+fn fan(told: &Summary<'_>, index: usize, name: &str, unit: &str, factor: f64) -> Panel {
     let states = || {
         let snapshots = told.outcome.snapshots.iter();
         snapshots.filter_map(move |it| Some((it.time, it.states.get(index)?)))
@@ -56,7 +56,7 @@ fn fan(told: &Told<'_>, index: usize, name: &str, unit: &str, factor: f64) -> Pa
     }
 }
 
-fn distribution(told: &Told<'_>, index: usize, name: &str, unit: &str, factor: f64) -> Panel {
+fn distribution(told: &Summary<'_>, index: usize, name: &str, unit: &str, factor: f64) -> Panel {
     let last = told.outcome.snapshots.last();
     let bins = last
         .and_then(|it| it.states.get(index))

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ahv_analysis::monte_carlo::Seen;
+use ahv_analysis::monte_carlo::MemberRecord;
 
 use super::tables::COMPLETE;
 use crate::csv_file::CsvFile;
@@ -72,7 +72,7 @@ impl<'r> MemberList<'r> {
     }
 
     /// Lists members from number `first` on.
-    pub(super) fn add(&mut self, first: u64, seen: &[Seen]) {
+    pub(super) fn add(&mut self, first: u64, seen: &[MemberRecord]) {
         for (member, seen) in (first..MOST_LISTED).zip(seen) {
             if self.file.is_err() {
                 return;
@@ -82,7 +82,7 @@ impl<'r> MemberList<'r> {
         }
     }
 
-    fn member(&self, member: u64, seen: &Seen) -> Vec<String> {
+    fn member(&self, member: u64, seen: &MemberRecord) -> Vec<String> {
         let time = |steps: u64| cell(self.ready.time(steps));
         let (outcome, lost, lost_state) = match &seen.lost {
             Some(loss) => ("lost", time(loss.step), loss.rule.unwrap_or(loss.state)),

@@ -4,7 +4,7 @@ use ahv_analysis::monte_carlo::{QUANTILES, Snapshot};
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
 use serde::Serialize;
 
-use super::Told;
+use super::Summary;
 use super::causes::Cause;
 use crate::flights::Settings;
 use crate::number;
@@ -27,6 +27,8 @@ pub(super) struct Json<'a> {
     asked: u64,
     complete: bool,
     lost: u64,
+    /// Of the lost ones, those whose parameters break a rule.
+    not_flown: u64,
     losses: Vec<JsonLoss>,
     member_steps: u64,
     member_steps_per_second: f64,
@@ -74,7 +76,7 @@ struct JsonQuantile {
     estimate: OpenEstimate,
 }
 
-impl Told<'_> {
+impl Summary<'_> {
     pub(super) fn json(&self) -> Json<'_> {
         let (outcome, names) = (&self.outcome, self.ready.vehicle.states);
         let value = |estimate: &Option<Estimate>| estimate.map(|it| it.value);
@@ -92,6 +94,7 @@ impl Told<'_> {
             asked: outcome.asked,
             complete: self.is_complete(),
             lost: outcome.lost,
+            not_flown: outcome.not_flown,
             losses: outcome
                 .losses
                 .iter()
@@ -154,13 +157,13 @@ impl Told<'_> {
     /// Probability that a member has left any interval of a set by then.
     pub(super) fn left_any(&self, snapshot: Option<&Snapshot>, set: usize) -> Estimate {
         let count = snapshot.and_then(|it| it.left_any.get(set).copied());
-        Estimate::of_share(count.unwrap_or(0), self.outcome.members)
+        Estimate::of_share(count.unwrap_or(0), self.outcome.flown())
     }
 
     /// The same state by state.
     pub(super) fn left(&self, snapshot: &Snapshot, set: usize) -> Pairs<Estimate> {
         let counts = snapshot.left.get(set).into_iter().flatten();
-        let shares = counts.map(|&it| Estimate::of_share(it, self.outcome.members));
+        let shares = counts.map(|&it| Estimate::of_share(it, self.outcome.flown()));
         self.ready.vehicle.states.pairs(shares)
     }
 
@@ -169,6 +172,21 @@ impl Told<'_> {
     /// With one of a law like the normal one that cannot be: without less than half of its members it is a third at least.
     pub(super) fn warning(&self) -> Option<String> {
         let last = self.outcome.snapshots.last()?;
+        if last.members == 0 {
+            return Some(format!(
+                "warning: no member is left at the end: all {} were lost, the first of them {}",
+                self.outcome.members,
+                self.outcome
+                    .losses
+                    .first()
+                    .map_or_else(String::new, |(_, loss)| {
+                        match loss.rule {
+                            Some(rule) => format!("because {rule}"),
+                            None => format!("when {} was no longer finite", loss.state),
+                        }
+                    })
+            ));
+        }
         let left = last.members - last.stayed;
         if 2 * left >= last.members {
             return None;

@@ -5,7 +5,7 @@ use std::path::Path;
 use ahv_analysis::monte_carlo::QUANTILES;
 use ahv_analysis::statistics::OpenEstimate;
 
-use super::{Told, figure, trajectories};
+use super::{Summary, figure, trajectories};
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::number::{cell, time};
@@ -20,7 +20,7 @@ fn cells(estimate: &OpenEstimate) -> [String; 3] {
         .map(|number| number.map_or_else(String::new, cell))
 }
 
-impl Told<'_> {
+impl Summary<'_> {
     /// Writes all files of numbers.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
         let json = output::json(&self.json())?;

@@ -5,16 +5,14 @@ use std::fmt::Write;
 use ahv_analysis::monte_carlo::StateSpread;
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
 
-use super::Told;
+use super::Summary;
 use crate::number::Shown;
 use crate::output::readable;
 
 /// Significant digits of a standard deviation; all numbers of its row have as many decimals.
 const DIGITS: i32 = 3;
-/// More decimals than these are a power of ten.
-const MOST_DECIMALS: i32 = 8;
-/// A number as large as this one is, too.
-const LARGE: f64 = 1e9;
+/// A number takes no more places than these: the table fits 100 columns.
+const WIDEST: usize = 9;
 /// Parameters that are listed.
 const LISTED: usize = 4;
 
@@ -23,7 +21,7 @@ const HEADINGS: [&str; 9] = [
     "state", "unit", "mean", "+-", "std", "low", "high", "0.5 %", "99.5 %",
 ];
 
-impl Told<'_> {
+impl Summary<'_> {
     pub(super) fn text(&self) -> String {
         let mut text = self.head();
         let last = self.outcome.snapshots.last();
@@ -55,6 +53,13 @@ impl Told<'_> {
             "\nlost, with a state that was no longer finite, or parameters that break a rule: {} of {}",
             self.outcome.lost, self.outcome.members
         );
+        if self.outcome.not_flown > 0 {
+            let _ = write!(
+                text,
+                "\n{} of them did not fly, for their parameters break a rule",
+                self.outcome.not_flown
+            );
+        }
         text += &self.causes();
         let _ = write!(text, "\ndigest of the last states: {}", self.outcome.digest);
         text
@@ -151,12 +156,18 @@ fn decimals(std: f64) -> i32 {
     }
 }
 
+/// A number with so many decimals, or as many as there is room for; with a power of ten where these do not show it.
 fn number(value: f64, decimals: i32) -> String {
-    if decimals > MOST_DECIMALS || value.abs() >= LARGE {
-        return format!("{:.3e}", Shown(value));
+    let wanted = usize::try_from(decimals).unwrap_or(0);
+    let text = |places: usize| format!("{:.places$}", Shown(value + 0.0));
+    let fits = |places: &usize| text(*places).chars().count() <= WIDEST;
+    let places = (0..=wanted.min(WIDEST)).rev().find(fits);
+    let shows = |places: usize| places == wanted || value.abs() >= 10_f64.powi(1 - places as i32);
+    match places.filter(|&places| shows(places)) {
+        Some(places) => text(places),
+        None if value == 0.0 => "0".to_owned(),
+        None => format!("{:.2e}", Shown(value)),
     }
-    let places = usize::try_from(decimals).unwrap_or(0);
-    format!("{:.places$}", Shown(value + 0.0))
 }
 
 /// Columns as wide as their widest cell; names to the left, numbers to the right.
@@ -201,9 +212,12 @@ mod tests {
     fn a_row_has_the_digits_of_its_deviation() {
         assert_eq!([0.0123, 1.23, 123.0, 0.0].map(decimals), [4, 2, 0, 3]);
         assert_eq!(number(85_000.123_456, decimals(1.23)), "85000.12");
-        assert_eq!(number(1.5e-9, decimals(1e-9)), "1.500e-9");
+        assert_eq!(number(1.5e-9, decimals(1e-9)), "1.50e-9");
         assert_eq!(number(-0.0, 2), "0.00");
-        assert_eq!(number(3e40, 2), "3.000e40");
+        assert_eq!(number(3e40, 2), "3.00e40");
+        // As many as fit, of a mean whose deviation is far smaller.
+        assert_eq!(number(-7702.080_8, decimals(1e-9)), "-7702.081");
+        assert_eq!(number(0.0, decimals(1e-300)), "0");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
-use super::Told;
+use super::Summary;
 use crate::csv_file::CsvFile;
 use crate::failure::Failure;
 use crate::labels::Labels;
@@ -54,7 +54,7 @@ pub(super) fn check(arguments: &super::Arguments) -> Result<(), Failure> {
 }
 
 /// Writes the flights that were asked for; none is no file.
-pub(super) fn write(told: &Told<'_>, folder: &Path) -> Result<(), Failure> {
+pub(super) fn write(told: &Summary<'_>, folder: &Path) -> Result<(), Failure> {
     let chosen = &told.arguments.trajectories;
     if chosen.is_empty() {
         return Ok(());

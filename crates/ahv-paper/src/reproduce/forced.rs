@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::{METHODS, Size, Work, printed};
 use crate::ensemble::Reading;
 use crate::reduce::{Mode, ReduceError, ReducedMode, section_5_1};
+use ahv_analysis::statistics::deviation_of;
 
 /// η, η̇, χ by each method, and the sine and cosine that drive.
 const STATES: usize = 7;
@@ -112,7 +113,7 @@ impl Force {
             let sample: Vec<f64> = squares.iter().map(|row| row[process]).collect();
             let (mean, std) = mean_and_std(&sample);
             let squares = Estimate::of_mean(mean, std, sample.len() as f64);
-            let root = |square: f64| square.max(0.0).sqrt();
+            let root = deviation_of;
             Estimate {
                 value: root(squares.value),
                 low: root(squares.low),

@@ -10,9 +10,9 @@ use crate::{
 /// Generated models are inlined wherever they are evaluated, which is fast and lets loops over members become vector
 /// instructions. A scheme with many stages then holds the model as often; with this around the model it holds calls.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outlined<M>(pub M);
+pub struct NoInline<M>(pub M);
 
-impl<M: Model> Model for Outlined<M> {
+impl<M: Model> Model for NoInline<M> {
     type Scalar = M::Scalar;
     type State = M::State;
     type Input = M::Input;
@@ -23,7 +23,7 @@ impl<M: Model> Model for Outlined<M> {
     }
 }
 
-impl<M: DifferentiableModel> DifferentiableModel for Outlined<M> {
+impl<M: DifferentiableModel> DifferentiableModel for NoInline<M> {
     type StateJacobian = M::StateJacobian;
     type InputJacobian = M::InputJacobian;
     const STATE_JACOBIAN_PATTERN: Pattern<2> = M::STATE_JACOBIAN_PATTERN;
@@ -43,7 +43,7 @@ impl<M: DifferentiableModel> DifferentiableModel for Outlined<M> {
     }
 }
 
-impl<M: StochasticModel> StochasticModel for Outlined<M> {
+impl<M: StochasticModel> StochasticModel for NoInline<M> {
     type Noise = M::Noise;
 
     #[inline(never)]
@@ -70,14 +70,14 @@ impl<M: StochasticModel> StochasticModel for Outlined<M> {
     }
 }
 
-impl<M: ItoCorrected> ItoCorrected for Outlined<M> {
+impl<M: ItoCorrected> ItoCorrected for NoInline<M> {
     #[inline(never)]
     fn ito_correction(&self, x: &M::State, u: &M::Input) -> M::State {
         self.0.ito_correction(x, u)
     }
 }
 
-impl<M: DifferentiableNoise> DifferentiableNoise for Outlined<M> {
+impl<M: DifferentiableNoise> DifferentiableNoise for NoInline<M> {
     #[inline(never)]
     fn iterated_increment(
         &self,
@@ -89,11 +89,11 @@ impl<M: DifferentiableNoise> DifferentiableNoise for Outlined<M> {
     }
 }
 
-impl<M: AdditiveNoise> AdditiveNoise for Outlined<M> {}
+impl<M: AdditiveNoise> AdditiveNoise for NoInline<M> {}
 
-impl<M: CommutativeNoise> CommutativeNoise for Outlined<M> {}
+impl<M: CommutativeNoise> CommutativeNoise for NoInline<M> {}
 
-impl<M: ColouredNoise> ColouredNoise for Outlined<M> {
+impl<M: ColouredNoise> ColouredNoise for NoInline<M> {
     #[inline]
     fn decay(&self, state: usize) -> Option<M::Scalar> {
         self.0.decay(state)

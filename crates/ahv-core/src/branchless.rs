@@ -11,11 +11,11 @@ use crate::{Lane, Real};
 /// `T` what is not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
-pub struct Straight<T>(pub T);
+pub struct Branchless<T>(pub T);
 
 macro_rules! operator {
     ($($name:ident, $method:ident;)+) => {$(
-        impl<T: $name<Output = T>> $name for Straight<T> {
+        impl<T: $name<Output = T>> $name for Branchless<T> {
             type Output = Self;
 
             #[inline(always)]
@@ -33,7 +33,7 @@ operator! {
     Div, div;
 }
 
-impl<T: Neg<Output = T>> Neg for Straight<T> {
+impl<T: Neg<Output = T>> Neg for Branchless<T> {
     type Output = Self;
 
     #[inline(always)]
@@ -42,7 +42,7 @@ impl<T: Neg<Output = T>> Neg for Straight<T> {
     }
 }
 
-impl<T: Lane> Real for Straight<T> {
+impl<T: Lane> Real for Branchless<T> {
     const ZERO: Self = Self(T::ZERO);
     const ONE: Self = Self(T::ONE);
     const TWO: Self = Self(T::TWO);
@@ -111,7 +111,7 @@ impl<T: Lane> Real for Straight<T> {
 }
 
 /// Nothing is beyond its ways without branches.
-impl<T: Lane> Lane for Straight<T> {
+impl<T: Lane> Lane for Branchless<T> {
     const NAN: Self = Self(T::NAN);
 
     #[inline(always)]
