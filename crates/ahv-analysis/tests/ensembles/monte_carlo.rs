@@ -464,8 +464,8 @@ fn what_is_stopped_tells_of_what_was_flown() {
 /// Whatever is complete is reported, of one group of members or more, with the bits of a run of so many.
 #[test]
 fn a_stopped_run_is_a_run_of_the_members_that_were_flown() {
-    // Two tasks of 16 members are in flight, or of 64.
-    for (steps, enough, in_flight) in [(400, 40, 32), (10, 2100, 128)] {
+    // A task of 16 members is in flight, or of 64. On one thread: on two, the first task may be left behind.
+    for (steps, enough, in_flight) in [(400, 40, 16), (10, 2100, 64)] {
         let experiment = experiment(Scheme::EulerMaruyama, 1e-3, vec![0, steps / 2, steps]);
         let control = Control::default();
         let mut listed = Vec::new();
@@ -477,7 +477,7 @@ fn a_stopped_run_is_a_run_of_the_members_that_were_flown() {
                 control.stop.store(true, Ordering::Relaxed);
             });
             let engine = experiment.engine::<Sdcom>().expect("the scheme goes");
-            engine.run_and_list(1_000_000, 2, &control, |first, seen| {
+            engine.run_and_list(1_000_000, 1, &control, |first, seen| {
                 let seen = (first..).zip(seen);
                 listed.extend(seen.map(|(member, seen)| (member, seen.last.clone())));
             })

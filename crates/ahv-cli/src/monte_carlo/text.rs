@@ -11,6 +11,8 @@ use crate::output::readable;
 
 /// Significant digits of a standard deviation; all numbers of its row have as many decimals.
 const DIGITS: i32 = 3;
+/// A number as large as this one is a power of ten.
+const LARGE: f64 = 1e8;
 /// A number takes no more places than these: the table fits 100 columns.
 const WIDEST: usize = 9;
 /// Parameters that are listed.
@@ -160,7 +162,7 @@ fn decimals(std: f64) -> i32 {
 fn number(value: f64, decimals: i32) -> String {
     let wanted = usize::try_from(decimals).unwrap_or(0);
     let text = |places: usize| format!("{:.places$}", Shown(value + 0.0));
-    let fits = |places: &usize| text(*places).chars().count() <= WIDEST;
+    let fits = |places: &usize| value.abs() < LARGE && text(*places).chars().count() <= WIDEST;
     let places = (0..=wanted.min(WIDEST)).rev().find(fits);
     let shows = |places: usize| places == wanted || value.abs() >= 10_f64.powi(1 - places as i32);
     match places.filter(|&places| shows(places)) {
