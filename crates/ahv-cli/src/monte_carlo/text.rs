@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(number(-0.0, 2), "0.00");
         assert_eq!(number(3e40, 2), "3.00e40");
         // As many as fit, of a mean whose deviation is far smaller.
-        assert_eq!(number(-7702.080_8, decimals(1e-9)), "-7702.081");
+        assert_eq!(number(-7_702.080_8, decimals(1e-9)), "-7702.081");
         assert_eq!(number(0.0, decimals(1e-300)), "0");
     }
 
