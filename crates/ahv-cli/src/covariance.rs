@@ -12,7 +12,7 @@ use ahv_analysis::ordered::Control;
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
 
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, all, print};
 use crate::flight_condition::FlightCondition;
 use crate::flights::deviations;
 use crate::flights::feedback::FeedbackArguments;
@@ -217,7 +217,7 @@ fn spread(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let drawn = folder.map_or(Ok(()), |folder| {
         output::picture(&folder.join("covariance.svg"), figure::draw(&outcome))
     });
-    written.and(printed).and(drawn).and(rest)?;
+    all([written, printed, drawn, rest])?;
     if outcome.is_complete() {
         return Ok(());
     }

@@ -11,7 +11,7 @@ use ahv_analysis::disperse::{
 };
 use clap::{Args, ValueEnum};
 
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, all, print};
 use crate::flight_condition::FlightCondition;
 use crate::output;
 use crate::progress::{Progress, Work};
@@ -141,7 +141,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print(&outcome.text())
     };
     let drawn = folder.map_or(Ok(()), |folder| outcome.draw(folder));
-    listed.and(printed).and(drawn)?;
+    all([listed, printed, drawn])?;
     if outcome.is_complete() {
         return Ok(());
     }
@@ -192,14 +192,13 @@ impl Outcome<'_> {
 
     /// Draws the pictures.
     fn draw(&self, folder: &Path) -> Result<(), Failure> {
-        output::picture(&folder.join("trim.svg"), figure::trim(self))
-            .and(output::picture(
-                &folder.join("roots.svg"),
-                figure::roots(self),
-            ))
-            .and(output::picture(
+        all([
+            output::picture(&folder.join("trim.svg"), figure::trim(self)),
+            output::picture(&folder.join("roots.svg"), figure::roots(self)),
+            output::picture(
                 &folder.join("sensitivities.svg"),
                 figure::sensitivities(self),
-            ))
+            ),
+        ])
     }
 }

@@ -27,6 +27,26 @@ impl Failure {
     }
 }
 
+/// One outcome of many, each of which was tried whatever became of the others: of failures the first is the command's, and the
+/// others are said at once.
+///
+/// # Errors
+///
+/// The first of theirs.
+pub fn all<const N: usize>(outcomes: [Result<(), Failure>; N]) -> Result<(), Failure> {
+    let mut first = Ok(());
+    for failure in outcomes.into_iter().filter_map(Result::err) {
+        match (&first, &failure) {
+            (Ok(()), _) => first = Err(failure),
+            (_, Failure::Request(message) | Failure::Numeric(message)) => {
+                complain(&format!("error: {message}"));
+            }
+            (_, Failure::Interrupted(message)) => complain(message),
+        }
+    }
+    first
+}
+
 /// Writes a line to stderr. A closed stderr is no reason to stop.
 pub fn complain(message: &str) {
     let _ = writeln!(io::stderr(), "{message}");

@@ -15,7 +15,7 @@ use ahv_core::Bounds;
 use clap::Args;
 
 use crate::assignment::Assignments;
-use crate::failure::{Failure, complain, print};
+use crate::failure::{Failure, all, complain, print};
 use crate::flights::{Flights, Ready, watched};
 use crate::output;
 use crate::progress::{Progress, Work};
@@ -149,7 +149,7 @@ impl Arguments {
             print(&told.text())
         };
         let drawn = folder.map_or(Ok(()), |folder| told.draw(folder));
-        listed.and(numbers).and(printed).and(drawn)?;
+        all([listed, numbers, printed, drawn])?;
         if told.is_complete() {
             return Ok(());
         }

@@ -12,7 +12,7 @@ use nalgebra::Complex;
 use serde::Serialize;
 
 use crate::csv_file::CsvFile;
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, all, print};
 use crate::flight_condition::FlightCondition;
 use crate::number::{Shown, cell};
 use crate::output::{self, Pairs};
@@ -143,7 +143,7 @@ fn about_trim(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
     let drawn = folder.map_or(Ok(()), |folder| {
         output::picture(&folder.join("poles.svg"), figure::figure(&roots).svg())
     });
-    written.and(printed).and(drawn)
+    all([written, printed, drawn])
 }
 
 fn pair(root: Complex<f64>) -> [f64; 2] {

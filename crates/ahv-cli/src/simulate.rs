@@ -6,7 +6,7 @@ mod report;
 
 use std::path::PathBuf;
 
-use ahv_analysis::erased::DeterministicScheme;
+use ahv_analysis::erased::{Advance, DeterministicScheme, StepperError};
 use ahv_analysis::monte_carlo::Scheme;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -78,24 +78,31 @@ fn scheme_names() -> Vec<&'static str> {
     names
 }
 
-/// The one of `all` that is called `name`.
+/// The steps of the one of `all` that is asked for.
 ///
 /// # Errors
 ///
-/// [`Failure::Request`] with those that are for such a flight.
-fn scheme<T: Copy, const N: usize>(
+/// [`Failure::Request`] with those that this flight can have.
+fn steps<T: Copy>(
     asked: &str,
-    all: [T; N],
+    all: &[T],
     name: fn(T) -> &'static str,
     flight: &str,
-) -> Result<T, Failure> {
-    let found = all.into_iter().find(|&it| name(it) == asked);
-    found.ok_or_else(|| {
-        Failure::Request(format!(
-            "--scheme: {asked} is not for a flight {flight}; {} are",
-            names::list(&all.map(name))
-        ))
-    })
+    make: impl Fn(T) -> Result<Advance, StepperError>,
+) -> Result<Advance, Failure> {
+    let why = match all.iter().find(|&&it| name(it) == asked) {
+        None => format!("{asked} is not for a flight {flight}"),
+        Some(&it) => match make(it) {
+            Ok(advance) => return Ok(advance),
+            Err(error) => error.to_string(),
+        },
+    };
+    let others = all.iter().filter(|&&it| make(it).is_ok());
+    let others: Vec<&str> = others.map(|&it| name(it)).collect();
+    Err(Failure::Request(format!(
+        "--scheme: {why}; {} are for this one",
+        names::list(&others)
+    )))
 }
 
 /// Runs the command.
@@ -116,18 +123,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let asked = asked.unwrap_or(default);
     let advance = if noisy {
         needs_noise("--stochastic", model, "")?;
-        let scheme = scheme(asked, Scheme::ALL, Scheme::name, "with noise")?;
-        model.stochastic(parameters, scheme, arguments.seed)
+        let make = |scheme| model.stochastic(parameters, scheme, arguments.seed);
+        steps(asked, &Scheme::ALL, Scheme::name, "with noise", make)?
     } else {
-        let stepper = scheme(
+        let name = DeterministicScheme::name;
+        let make = |scheme| model.deterministic(parameters, scheme);
+        steps(
             asked,
-            DeterministicScheme::ALL,
-            DeterministicScheme::name,
+            &DeterministicScheme::ALL,
+            name,
             "without noise",
-        )?;
-        model.deterministic(parameters, stepper)
+            make,
+        )?
     };
-    let advance = advance.map_err(|error| Failure::Request(format!("--scheme: {error}")))?;
     let grid = grid(arguments.t_end, arguments.dt)?;
     let flight = Flight {
         vehicle: &vehicle,

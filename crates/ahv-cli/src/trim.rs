@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, all, print};
 use crate::flight_condition::FlightCondition;
 use crate::output;
 use crate::vehicle::{Vehicle, VehicleArgs};
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         true => output::print_json(&map.json()),
         false => print(&map.text(folder)),
     };
-    written.and(printed).and(map.draw(folder))
+    all([written, printed, map.draw(folder)])
 }
 
 fn at_a_point(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {

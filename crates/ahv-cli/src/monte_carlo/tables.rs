@@ -7,7 +7,7 @@ use ahv_analysis::statistics::OpenEstimate;
 
 use super::{Summary, figure, trajectories};
 use crate::csv_file::CsvFile;
-use crate::failure::Failure;
+use crate::failure::{Failure, all};
 use crate::number::{cell, time};
 use crate::output;
 
@@ -26,11 +26,13 @@ impl Summary<'_> {
         let json = output::json(&self.json())?;
         let summary = output::write(&folder.join("summary.json"), json + "\n");
         // One that cannot be written is no reason not to write the others.
-        summary
-            .and(self.snapshots(&folder.join("snapshots.csv")))
-            .and(self.limits(&folder.join("limits.csv")))
-            .and(self.histograms(&folder.join("histograms.csv")))
-            .and(trajectories::write(self, folder))
+        all([
+            summary,
+            self.snapshots(&folder.join("snapshots.csv")),
+            self.limits(&folder.join("limits.csv")),
+            self.histograms(&folder.join("histograms.csv")),
+            trajectories::write(self, folder),
+        ])
     }
 
     /// Draws the picture.

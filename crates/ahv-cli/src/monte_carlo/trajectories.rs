@@ -9,7 +9,7 @@ use clap::ValueEnum;
 
 use super::Summary;
 use crate::csv_file::CsvFile;
-use crate::failure::Failure;
+use crate::failure::{Failure, complain};
 use crate::labels::Labels;
 use crate::number::{cell, time};
 use ahv_analysis::monte_carlo::MonteCarloError;
@@ -77,7 +77,13 @@ pub(super) fn write(told: &Summary<'_>, folder: &Path) -> Result<(), Failure> {
         .iter()
         .filter(|member| **member < told.outcome.members)
     {
-        for point in engine.trajectory(member, 1).map_err(numeric)? {
+        let points = engine.trajectory(member, 1).map_err(numeric)?;
+        if points.is_empty() {
+            complain(&format!(
+                "note: member {member} did not fly, and has no trajectory"
+            ));
+        }
+        for point in points {
             // Members are fewer than 10^9.
             table.members.push(member as i64);
             let values = std::iter::once(time(point.time))
