@@ -109,7 +109,8 @@ fn parse_value(name: &str, text: &str, unit: &'static str) -> Result<f64, String
         None => format!("`{text}` is no value for {name}, which is a bare number"),
     })?;
     let is_angle = unit.starts_with("rad");
-    if is_angle && with_unit.is_none() {
+    // What is no number gets no better by a unit.
+    if is_angle && with_unit.is_none() && number.is_finite() {
         let examples: Vec<String> = units
             .iter()
             .map(|(unit, _)| format!("{name}={text}{unit}"))

@@ -158,6 +158,10 @@ fn units_of_values_are_explained() {
             ["--limit", "needs a unit", "alpha=0deg..3deg"],
         ),
         (
+            format!("{flight} --state-std alpha=nan"),
+            ["--state-std", "`nan`", "not a finite number"],
+        ),
+        (
             format!("{members} --limit alpha=3deg..2deg"),
             ["--limit", "lower limit 3 deg", "upper one 2 deg"],
         ),
