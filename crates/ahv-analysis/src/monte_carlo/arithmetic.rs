@@ -4,7 +4,6 @@ use std::marker::PhantomData;
 
 use ahv_core::{Branchless, GeneratedModel, NoInline, Real};
 
-use super::batch::Member;
 use super::lanes::Packed;
 
 /// Which arithmetic the members are flown with.
@@ -75,6 +74,22 @@ impl<F: GeneratedModel, R: Arithmetic> Member<F> for In<R> {
     fn model(model: &F::With<Packed>, lane: usize) -> Self::Model {
         F::map_model(model, |numbers: &Packed| R::of(numbers.0[lane]))
     }
+}
+
+/// Makes a member's model of the batch's.
+pub(super) trait Member<F: GeneratedModel>: Copy {
+    /// Whether a loop over such members becomes vector instructions.
+    const SIDE_BY_SIDE: bool;
+
+    type Scalar: Arithmetic;
+    type Model: ahv_core::StochasticModel<
+            Scalar = Self::Scalar,
+            State = F::StateOf<Self::Scalar>,
+            Input = F::InputOf<Self::Scalar>,
+            Noise = F::NoiseOf<Self::Scalar>,
+        >;
+
+    fn model(model: &F::With<Packed>, lane: usize) -> Self::Model;
 }
 
 /// As `K`, with models that are called, not inlined.

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use ahv_core::{GeneratedModel, Real};
 use ahv_integrate::{NormalLanes, Precision, StepError};
 
-use super::arithmetic::{Arithmetic, Called};
+use super::arithmetic::{Arithmetic, Called, Member};
 use super::feedback::SampledFeedback;
 use super::lanes::{LANES, Packed, of_lane};
 use super::observe::Observers;
@@ -100,22 +100,6 @@ struct Advance<'b, 'c, 'o, F: GeneratedModel, S: Copy, A> {
     until: u64,
     /// Fast, and for what is stepped again.
     arithmetic: PhantomData<A>,
-}
-
-/// Makes a member's model of the batch's.
-pub(super) trait Member<F: GeneratedModel>: Copy {
-    /// Whether a loop over such members becomes vector instructions.
-    const SIDE_BY_SIDE: bool;
-
-    type Scalar: Arithmetic;
-    type Model: ahv_core::StochasticModel<
-            Scalar = Self::Scalar,
-            State = F::StateOf<Self::Scalar>,
-            Input = F::InputOf<Self::Scalar>,
-            Noise = F::NoiseOf<Self::Scalar>,
-        >;
-
-    fn model(model: &F::With<Packed>, lane: usize) -> Self::Model;
 }
 
 impl<F, S, A, E> pulp::WithSimd for Advance<'_, '_, '_, F, S, (A, E)>

@@ -4,8 +4,8 @@ use std::sync::atomic::Ordering;
 
 use ahv_core::{GeneratedModel, Real, Vector};
 
-use super::arithmetic::Called;
-use super::batch::{Batch, Member};
+use super::arithmetic::{Called, Member};
+use super::batch::Batch;
 use super::experiment::Particle;
 use super::lanes::{LANES, Packed, of_lane};
 use super::observe::{NEVER, Observer, Observers};

@@ -11,8 +11,8 @@ use ahv_integrate::{
 };
 
 use super::MonteCarloError;
-use super::arithmetic::{Called, In, Mode};
-use super::batch::{Batch, Dynamics, Member, Noise};
+use super::arithmetic::{Called, In, Member, Mode};
+use super::batch::{Batch, Dynamics, Noise};
 use super::experiment::{Experiment, MemberRecord, Particle};
 use super::lanes::{self, LANES, Packed, packed, push_lane};
 use super::observe::{BoundsMonitor, Observers};
