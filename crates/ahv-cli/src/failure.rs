@@ -75,3 +75,16 @@ pub(crate) fn written(result: io::Result<()>) -> Result<(), Failure> {
         _ => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Failure, all};
+
+    #[test]
+    fn the_first_failure_is_the_commands() {
+        let failed = |what: &str| Err(Failure::Request(what.to_owned()));
+        let outcome = all([Ok(()), failed("first"), Ok(()), failed("second")]);
+        assert!(matches!(outcome, Err(Failure::Request(what)) if what == "first"));
+        assert!(all([Ok(()), Ok(())]).is_ok());
+    }
+}

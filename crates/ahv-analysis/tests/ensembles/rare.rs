@@ -322,6 +322,32 @@ fn members_whose_parameters_break_a_rule_are_lost() {
     assert!(found.probability.value < 5.0 / 6.0, "{found:?}");
 }
 
+/// Six parameters that are each below 0 in a third of the draws leave one vehicle of eleven: the levels are those of the vehicles
+/// that fly. Where none does, that is the reason.
+#[test]
+fn levels_are_those_of_members_that_fly() {
+    let uncertainty = Parameters {
+        zeta_2: 3.0,
+        zeta_3: 3.0,
+        omega_2: 3.0,
+        omega_3: 3.0,
+        m: 3.0,
+        s: 3.0,
+        ..Parameters::splat(0.0)
+    };
+    let draws = Draws::new(NOMINAL, uncertainty, Distribution::Uniform, Vec::new(), 4);
+    let mut experiment = open_loop(4);
+    experiment.dispersion = Some(draws.expect("draws"));
+    let event = passage(Chain::of(Scheme::EulerMaruyama), 2.0);
+    let found = estimate(&experiment, &event, 2);
+    assert!(found.probability.value < 0.2 && found.lost > 0, "{found:?}");
+    let mut nowhere = open_loop(4);
+    nowhere.state[1][index("velocity")] = 1e308;
+    let engine = nowhere.engine::<Model>().expect("the scheme goes");
+    let error = engine.first_passage(&event, 1, &Control::default());
+    assert_eq!(error, Err(RareError::Lost.into()));
+}
+
 #[test]
 fn alpha_leaves_a_limit_in_closed_loop_as_often_as_in_plain_flights() {
     let mut experiment = closed_loop(7);
