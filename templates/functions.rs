@@ -23,11 +23,11 @@ pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
     {{ source }}
 {%- endif %}
 {%- for statement in f.statements %}
-    {{ statement.source() }}
+    {{ statement }}
 {%- endfor %}
 {%- if f.outputs.len() > 1 || !(f.zeros.is_empty() || f.statements.is_empty()) %}
     __section!("Result");
-{%- else if f.sets_result_off() %}
+{%- else if f.sets_result_off %}
     __section!("");
 {%- endif %}
 {%- for (name, of, component) in f.zeros %}

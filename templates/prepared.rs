@@ -31,7 +31,7 @@ impl<R> Prepared<R> {
 /// {{ cost }}.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
 {%- for statement in statements %}
-    {{ statement.source() }}
+    {{ statement }}
 {%- endfor %}
     __section!("");
     Prepared {

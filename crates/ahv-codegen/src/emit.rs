@@ -4,14 +4,13 @@ use askama::Template;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::docs::{self, Page, Subject};
-use crate::effect::{self, Effect};
-use crate::format::format_rust;
-use crate::home;
+use crate::graph::passes::Passes;
 use crate::ir::{Document, Model, SCHEMA_VERSION, UnitSystem};
 use crate::manifest::{Manifest, sha256};
-use crate::model::ModelEmitter;
 use crate::parallel;
-use crate::passes::Passes;
+use crate::rust::{self, format::format_rust};
+use crate::schedule::effect::{self, Effect};
+use crate::schedule::program::Program;
 use crate::values::Values;
 use crate::wording::visible;
 use crate::{EmitError, Table, Tree};
@@ -283,7 +282,7 @@ fn emit_home<'a>(
             table.name
         )));
     };
-    for (file, text) in home::files(document, values)? {
+    for (file, text) in rust::home::files(document, values)? {
         sources.push(Source {
             path: format!("src/{}/{file}.rs", home.name),
             origin: &table.file_name,
@@ -310,8 +309,8 @@ struct Emitted<'a> {
 impl<'a> Job<'a> {
     fn emit(&self, passes: &Passes) -> Result<Emitted<'a>, EmitError> {
         check_names(self.model)?;
-        let mut emitter = ModelEmitter::new(self.model, self.home, self.subject.document, passes)?;
-        let files = emitter.files()?.into_iter();
+        let program = Program::new(self.model, self.home, self.subject.document, passes)?;
+        let files = rust::files(&program)?.into_iter();
         let source = |(file, text): (String, String)| Source {
             path: format!("src/{}/{file}.rs", self.model.name),
             origin: &self.subject.table.file_name,
@@ -319,7 +318,7 @@ impl<'a> Job<'a> {
         };
         Ok(Emitted {
             sources: files.map(source).collect(),
-            pages: docs::emit_model(&self.subject, self.model, &emitter.costs)?,
+            pages: docs::emit_model(&self.subject, self.model, &program.costs())?,
             effects: effect::of(self.model)?,
         })
     }
@@ -377,7 +376,7 @@ fn check_sets(subject: &Subject<'_>, tree: &Tree) -> Result<(), EmitError> {
         modules.any(|module| path.starts_with(&module))
     };
     for set in subject.document.sets.iter().skip(1) {
-        for constant in home::constants(&set.name) {
+        for constant in rust::home::constants(&set.name) {
             let definition = format!("\npub const {constant}:");
             let files = tree.iter().filter(|(path, _)| own(path));
             if files.filter(|(_, text)| text.contains(&definition)).count() > 1 {

@@ -19,26 +19,15 @@
 //! ```
 #![forbid(unsafe_code)]
 
-mod body;
-mod dag;
-mod decay;
 mod docs;
-mod effect;
 mod emit;
 mod evaluate;
-#[allow(unreachable_pub, reason = "the functions that `filter_fn` makes are")]
-mod filters;
-mod format;
-mod home;
+mod graph;
 pub mod ir;
-mod items;
 mod manifest;
-mod model;
-mod names;
 mod parallel;
-mod passes;
-mod prepared;
-mod print;
+mod rust;
+mod schedule;
 mod shape;
 mod table;
 #[cfg(test)]
@@ -50,8 +39,8 @@ use std::collections::BTreeMap;
 
 pub use ahv_table::{Part, Unreadable};
 pub use emit::{AUDIT, Core, Options, emit};
+pub use graph::passes::{Pass, Passes, UnknownPass};
 pub use manifest::{Manifest, sha256};
-pub use passes::{Pass, Passes, UnknownPass};
 pub use table::Table;
 
 /// Files by their path relative to the folder of the generated package, with `/` between its parts.

@@ -1,41 +1,38 @@
 //! The shape of what a function returns: a number, a vector, a matrix, or an array of three indices.
 
 use crate::EmitError;
-use crate::ir::{self, Basis, Output, Variable};
-use crate::print::literal;
+use crate::ir::{self, Basis, Output};
 
-/// A basis of an output, with the type of its vectors.
-#[derive(Clone, Copy)]
-struct Axis<'a> {
-    basis: Basis,
-    vector: &'static str,
-    variables: &'a [Variable],
+/// A basis of an output, with the type of its vectors; modes have none.
+pub(crate) struct Axis<'a> {
+    pub(crate) basis: Basis,
+    pub(crate) vector: &'static str,
+    /// Names of its components.
+    pub(crate) names: Vec<&'a str>,
 }
 
 /// An output over its bases; none for a number.
 pub(crate) struct Shape<'a> {
-    output: &'a Output,
-    axes: Vec<Axis<'a>>,
+    pub(crate) output: &'a Output,
+    pub(crate) axes: Vec<Axis<'a>>,
 }
-
-/// Zeros that a result needs, by name, each with the vector type that it is a splat of and its component.
-pub(crate) type Zeros = Vec<(String, &'static str, String)>;
 
 impl<'a> Shape<'a> {
     /// The shape of an output; its entries are held against its bases.
     pub(crate) fn of(
         model: &'a ir::Model,
-        parameters: &'a [Variable],
+        document: &'a ir::Document,
         output: &'a Output,
     ) -> Result<Self, EmitError> {
         let mut axes = Vec::new();
         for &basis in &output.basis {
-            let variables = if basis == Basis::Parameter {
-                parameters
+            let names = if basis == Basis::Parameter {
+                document.parameters.iter().map(|it| &*it.name).collect()
             } else {
-                model.bases.get(&basis).ok_or_else(|| {
+                let variables = model.bases.get(&basis).ok_or_else(|| {
                     EmitError::Mismatch(format!("model `{}` has no basis `{basis}`", model.name))
-                })?
+                })?;
+                variables.iter().map(|it| &*it.name).collect()
             };
             let vector = match basis {
                 Basis::State => "State",
@@ -49,7 +46,7 @@ impl<'a> Shape<'a> {
             axes.push(Axis {
                 basis,
                 vector,
-                variables,
+                names,
             });
         }
         let known = |at: &[String]| {
@@ -57,7 +54,7 @@ impl<'a> Shape<'a> {
                 && at
                     .iter()
                     .zip(&axes)
-                    .all(|(name, axis)| axis.variables.iter().any(|v| v.name == *name))
+                    .all(|(name, axis)| axis.names.contains(&&**name))
         };
         if let Some(entry) = output.entries.iter().find(|entry| !known(&entry.at)) {
             return Err(EmitError::Mismatch(format!(
@@ -85,159 +82,20 @@ impl<'a> Shape<'a> {
         })
     }
 
-    /// The type of the dense form.
-    pub(crate) fn result(&self) -> String {
-        match (self.alias(), self.axes.as_slice()) {
-            (Some(alias), _) => format!("{alias}<R>"),
-            (None, [axis]) if axis.vector.is_empty() => format!("[R; {}]", axis.variables.len()),
-            (None, _) => self.nested(0),
-        }
+    /// Whether it is a number for each mode.
+    pub(crate) fn is_list(&self) -> bool {
+        matches!(self.axes.as_slice(), [axis] if axis.vector.is_empty())
     }
 
-    fn nested(&self, depth: usize) -> String {
-        match self.axes.get(depth) {
-            None => "R".to_owned(),
-            Some(axis) => format!("{}<{}>", axis.vector, self.nested(depth + 1)),
-        }
-    }
-
-    /// Types that the dense form is written in, besides its alias.
-    pub(crate) fn vectors(&self) -> impl Iterator<Item = &'static str> {
-        self.axes
-            .iter()
-            .map(|axis| axis.vector)
-            .filter(|vector| !vector.is_empty())
-    }
-
-    /// The dense form as an expression of its entries' values, which stand in the order of the entries.
-    pub(crate) fn dense(&self, values: &[String], zeros: &mut Zeros) -> String {
-        if let [axis] = self.axes.as_slice()
-            && axis.vector.is_empty()
-        {
-            let entries = axis
-                .variables
-                .iter()
-                .map(|v| self.value(&[&v.name], values));
-            let entries: Vec<String> = entries.map(|v| v.unwrap_or_else(|| literal(0.0))).collect();
-            return format!("[{}]", entries.join(", "));
-        }
-        self.level(&[], values, zeros)
-            .unwrap_or_else(|| self.zero(0, zeros))
-    }
-
-    /// The part of the dense form below some leading indices; `None` where all of it is zero.
-    fn level(&self, at: &[&str], values: &[String], zeros: &mut Zeros) -> Option<String> {
-        let Some(axis) = self.axes.get(at.len()) else {
-            return self.value(at, values);
-        };
-        let is_last = at.len() + 1 == self.axes.len();
-        let (mut fields, mut any_zero, mut any_value) = (Vec::new(), false, false);
-        for variable in axis.variables {
-            let inner = [at, &[variable.name.as_str()]].concat();
-            match self.level(&inner, values, zeros) {
-                Some(value) => {
-                    any_value = true;
-                    fields.push(field(&variable.name, value));
-                }
-                // A vector lists its zeros, a matrix has them from a vector of zeros.
-                None if is_last && self.axes.len() == 1 => {
-                    fields.push(field(&variable.name, literal(0.0)));
-                }
-                None => any_zero = true,
-            }
-        }
-        if !any_value && self.axes.len() > 1 {
-            return None;
-        }
-        if any_zero {
-            fields.push(format!("..{}", self.zero(at.len(), zeros)));
-        }
-        Some(format!("{} {{ {} }}", axis.vector, fields.join(", ")))
-    }
-
-    /// The name of the zero of this depth, noted among the zeros that are needed.
-    fn zero(&self, depth: usize, zeros: &mut Zeros) -> String {
-        let Some(axis) = self.axes.get(depth) else {
-            return literal(0.0);
-        };
-        let component = self.zero(depth + 1, zeros);
-        let bases = self.axes[depth..].iter().map(|axis| axis.basis.to_string());
-        let names: Vec<String> = bases.collect();
-        let name = format!("no_{}", names.join("_"));
-        if !zeros.iter().any(|(known, ..)| *known == name) {
-            zeros.push((name.clone(), axis.vector, component));
-        }
-        name
-    }
-
-    fn value(&self, at: &[&str], values: &[String]) -> Option<String> {
+    /// The position of the entry that stands at some indices, or mirrored there; `None` for a structural zero.
+    pub(crate) fn entry(&self, at: &[&str]) -> Option<usize> {
         let stands = |at: &[&str]| self.output.entries.iter().position(|entry| entry.at == at);
         let mirrored = || match at {
             [head @ .., a, b] if self.output.symmetric => stands(&[head, &[*b, *a]].concat()),
             _ => None,
         };
-        stands(at)
-            .or_else(mirrored)
-            .map(|position| values[position].clone())
+        stands(at).or_else(mirrored)
     }
-
-    /// Number of entries of the compressed form.
-    pub(crate) fn entries(&self) -> usize {
-        self.output.entries.len()
-    }
-
-    /// The name of the function from the compressed to the dense form, where there is one. A literal is several times
-    /// as quick as a walk along the pattern; but where every new coefficient is a new entry, it would be rewritten each time.
-    pub(crate) fn scatter(&self) -> Option<String> {
-        let is_small =
-            self.axes.len() == 2 && self.axes.iter().all(|b| b.basis != Basis::Parameter);
-        is_small.then(|| Some(format!("dense_{}", words(self.alias()?))))?
-    }
-
-    /// The dense form as an expression of the compressed one; none for what has no compressed form.
-    pub(crate) fn scattered(&self, values: &str) -> Option<String> {
-        if let Some(function) = self.scatter() {
-            return Some(format!("{function}(&{values})"));
-        }
-        let method = if self.output.symmetric {
-            "symmetric"
-        } else {
-            "dense"
-        };
-        let pattern = self.pattern()?.name;
-        Some(format!("{pattern}.{method}(&{values})"))
-    }
-
-    /// The pattern of the compressed form, one entry a line: its name, its indices, its shape.
-    pub(crate) fn pattern(&self) -> Option<PatternText> {
-        let alias = self.alias()?;
-        let name = words(alias).to_uppercase();
-        let entries = self.output.entries.iter().map(|entry| {
-            let indices = entry.at.iter().zip(&self.axes);
-            let indices = indices.map(|(name, axis)| format!("{}.{name}", axis.vector));
-            format!("ahv_core::at!({})", indices.collect::<Vec<_>>().join(", "))
-        });
-        let shape = self
-            .axes
-            .iter()
-            .map(|axis| format!("{}::<u8>::LEN", axis.vector));
-        Some(PatternText {
-            name: format!("{name}_PATTERN"),
-            alias,
-            dimensions: self.axes.len(),
-            shape: shape.collect::<Vec<_>>().join(", "),
-            entries: entries.collect(),
-        })
-    }
-}
-
-/// A constant that says where the entries of a compressed form stand.
-pub(crate) struct PatternText {
-    pub(crate) name: String,
-    pub(crate) alias: &'static str,
-    pub(crate) dimensions: usize,
-    pub(crate) shape: String,
-    pub(crate) entries: Vec<String>,
 }
 
 fn no_form(model: &ir::Model, output: &Output) -> EmitError {
@@ -248,7 +106,7 @@ fn no_form(model: &ir::Model, output: &Output) -> EmitError {
 }
 
 /// The name of a type in lower case, its words apart.
-fn words(name: &str) -> String {
+pub(crate) fn words(name: &str) -> String {
     let mut words = String::new();
     for letter in name.chars() {
         if letter.is_uppercase() && !words.is_empty() {
@@ -257,12 +115,4 @@ fn words(name: &str) -> String {
         words.extend(letter.to_lowercase());
     }
     words
-}
-
-fn field(name: &str, value: String) -> String {
-    if value == name {
-        value
-    } else {
-        format!("{name}: {value}")
-    }
 }

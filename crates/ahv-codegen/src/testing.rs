@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::dag::{Call, Dag, Id, Kind, Node};
+use crate::graph::passes::{Pass, Passes};
+use crate::graph::{Call, Dag, Id, Kind, Node};
 use crate::ir::{Expr, Model};
-use crate::passes::{Pass, Passes};
 
 /// A point: the values of leaves by their name with prefix, and of quantities by their name.
 pub(crate) type Point = HashMap<String, f64>;

@@ -1,43 +1,6 @@
-//! How emitted functions are worded: their names, arguments, results and documentation.
+//! How files are worded, in whichever language: what a function computes, texts of users, lines of comments.
 
-use std::collections::BTreeSet;
-
-use crate::EmitError;
-use crate::body::Statement;
-use crate::dag::Kind;
-use crate::format;
 use crate::ir::{self, described};
-
-/// The name of the compressed form.
-pub(crate) fn values_name(function: &ir::Function) -> String {
-    format!("{}_values", function.name)
-}
-
-/// One item as it is, several as a tuple.
-pub(crate) fn tuple(items: &[String]) -> String {
-    match items {
-        [item] => item.clone(),
-        _ => format!("({})", items.join(", ")),
-    }
-}
-
-/// The arguments of a function; those that a model hands to every function may stay unused.
-pub(crate) fn arguments(used: impl Fn(Kind) -> bool, scalars: &BTreeSet<String>) -> Vec<String> {
-    let by_reference = |name: &str, kind: Kind, ty: &str| {
-        let unused = if used(kind) { "" } else { "_" };
-        format!("{unused}{name}: &{ty}<R>")
-    };
-    let mut arguments = vec![
-        by_reference("x", Kind::State, "State"),
-        by_reference("u", Kind::Input, "Input"),
-        by_reference("p", Kind::Parameter, "Prepared"),
-    ];
-    if used(Kind::Noise) {
-        arguments.push(by_reference("dw", Kind::Noise, "Noise"));
-    }
-    arguments.extend(scalars.iter().map(|name| format!("{name}: R")));
-    arguments
-}
 
 /// What a function computes, from which equation, in which unit.
 pub(crate) fn summary(function: &ir::Function) -> Vec<String> {
@@ -51,20 +14,6 @@ pub(crate) fn summary(function: &ir::Function) -> Vec<String> {
         equation => format!(", eq. {equation}"),
     };
     wrapped(&format!("{}{equation}.{unit}", function.doc))
-}
-
-/// The implementation of a vector, from the names and units of its fields.
-pub(crate) fn vector_impl<'a>(
-    vector: &str,
-    fields: impl Iterator<Item = (&'a String, &'a String)>,
-    units: &ir::Units,
-) -> Result<String, EmitError> {
-    let mut lines = Vec::new();
-    for (name, unit) in fields {
-        let (si, factor) = units.si(unit)?;
-        lines.push(format!("{name}: [{unit:?}, {si:?}, {factor:?}],"));
-    }
-    Ok(format::vector(vector, &lines))
 }
 
 /// A text of a user in one line: what cannot be seen, or turns the direction of what follows, as its code.
@@ -104,32 +53,8 @@ pub(crate) fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-/// A function that ends in `let y = …; y` ends in the expression itself.
-pub(crate) fn return_last(statements: &mut Vec<Statement>, result: &mut String) {
-    if let Some(Statement::Let { name, value, .. }) = statements.last()
-        && name == result
-    {
-        *result = value.source();
-        statements.pop();
-    }
-}
-
+/// What a parameter is and its unit, as a sentence.
 pub(crate) fn parameter_doc(document: &ir::Document, name: &str) -> String {
     let parameter = document.parameters.iter().find(|p| p.name == name);
     parameter.map_or_else(String::new, |p| described(&p.doc, &p.unit))
-}
-
-/// The formula of a prepared value for a reader: that of its `let` where it has one.
-pub(crate) fn formula(value: &str, statements: &[Statement]) -> String {
-    let bound = statements.iter().find_map(|statement| match statement {
-        Statement::Let {
-            name, value: bound, ..
-        } if name == value => Some(bound.text()),
-        _ => None,
-    });
-    let text = bound.unwrap_or_else(|| value.to_owned()).replace("p.", "");
-    match text.strip_suffix(".recip()") {
-        Some(below) => format!("1 / {below}"),
-        None => text.replace("R::TWO", "2").replace("R::from_f64(3.0)", "3"),
-    }
 }

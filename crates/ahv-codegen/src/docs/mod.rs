@@ -26,8 +26,8 @@ pub(crate) use index::Page;
 pub(crate) use passes_page::passes_page;
 pub(crate) use subject::Subject;
 
-use crate::effect::Effect;
 use crate::ir::Model;
+use crate::schedule::effect::Effect;
 use crate::{EmitError, Tree};
 
 /// The texts of the templates, for the manifest.

@@ -2,10 +2,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::dag::{Dag, Id, Kind, Node};
+use crate::graph::passes::Pass;
+use crate::graph::{Dag, Id, Kind, Node};
 use crate::ir;
-use crate::names::Names;
-use crate::passes::Pass;
+
+use super::names::Names;
 
 /// A value of `Prepared`: it depends on parameters alone.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! The normal form keeps values, and has the shape that the emitter relies on.
 
 use super::{Dag, Id, Node};
-use crate::passes::Passes;
+use crate::graph::passes::Passes;
 use crate::testing::{
     Draw, LEAVES, NAMES, choices_of_passes, expr, model, quantity, value_of_expr, value_of_node,
 };

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Dag, Id, Term};
-use crate::passes::Pass;
+use crate::graph::passes::Pass;
 
 /// A polynomial is long with so many powers of one variable. Below that the powers stand in other polynomials too, and
 /// it is read, and compared, as the table lists it.

@@ -2,12 +2,12 @@
 
 use askama::Template;
 
+use super::filters;
+use super::wording::vector_impl;
 use crate::EmitError;
 use crate::emit::render;
-use crate::filters;
 use crate::ir::{Basis, Choice, Document, Parameter, Status, Variable, capitalised};
 use crate::values::Values;
-use crate::wording::vector_impl;
 
 #[derive(Template)]
 #[template(path = "parameters.rs")]

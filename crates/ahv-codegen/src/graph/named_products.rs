@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use super::{Dag, Factor, Id, Node};
-use crate::passes::Pass;
+use crate::graph::passes::Pass;
 
 impl Dag {
     /// Remembers a quantity that is a product of several powers, without a number, before it has its name.

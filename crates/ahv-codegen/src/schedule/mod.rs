@@ -1,82 +1,45 @@
-//! The statements of a function: which values get a name, in which order they stand.
+//! From the graph to statements: which values get a name, in which order they stand.
 
+mod cost;
+pub(crate) mod effect;
+mod expressions;
+mod names;
+mod prepared;
+pub(crate) mod program;
 mod sin_cos;
+pub(crate) mod tree;
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 
-use crate::dag::{Dag, Id, Kind, Node};
-use crate::format::{ADDENDS, SECTION, TRAILING};
+use crate::graph::{Dag, Id, Node};
 use crate::ir;
-use crate::names::Names;
-use crate::prepared::Prepared;
-use crate::print::{Cost, definition};
 
-/// A statement of a function body.
-#[derive(Debug, PartialEq, Eq)]
-pub(crate) enum Statement {
-    /// A heading.
-    Section(String),
-    /// `let name = value;` with a unit where there is one to tell.
-    Let {
-        name: String,
-        value: Value,
-        unit: String,
-    },
-}
+pub(crate) use cost::Cost;
+pub(crate) use prepared::Prepared;
 
-impl Statement {
-    /// The statement as source text; comments and listed sums travel as the formatter's markers.
-    pub(crate) fn source(&self) -> String {
-        match self {
-            Self::Section(heading) => format!("{SECTION}({heading:?});"),
-            Self::Let { name, value, unit } => {
-                let value = value.source();
-                // A pure number has no unit to tell.
-                let trailing = match unit.as_str() {
-                    "" | "1" => String::new(),
-                    unit => format!(" {TRAILING}({unit:?});"),
-                };
-                format!("let {name} = {value};{trailing}")
-            }
-        }
-    }
-}
+use names::Names;
+use tree::{Body, Statement};
 
-/// The right-hand side of a `let`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Value {
-    /// An expression.
-    Plain(String),
-    /// The addends of a sum, signs included, to be written one a line as a table of coefficients is.
-    Addends(Vec<String>),
-}
-
-impl Value {
-    /// The value as source text, with the formatter's marker where it is listed.
-    pub(crate) fn source(&self) -> String {
-        match self {
-            Self::Plain(text) => text.clone(),
-            Self::Addends(addends) => format!("{ADDENDS}({:?})", addends.join("|")),
-        }
-    }
-
-    /// The value as one expression.
-    pub(crate) fn text(&self) -> String {
-        match self {
-            Self::Plain(text) => text.clone(),
-            Self::Addends(addends) => addends.join(" "),
-        }
+/// What a function of this name does that computes the roots; without `prepared` it is `prepare` itself.
+pub(crate) fn body(
+    dag: &mut Dag,
+    model: &ir::Model,
+    prepared: Option<&Prepared>,
+    owner: &str,
+    roots: &[Id],
+) -> Body {
+    let mut scope = Scope::new(dag, model, prepared);
+    let statements = scope.write(owner, roots);
+    let results = roots.iter().map(|&id| scope.reference(id)).collect();
+    Body {
+        statements,
+        results,
     }
 }
 
 /// What is known while a body is written.
-pub(crate) struct Scope<'a> {
-    pub(crate) dag: &'a mut Dag,
-    pub(crate) cost: Cost,
-    /// Arguments that the body refers to.
-    pub(crate) used: BTreeSet<Kind>,
-    /// Those of them that are scalars of their own, such as a time.
-    pub(crate) arguments: BTreeSet<String>,
+struct Scope<'a> {
+    dag: &'a mut Dag,
     model: &'a ir::Model,
     prepared: Option<&'a Prepared>,
     bound: HashMap<Id, String>,
@@ -95,17 +58,9 @@ pub(crate) struct Scope<'a> {
 }
 
 impl<'a> Scope<'a> {
-    /// The scope of a function; without `prepared` it is that of `prepare` itself.
-    pub(crate) fn new(
-        dag: &'a mut Dag,
-        model: &'a ir::Model,
-        prepared: Option<&'a Prepared>,
-    ) -> Self {
+    fn new(dag: &'a mut Dag, model: &'a ir::Model, prepared: Option<&'a Prepared>) -> Self {
         Self {
             dag,
-            cost: Cost::default(),
-            used: BTreeSet::new(),
-            arguments: BTreeSet::new(),
             model,
             prepared,
             bound: HashMap::new(),
@@ -121,22 +76,6 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// The name of a node, where it has one in this scope.
-    pub(crate) fn known(&mut self, id: Id) -> Option<String> {
-        if let Some(name) = self.bound.get(&id) {
-            return Some(name.clone());
-        }
-        let field = self.prepared?.field(id)?;
-        self.used.insert(Kind::Parameter);
-        Some(format!("p.{field}"))
-    }
-
-    /// Whether a node is a quantity that an equation defines; derivatives have none.
-    pub(crate) fn is_defined(&self, id: Id) -> bool {
-        let quantity = self.names().quantity(id);
-        quantity.is_some_and(|position| !self.model.quantities[position].equation.is_empty())
-    }
-
     fn names(&self) -> Names<'_> {
         Names {
             dag: self.dag,
@@ -147,7 +86,7 @@ impl<'a> Scope<'a> {
     }
 
     /// Binds everything that the roots need and returns the statements.
-    pub(crate) fn write(&mut self, owner: &str, roots: &[Id]) -> Vec<Statement> {
+    fn write(&mut self, owner: &str, roots: &[Id]) -> Vec<Statement> {
         let functions = &mut self.model.functions.iter();
         let function = functions.find(|function| function.name == owner);
         self.home = function.map(|function| self.model.derivation(function));
@@ -230,10 +169,10 @@ impl<'a> Scope<'a> {
         if self.bound.contains_key(&id) {
             return;
         }
-        if let Some((sin, cos, argument)) = self.sin_cos(id) {
-            return self.bind_pair(sin, cos, argument);
+        if let Some((sin, cos, angle)) = self.sin_cos(id) {
+            return self.bind_pair(sin, cos, angle);
         }
-        let value = definition(self, id);
+        let value = self.definition(id);
         let unit = self
             .names()
             .quantity(id)
@@ -263,6 +202,3 @@ impl<'a> Scope<'a> {
         name
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,7 +1,7 @@
 //! What depends on parameters alone meets inside sums and products, and common factors leave sums.
 
 use super::{Dag, Factor, Id, Kind, Node, Term};
-use crate::passes::Pass;
+use crate::graph::passes::Pass;
 
 impl Dag {
     /// A product whose factors that depend on parameters alone are one; none where it has only one kind of factors.

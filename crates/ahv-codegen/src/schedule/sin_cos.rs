@@ -1,9 +1,9 @@
 //! Sine and cosine of one angle, computed together.
 
-use super::{Scope, Statement, Value};
-use crate::dag::{Call, Id, Node};
-use crate::passes::Pass;
-use crate::print::reference;
+use super::Scope;
+use super::tree::Statement;
+use crate::graph::passes::Pass;
+use crate::graph::{Call, Id, Node};
 
 impl Scope<'_> {
     /// The sine, the cosine and their angle, where a node is one of the two and the body needs the other as well.
@@ -28,18 +28,9 @@ impl Scope<'_> {
     }
 
     /// Binds both in one statement.
-    pub(super) fn bind_pair(&mut self, sin: Id, cos: Id, argument: Id) {
-        let argument = reference(self, argument);
-        self.cost.sin_cos += 1;
+    pub(super) fn bind_pair(&mut self, sin: Id, cos: Id, angle: Id) {
+        let angle = self.reference(angle);
         let (sin, cos) = (self.take_name(sin), self.take_name(cos));
-        self.statements.push(Statement::Let {
-            name: format!("({sin}, {cos})"),
-            value: Value::Plain(if argument.contains(' ') {
-                format!("({argument}).sin_cos()")
-            } else {
-                format!("{argument}.sin_cos()")
-            }),
-            unit: String::new(),
-        });
+        self.statements.push(Statement::SinCos { sin, cos, angle });
     }
 }

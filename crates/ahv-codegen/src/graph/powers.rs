@@ -1,7 +1,7 @@
 //! Whole powers and reciprocals.
 
 use super::{Dag, Id, Key, Node};
-use crate::passes::Pass;
+use crate::graph::passes::Pass;
 
 impl Dag {
     /// A whole power of a node; powers of numbers, powers and products are worked out.

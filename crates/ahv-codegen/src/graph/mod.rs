@@ -4,8 +4,10 @@
 //! reciprocal. Named quantities stay whole. The rules that rewrite beyond that form are [`Pass`]es, each in a module
 //! of its own.
 
+pub(crate) mod decay;
 mod estrin;
 mod named_products;
+pub(crate) mod passes;
 mod powers;
 mod regrouping;
 
@@ -13,7 +15,8 @@ use std::collections::HashMap;
 
 use crate::EmitError;
 use crate::ir;
-use crate::passes::{Pass, Passes};
+
+use passes::{Pass, Passes};
 
 /// A node of the graph.
 pub(crate) type Id = usize;

@@ -1,6 +1,6 @@
 //! States that decay by themselves: coloured noise, which steppers treat exactly.
 
-use crate::dag::{Dag, Id, Kind, Node};
+use super::{Dag, Id, Kind, Node};
 use crate::ir;
 
 /// States whose rate is minus what depends on parameters alone times themselves, each with that rate of decay.
@@ -36,9 +36,9 @@ fn rate(dag: &mut Dag, id: Id, state: &str) -> Option<Id> {
 #[cfg(test)]
 mod tests {
     use super::rates;
-    use crate::dag::Dag;
+    use crate::graph::Dag;
+    use crate::graph::passes::Passes;
     use crate::ir::Model;
-    use crate::passes::Passes;
     use crate::testing::{Point, choices_of_passes, model_with, value_of_node};
 
     /// A model whose functions, in order, give the state `a` these rates.

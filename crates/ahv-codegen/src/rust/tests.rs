@@ -2,11 +2,11 @@
 //!
 //! The emitted text is evaluated as Rust means it, by a small interpreter of its syntax tree.
 
-use super::{Scope, Statement};
-use crate::dag::Dag;
-use crate::passes::{Pass, Passes};
-use crate::prepared::Prepared;
-use crate::print::{Cost, reference};
+use super::print::{expression, statement};
+use crate::graph::Dag;
+use crate::graph::passes::{Pass, Passes};
+use crate::schedule::tree::{Body, Statement};
+use crate::schedule::{Cost, Prepared, body};
 use crate::testing::{
     Draw, LEAVES, NAMES, Point, choices_of_passes, expr, model, quantity, value_of_expr,
 };
@@ -21,12 +21,15 @@ struct Emitted {
     cost_of_prepare: Cost,
 }
 
-fn sources(statements: &[Statement]) -> Vec<String> {
-    let source = |statement: &Statement| match statement {
+/// Statements and results as Rust; comments and units of no account.
+fn printed(body: &Body) -> (Vec<String>, Vec<String>) {
+    let statements = body.statements.iter().filter_map(|it| match it {
         Statement::Section(_) => None,
-        Statement::Let { name, value, .. } => Some(format!("let {name} = {};", value.text())),
-    };
-    statements.iter().filter_map(source).collect()
+        Statement::Let { name, value, .. } => Some(format!("let {name} = {};", expression(value))),
+        Statement::SinCos { .. } => Some(statement(it)),
+    });
+    let results = body.results.iter().map(expression);
+    (statements.collect(), results.collect())
 }
 
 fn emitted(quantities: &str, roots: &[&str], passes: &Passes) -> Emitted {
@@ -37,22 +40,18 @@ fn emitted(quantities: &str, roots: &[&str], passes: &Passes) -> Emitted {
         .map(|root| dag.build(&expr(root), "test").unwrap())
         .collect();
     let prepared = Prepared::gather(&mut dag, &model, &[("test".to_owned(), ids.clone())], &[]);
-    let mut scope = Scope::new(&mut dag, &model, None);
     let fields: Vec<_> = prepared.fields.iter().map(|field| field.id).collect();
-    let statements = sources(&scope.write("prepared", &fields));
-    let fields = prepared.fields.iter();
-    let fields = fields.map(|field| (field.name.clone(), reference(&mut scope, field.id)));
-    let prepare = (statements, fields.collect());
-    let cost_of_prepare = scope.cost;
-    let mut scope = Scope::new(&mut dag, &model, Some(&prepared));
-    let statements = sources(&scope.write("test", &ids));
-    let results = ids.iter().map(|&id| reference(&mut scope, id)).collect();
+    let prepare = body(&mut dag, &model, None, "prepared", &fields);
+    let function = body(&mut dag, &model, Some(&prepared), "test", &ids);
+    let (statements_of_prepare, values) = printed(&prepare);
+    let names = prepared.fields.iter().map(|field| field.name.clone());
+    let (statements, results) = printed(&function);
     Emitted {
-        prepare,
+        prepare: (statements_of_prepare, names.zip(values).collect()),
         statements,
         results,
-        cost: scope.cost,
-        cost_of_prepare,
+        cost: function.cost(),
+        cost_of_prepare: prepare.cost(),
     }
 }
 

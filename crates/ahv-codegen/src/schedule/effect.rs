@@ -1,12 +1,12 @@
 //! What each pass does to the number of operations of a model.
 
 use crate::EmitError;
-use crate::body::Scope;
-use crate::dag::{Dag, Id};
+use crate::graph::passes::{Pass, Passes};
+use crate::graph::{Dag, Id};
 use crate::ir::{Function, Model};
-use crate::passes::{Pass, Passes};
-use crate::prepared::Prepared;
-use crate::print::{Cost, reference};
+
+use super::prepared::Prepared;
+use super::{Cost, body};
 
 /// The functions that are counted, where a model has them.
 const COUNTED: [&str; 5] = [
@@ -80,12 +80,7 @@ impl<'a> Graph<'a> {
         let mut dag = self.dag.written_with(passes);
         let prepared = Prepared::gather(&mut dag, self.model, &self.roots, &[]);
         let mut count = |owner: &str, ids: &[Id], prepared: Option<&Prepared>| {
-            let mut scope = Scope::new(&mut dag, self.model, prepared);
-            scope.write(owner, ids);
-            for &id in ids {
-                reference(&mut scope, id);
-            }
-            scope.cost
+            body(&mut dag, self.model, prepared, owner, ids).cost()
         };
         let functions = self.roots.iter();
         let mut counts: Vec<Cost> = functions

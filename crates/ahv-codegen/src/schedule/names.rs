@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::dag::{Call, Dag, Id, Kind, Node};
+use crate::graph::{Call, Dag, Id, Kind, Node};
 use crate::ir;
 
 /// Longer names are not read; such a value is numbered under the quantity that it belongs to.

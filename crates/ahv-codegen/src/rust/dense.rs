@@ -1,0 +1,158 @@
+//! Results as Rust: the type of an output, its dense form as an expression, its pattern.
+
+use crate::ir::Basis;
+use crate::schedule::tree::Expr;
+use crate::shape::{Shape, words};
+
+use super::print::{expression, literal};
+
+/// Zeros that a result needs, by name, each with the vector type that it is a splat of and its component.
+pub(crate) type Zeros = Vec<(String, &'static str, String)>;
+
+impl Shape<'_> {
+    /// The type of the dense form.
+    pub(crate) fn result(&self) -> String {
+        match (self.alias(), self.axes.as_slice()) {
+            (Some(alias), _) => format!("{alias}<R>"),
+            (None, [axis]) if self.is_list() => format!("[R; {}]", axis.names.len()),
+            (None, _) => self.nested(0),
+        }
+    }
+
+    fn nested(&self, depth: usize) -> String {
+        match self.axes.get(depth) {
+            None => "R".to_owned(),
+            Some(axis) => format!("{}<{}>", axis.vector, self.nested(depth + 1)),
+        }
+    }
+
+    /// Types that the dense form is written in, besides its alias.
+    pub(crate) fn vectors(&self) -> impl Iterator<Item = &'static str> {
+        self.axes
+            .iter()
+            .map(|axis| axis.vector)
+            .filter(|vector| !vector.is_empty())
+    }
+
+    /// The dense form as an expression of its entries' values, which stand in the order of the entries.
+    pub(crate) fn dense(&self, values: &[Expr], zeros: &mut Zeros) -> String {
+        if self.is_list() {
+            let entries = self.axes[0].names.iter();
+            let entries = entries.map(|name| self.value(&[name], values));
+            let entries: Vec<String> = entries.map(|v| v.unwrap_or_else(|| literal(0.0))).collect();
+            return format!("[{}]", entries.join(", "));
+        }
+        self.level(&[], values, zeros)
+            .unwrap_or_else(|| self.zero(0, zeros))
+    }
+
+    /// The part of the dense form below some leading indices; `None` where all of it is zero.
+    fn level(&self, at: &[&str], values: &[Expr], zeros: &mut Zeros) -> Option<String> {
+        let Some(axis) = self.axes.get(at.len()) else {
+            return self.value(at, values);
+        };
+        let is_last = at.len() + 1 == self.axes.len();
+        let (mut fields, mut any_zero, mut any_value) = (Vec::new(), false, false);
+        for name in &axis.names {
+            let inner = [at, &[*name]].concat();
+            match self.level(&inner, values, zeros) {
+                Some(value) => {
+                    any_value = true;
+                    fields.push(field(name, value));
+                }
+                // A vector lists its zeros, a matrix has them from a vector of zeros.
+                None if is_last && self.axes.len() == 1 => {
+                    fields.push(field(name, literal(0.0)));
+                }
+                None => any_zero = true,
+            }
+        }
+        if !any_value && self.axes.len() > 1 {
+            return None;
+        }
+        if any_zero {
+            fields.push(format!("..{}", self.zero(at.len(), zeros)));
+        }
+        Some(format!("{} {{ {} }}", axis.vector, fields.join(", ")))
+    }
+
+    /// The name of the zero of this depth, noted among the zeros that are needed.
+    fn zero(&self, depth: usize, zeros: &mut Zeros) -> String {
+        let Some(axis) = self.axes.get(depth) else {
+            return literal(0.0);
+        };
+        let component = self.zero(depth + 1, zeros);
+        let bases = self.axes[depth..].iter().map(|axis| axis.basis.to_string());
+        let names: Vec<String> = bases.collect();
+        let name = format!("no_{}", names.join("_"));
+        if !zeros.iter().any(|(known, ..)| *known == name) {
+            zeros.push((name.clone(), axis.vector, component));
+        }
+        name
+    }
+
+    fn value(&self, at: &[&str], values: &[Expr]) -> Option<String> {
+        Some(expression(&values[self.entry(at)?]))
+    }
+
+    /// The name of the function from the compressed to the dense form, where there is one. A literal is several times
+    /// as quick as a walk along the pattern; but where every new coefficient is a new entry, it would be rewritten each time.
+    pub(crate) fn scatter(&self) -> Option<String> {
+        let is_small =
+            self.axes.len() == 2 && self.axes.iter().all(|b| b.basis != Basis::Parameter);
+        is_small.then(|| Some(format!("dense_{}", words(self.alias()?))))?
+    }
+
+    /// The dense form as an expression of the compressed one; none for what has no compressed form.
+    pub(crate) fn scattered(&self, values: &str) -> Option<String> {
+        if let Some(function) = self.scatter() {
+            return Some(format!("{function}(&{values})"));
+        }
+        let method = if self.output.symmetric {
+            "symmetric"
+        } else {
+            "dense"
+        };
+        let pattern = self.pattern()?.name;
+        Some(format!("{pattern}.{method}(&{values})"))
+    }
+
+    /// The pattern of the compressed form, one entry a line: its name, its indices, its shape.
+    pub(crate) fn pattern(&self) -> Option<PatternText> {
+        let alias = self.alias()?;
+        let name = words(alias).to_uppercase();
+        let entries = self.output.entries.iter().map(|entry| {
+            let indices = entry.at.iter().zip(&self.axes);
+            let indices = indices.map(|(name, axis)| format!("{}.{name}", axis.vector));
+            format!("ahv_core::at!({})", indices.collect::<Vec<_>>().join(", "))
+        });
+        let shape = self
+            .axes
+            .iter()
+            .map(|axis| format!("{}::<u8>::LEN", axis.vector));
+        Some(PatternText {
+            name: format!("{name}_PATTERN"),
+            alias,
+            dimensions: self.axes.len(),
+            shape: shape.collect::<Vec<_>>().join(", "),
+            entries: entries.collect(),
+        })
+    }
+}
+
+/// A constant that says where the entries of a compressed form stand.
+pub(crate) struct PatternText {
+    pub(crate) name: String,
+    pub(crate) alias: &'static str,
+    pub(crate) dimensions: usize,
+    pub(crate) shape: String,
+    pub(crate) entries: Vec<String>,
+}
+
+fn field(name: &str, value: String) -> String {
+    if value == name {
+        value
+    } else {
+        format!("{name}: {value}")
+    }
+}

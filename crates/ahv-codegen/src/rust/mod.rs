@@ -1,0 +1,287 @@
+//! The Rust files of one model: its vectors, its prepared parameters and its functions.
+
+mod dense;
+#[allow(unreachable_pub, reason = "the functions that `filter_fn` makes are")]
+mod filters;
+pub(crate) mod format;
+pub(crate) mod home;
+mod items;
+mod print;
+mod wording;
+
+use askama::Template;
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::EmitError;
+use crate::emit::render;
+use crate::graph::Kind;
+use crate::ir::{self, Basis, Variable};
+use crate::schedule::program::Program;
+use crate::wording::wrapped;
+use items::Item;
+use print::{expression, statement};
+use wording::{formula, vector_impl};
+
+#[derive(Template)]
+#[template(path = "model.rs")]
+struct ModelTemplate<'a> {
+    model: &'a ir::Model,
+    label: String,
+    home: &'a str,
+    shared_parameters: bool,
+    modules: Vec<&'a str>,
+    groups: Vec<&'a str>,
+    has_choices: bool,
+    /// What the home of the table shares.
+    shared: Vec<String>,
+    /// Vectors, each with its implementation.
+    vectors: Vec<(Vector<'a>, String)>,
+    /// States that decay by themselves, each with its rate as a field of `Prepared`.
+    coloured: &'a [(String, String)],
+}
+
+impl ModelTemplate<'_> {
+    /// Whether no column of the diffusion depends on the state.
+    fn is_additive(&self) -> bool {
+        let columns = self.model.noise.as_ref().map(|noise| &noise.columns);
+        columns.is_some_and(|columns| {
+            columns
+                .iter()
+                .all(|column| column.class == ir::NoiseClass::Constant)
+        })
+    }
+
+    /// Whether every two columns of the diffusion commute.
+    fn is_commutative(&self) -> bool {
+        let columns = self.model.noise.as_ref().map(|noise| &noise.columns);
+        columns.is_some_and(|all| all.iter().all(|j| all.iter().all(|k| self.commute(j, k))))
+    }
+
+    /// Whether two columns of the diffusion commute.
+    fn commute(&self, j: &ir::NoiseColumn, k: &ir::NoiseColumn) -> bool {
+        let pair = |(a, b): &(String, String)| {
+            (*a == j.name && *b == k.name) || (*a == k.name && *b == j.name)
+        };
+        let noise = self.model.noise.as_ref();
+        j.name == k.name || noise.is_some_and(|noise| noise.commuting.iter().any(pair))
+    }
+}
+
+#[derive(Template)]
+#[template(path = "description.rs")]
+struct DescriptionTemplate<'a> {
+    model: &'a ir::Model,
+    label: String,
+    /// States of coloured noise.
+    coloured: usize,
+}
+
+impl DescriptionTemplate<'_> {
+    /// Deviations that cost 1, in the order of states and inputs.
+    fn deviations(&self) -> Vec<(&str, f64)> {
+        let model = self.model;
+        let vectors = [Basis::State, Basis::Input].map(|basis| model.bases.get(&basis));
+        let variables = vectors.into_iter().flatten().flatten();
+        let found = variables.filter_map(|v| Some((&*v.name, *model.deviations.get(&v.name)?)));
+        found.collect()
+    }
+
+    fn bound(&self, bound: &Option<f64>, open: &str) -> String {
+        bound.map_or_else(|| open.to_owned(), filters::literal)
+    }
+
+    fn like(&self, equation: &ir::Equation) -> String {
+        let like = equation.like.as_ref();
+        like.map_or_else(
+            || "None".to_owned(),
+            |(row, state)| format!("Some(({row:?}, {state:?}))"),
+        )
+    }
+}
+
+struct Vector<'a> {
+    name: &'static str,
+    doc: &'static str,
+    fields: &'a [Variable],
+    /// Constant that bounds it, where the table does.
+    bounds: Option<&'static str>,
+}
+
+#[derive(Template)]
+#[template(path = "prepared.rs")]
+struct PreparedTemplate<'a> {
+    label: String,
+    fields: Vec<PreparedField<'a>>,
+    statements: Vec<String>,
+    cost: String,
+}
+
+struct PreparedField<'a> {
+    name: &'a str,
+    docs: Vec<String>,
+    value: String,
+}
+
+#[derive(Template)]
+#[template(path = "functions.rs")]
+struct FunctionsTemplate {
+    label: String,
+    units: &'static str,
+    /// Types of the parent module, in alphabetical order.
+    imports: Vec<&'static str>,
+    paper_names: bool,
+    needs_vector: bool,
+    items: Vec<Item>,
+}
+
+impl FunctionsTemplate {
+    fn has_patterns(&self) -> bool {
+        self.items
+            .iter()
+            .any(|item| matches!(item, Item::Pattern(_)))
+    }
+}
+
+/// The text of each Rust file of a model, by its name without ending.
+pub(crate) fn files(program: &Program<'_>) -> Result<BTreeMap<String, String>, EmitError> {
+    let mut files = BTreeMap::new();
+    for group in program.groups() {
+        files.insert(group.to_owned(), functions(program, group)?);
+    }
+    files.insert("prepared".to_owned(), prepared(program)?);
+    let description = DescriptionTemplate {
+        model: program.model,
+        label: program.label(),
+        coloured: program.coloured.len(),
+    };
+    files.insert("description".to_owned(), render(&description)?);
+    files.insert("mod".to_owned(), module(program)?);
+    Ok(files)
+}
+
+fn module(program: &Program<'_>) -> Result<String, EmitError> {
+    let Program {
+        model,
+        document,
+        home,
+        ..
+    } = *program;
+    let mut groups = program.groups();
+    groups.sort_unstable();
+    let mut modules = groups.clone();
+    modules.extend(["description", "prepared"]);
+    if home == model.name {
+        modules.extend(["nominal", "parameters", "provenance", "table"]);
+        if !document.choices.is_empty() {
+            modules.push("choices");
+        }
+    }
+    modules.sort_unstable();
+    let vectors = vectors(model);
+    let mut lists = Vec::new();
+    for vector in &vectors {
+        let fields = vector.fields.iter().map(|v| (&v.name, &v.unit));
+        lists.push(vector_impl(vector.name, fields, &document.units)?);
+    }
+    render(&ModelTemplate {
+        model,
+        label: program.label(),
+        home,
+        shared_parameters: home != model.name,
+        has_choices: !document.choices.is_empty(),
+        shared: home::shared(document),
+        modules,
+        groups,
+        vectors: vectors.into_iter().zip(lists).collect(),
+        coloured: &program.coloured,
+    })
+}
+
+/// The vectors of a model.
+fn vectors(model: &ir::Model) -> Vec<Vector<'_>> {
+    let vector = |name, doc, basis, bounds| Vector {
+        name,
+        doc,
+        fields: model.bases.get(&basis).map_or(&[], Vec::as_slice),
+        bounds,
+    };
+    let mut vectors = vec![
+        vector("State", "State", Basis::State, Some("STATE_BOUNDS")),
+        vector("Input", "Input", Basis::Input, Some("INPUT_BOUNDS")),
+    ];
+    if model.noise.is_some() {
+        let doc = "One value for each independent Wiener process";
+        vectors.push(vector("Noise", doc, Basis::Noise, None));
+    }
+    let doc = "Quantities that people look at";
+    vectors.push(vector("Outputs", doc, Basis::Output, None));
+    vectors
+}
+
+fn prepared(program: &Program<'_>) -> Result<String, EmitError> {
+    let statements = &program.prepare.statements;
+    let fields = program.fields.iter().map(|field| {
+        let formula = || format!("`{}`.", formula(&field.value, statements));
+        PreparedField {
+            name: &field.name,
+            docs: wrapped(&field.about.clone().unwrap_or_else(formula)),
+            value: expression(&field.value),
+        }
+    });
+    render(&PreparedTemplate {
+        label: program.label(),
+        fields: fields.collect(),
+        statements: statements.iter().map(statement).collect(),
+        cost: program.prepare.cost().describe(),
+    })
+}
+
+/// The file of a group of functions.
+fn functions(program: &Program<'_>, group: &str) -> Result<String, EmitError> {
+    let mut items = Vec::new();
+    // Functions of one group share the patterns of their results.
+    let mut patterns = BTreeSet::new();
+    let mut imports = vec!["Input", "Prepared", "State"];
+    let own = program.functions.iter().filter(|it| it.ir.group == group);
+    for function in own.clone() {
+        for shape in &function.shapes {
+            imports.extend(shape.vectors());
+            imports.extend(shape.alias());
+            if function.ir.compressed
+                && let Some(pattern) = shape.pattern()
+                && patterns.insert(pattern.name.clone())
+            {
+                items.push(Item::Pattern(pattern));
+                items.extend(items::scatter(shape).map(Item::Function));
+            }
+        }
+        items.push(Item::Function(items::function(function)));
+        if function.ir.compressed {
+            items.push(Item::Function(items::dense(function)));
+        }
+    }
+    if own.clone().any(|it| it.body.uses(Kind::Noise)) {
+        imports.push("Noise");
+    }
+    imports.sort_unstable();
+    imports.dedup();
+    let functions = || {
+        items.iter().filter_map(|item| match item {
+            Item::Function(function) => Some(function),
+            Item::Pattern(_) => None,
+        })
+    };
+    let paper_names = functions().any(|f| f.name.chars().any(char::is_uppercase));
+    let needs_vector = functions().any(|f| !f.zeros.is_empty());
+    render(&FunctionsTemplate {
+        label: program.label(),
+        units: program.document.units.in_words(),
+        imports,
+        paper_names,
+        needs_vector,
+        items,
+    })
+}
+
+#[cfg(test)]
+mod tests;

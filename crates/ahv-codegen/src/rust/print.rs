@@ -1,0 +1,120 @@
+//! Prints expressions and statements as Rust.
+
+use super::format::{ADDENDS, SECTION, TRAILING};
+use crate::graph::{Call, Kind};
+use crate::schedule::tree::{Binding, Expr, Operation, Sign, Statement};
+
+/// A sum of this many addends is written one a line, so that a new one is one line of a diff.
+const LISTED: usize = 3;
+/// Longer addends are left to the formatter: one must stay on its line, indented.
+const WIDEST: usize = 108;
+
+/// A number as a constant of the scalar.
+pub(super) fn literal(value: f64) -> String {
+    match value {
+        0.0 => "R::ZERO".to_owned(),
+        1.0 => "R::ONE".to_owned(),
+        2.0 => "R::TWO".to_owned(),
+        0.5 => "R::HALF".to_owned(),
+        _ => format!("R::from_f64({value:?})"),
+    }
+}
+
+/// The name of a function of the scalar.
+fn function(call: Call) -> &'static str {
+    match call {
+        Call::Sin => "sin",
+        Call::Cos => "cos",
+        Call::Exp => "exp",
+        Call::Sqrt => "sqrt",
+    }
+}
+
+/// An expression.
+pub(super) fn expression(expr: &Expr) -> String {
+    match expr {
+        Expr::Number(value) => literal(*value),
+        Expr::Component(kind, name) => match kind {
+            Kind::State => format!("x.{name}"),
+            Kind::Input => format!("u.{name}"),
+            Kind::Noise => format!("dw.{name}"),
+            Kind::Parameter => format!("p.{name}"),
+            Kind::Argument => name.clone(),
+        },
+        Expr::Name(name) => name.clone(),
+        Expr::Negative(part) => format!("-{}", enclosed(part, Binding::Product)),
+        Expr::Sum(addends) => addends_of(addends).join(" "),
+        Expr::Product(factors) => {
+            let mut text = String::new();
+            for (position, (operation, factor)) in factors.iter().enumerate() {
+                text += match (position, operation) {
+                    (0, _) => "",
+                    (_, Operation::Times) => " * ",
+                    (_, Operation::Over) => " / ",
+                };
+                text += &match factor {
+                    Expr::Negative(_) => enclosed(factor, Binding::Product),
+                    _ => enclosed(factor, Binding::Atom),
+                };
+            }
+            text
+        }
+        Expr::Reciprocal(part) => format!("{}.recip()", enclosed(part, Binding::Atom)),
+        Expr::Call(call, part) => {
+            format!("{}.{}()", enclosed(part, Binding::Atom), function(*call))
+        }
+    }
+}
+
+fn enclosed(expr: &Expr, least: Binding) -> String {
+    let text = expression(expr);
+    if expr.binding() < least {
+        format!("({text})")
+    } else {
+        text
+    }
+}
+
+/// The addends of a sum, signs included.
+fn addends_of(addends: &[(Sign, Expr)]) -> Vec<String> {
+    let addend = |(position, (sign, expr)): (usize, &(Sign, Expr))| {
+        let sign = match (position, sign) {
+            (0, Sign::Plus) => "",
+            (0, Sign::Minus) => "-",
+            (_, Sign::Plus) => "+ ",
+            (_, Sign::Minus) => "- ",
+        };
+        format!("{sign}{}", enclosed(expr, Binding::Product))
+    };
+    addends.iter().enumerate().map(addend).collect()
+}
+
+/// A statement as source text; comments and listed sums travel as the formatter's markers.
+pub(super) fn statement(statement: &Statement) -> String {
+    match statement {
+        Statement::Section(heading) => format!("{SECTION}({heading:?});"),
+        Statement::Let { name, value, unit } => {
+            // A pure number has no unit to tell.
+            let trailing = match unit.as_str() {
+                "" | "1" => String::new(),
+                unit => format!(" {TRAILING}({unit:?});"),
+            };
+            format!("let {name} = {};{trailing}", value_of(value))
+        }
+        Statement::SinCos { sin, cos, angle } => {
+            let angle = enclosed(angle, Binding::Atom);
+            format!("let ({sin}, {cos}) = {angle}.sin_cos();")
+        }
+    }
+}
+
+/// The right-hand side of a `let`, with the formatter's marker where it is a sum to be listed.
+pub(super) fn value_of(value: &Expr) -> String {
+    if let Expr::Sum(addends) = value {
+        let addends = addends_of(addends);
+        if addends.len() >= LISTED && addends.iter().all(|a| a.chars().count() <= WIDEST) {
+            return format!("{ADDENDS}({:?})", addends.join("|"));
+        }
+    }
+    expression(value)
+}

@@ -1,0 +1,73 @@
+//! The operations of a function as emitted.
+
+use super::tree::{Expr, Operation};
+use crate::graph::Call;
+
+/// Operations by kind.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Cost {
+    pub(crate) additions: usize,
+    pub(crate) multiplications: usize,
+    pub(crate) divisions: usize,
+    pub(crate) sin_cos: usize,
+    pub(crate) exp: usize,
+    pub(crate) sqrt: usize,
+}
+
+impl Cost {
+    /// Counts the operation of an expression, that of its parts not.
+    pub(super) fn add(&mut self, expr: &Expr) {
+        match expr {
+            Expr::Number(_) | Expr::Component(..) | Expr::Name(_) | Expr::Negative(_) => {}
+            Expr::Sum(addends) => self.additions += addends.len() - 1,
+            Expr::Product(factors) => {
+                let over = factors.iter().filter(|(it, _)| *it == Operation::Over);
+                let over = over.count();
+                self.divisions += over;
+                self.multiplications += factors.len() - over - 1;
+            }
+            Expr::Reciprocal(_) => self.divisions += 1,
+            Expr::Call(Call::Sin | Call::Cos, _) => self.sin_cos += 1,
+            Expr::Call(Call::Exp, _) => self.exp += 1,
+            Expr::Call(Call::Sqrt, _) => self.sqrt += 1,
+        }
+    }
+
+    /// All operations, each counted as one.
+    pub(crate) fn total(&self) -> usize {
+        self.counted().iter().map(|(count, _)| count).sum()
+    }
+
+    fn counted(&self) -> [(usize, &'static str); 6] {
+        [
+            (self.additions, "addition"),
+            (self.multiplications, "multiplication"),
+            (self.divisions, "division"),
+            (self.sin_cos, "sin_cos"),
+            (self.exp, "exp"),
+            (self.sqrt, "sqrt"),
+        ]
+    }
+
+    /// One line: `71 operations: 30 additions, 35 multiplications, 1 division, …`.
+    pub(crate) fn describe(&self) -> String {
+        let (parts, total) = (self.counted(), self.total());
+        let listed: Vec<String> = parts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|&(count, word)| {
+                let plural = if count > 1 && word.ends_with("ion") {
+                    "s"
+                } else {
+                    ""
+                };
+                format!("{count} {word}{plural}")
+            })
+            .collect();
+        match total {
+            0 => "no operations".to_owned(),
+            1 => format!("1 operation: {}", listed.join(", ")),
+            _ => format!("{total} operations: {}", listed.join(", ")),
+        }
+    }
+}

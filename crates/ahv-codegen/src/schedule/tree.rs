@@ -1,0 +1,149 @@
+//! Statements and expressions between graph and text: what the printer of each language prints as it stands.
+
+use std::collections::BTreeSet;
+
+use super::cost::Cost;
+use crate::graph::{Call, Kind};
+
+/// An expression. Sums and products are evaluated from left to right, so that every language has the same bits.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Expr {
+    Number(f64),
+    /// A component of an argument: of the state, of the input, of the prepared parameters.
+    Component(Kind, String),
+    /// A value that a statement before names.
+    Name(String),
+    Negative(Box<Expr>),
+    /// Addends, each added or subtracted.
+    Sum(Vec<(Sign, Expr)>),
+    /// Factors, each multiplied by or divided by; the first is no divisor.
+    Product(Vec<(Operation, Expr)>),
+    Reciprocal(Box<Expr>),
+    Call(Call, Box<Expr>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sign {
+    Plus,
+    Minus,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Operation {
+    Times,
+    Over,
+}
+
+/// How strongly an expression holds together: what is weaker than its place asks for stands in parentheses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Binding {
+    Sum,
+    Product,
+    Atom,
+}
+
+/// A statement of a function body.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Statement {
+    /// A heading.
+    Section(String),
+    /// A value gets a name; with a unit where there is one to tell.
+    Let {
+        name: String,
+        value: Expr,
+        unit: String,
+    },
+    /// Sine and cosine of one angle get their names.
+    SinCos {
+        sin: String,
+        cos: String,
+        angle: Expr,
+    },
+}
+
+/// What a function does: its statements, then its results in the order of its entries.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Body {
+    pub(crate) statements: Vec<Statement>,
+    pub(crate) results: Vec<Expr>,
+}
+
+impl Expr {
+    pub(crate) fn binding(&self) -> Binding {
+        match self {
+            Self::Sum(_) => Binding::Sum,
+            Self::Product(_) | Self::Negative(_) => Binding::Product,
+            _ => Binding::Atom,
+        }
+    }
+
+    /// Calls `see` with this expression and all of its parts.
+    pub(crate) fn walk<'a>(&'a self, see: &mut impl FnMut(&'a Self)) {
+        see(self);
+        match self {
+            Self::Number(_) | Self::Component(..) | Self::Name(_) => {}
+            Self::Negative(part) | Self::Reciprocal(part) | Self::Call(_, part) => part.walk(see),
+            Self::Sum(addends) => addends.iter().for_each(|(_, part)| part.walk(see)),
+            Self::Product(factors) => factors.iter().for_each(|(_, part)| part.walk(see)),
+        }
+    }
+}
+
+impl Statement {
+    /// The value that is computed; none for a heading.
+    fn value(&self) -> Option<&Expr> {
+        match self {
+            Self::Section(_) => None,
+            Self::Let { value, .. } => Some(value),
+            Self::SinCos { angle, .. } => Some(angle),
+        }
+    }
+}
+
+impl Body {
+    /// Calls `see` with every expression and its parts.
+    pub(crate) fn walk<'a>(&'a self, see: &mut impl FnMut(&'a Expr)) {
+        let values = self.statements.iter().filter_map(Statement::value);
+        values.chain(&self.results).for_each(|it| it.walk(see));
+    }
+
+    /// The operations.
+    pub(crate) fn cost(&self) -> Cost {
+        let mut cost = Cost::default();
+        self.walk(&mut |expr| cost.add(expr));
+        let pairs = self.statements.iter();
+        cost.sin_cos += pairs
+            .filter(|it| matches!(it, Statement::SinCos { .. }))
+            .count();
+        cost
+    }
+
+    /// Whether the function refers to an argument.
+    pub(crate) fn uses(&self, kind: Kind) -> bool {
+        let mut found = false;
+        self.walk(&mut |expr| found |= matches!(expr, Expr::Component(it, _) if *it == kind));
+        found
+    }
+
+    /// Arguments that are scalars of their own, such as a time.
+    pub(crate) fn scalars(&self) -> BTreeSet<String> {
+        let mut found = BTreeSet::new();
+        self.walk(&mut |expr| {
+            if let Expr::Component(Kind::Argument, name) = expr {
+                found.insert(name.clone());
+            }
+        });
+        found
+    }
+
+    /// A function that ends in `let y = …; y` ends in the expression itself.
+    pub(crate) fn return_last(&mut self) {
+        if let (Some(Statement::Let { name, value, .. }), [result]) =
+            (self.statements.last(), self.results.as_mut_slice())
+            && matches!(result, Expr::Name(it) if it == name)
+        {
+            result.clone_from(value);
+            self.statements.pop();
+        }
+    }
+}
