@@ -19,9 +19,6 @@ pub const {{ pattern.name }}: Pattern<{{ pattern.dimensions }}> = Pattern::new([
 {%- endfor %}
 #[inline(always)]
 pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
-{%- if let Some(source) = f.source %}
-    {{ source }}
-{%- endif %}
 {%- for statement in f.statements %}
     {{ statement }}
 {%- endfor %}

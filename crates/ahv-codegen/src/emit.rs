@@ -403,6 +403,7 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -
         include_str!("../templates/parameters.rs"),
         include_str!("../templates/prepared.rs"),
         include_str!("../templates/provenance.rs"),
+        include_str!("../templates/stages.rs"),
         include_str!("../templates/table.rs"),
     ]
     .into_iter()

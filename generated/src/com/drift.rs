@@ -2,7 +2,7 @@
 
 //! Functions of COM. Units are foot, slug, second and radian.
 
-use super::{Input, Prepared, State};
+use super::{Input, Intermediates, Prepared, State, intermediates};
 use ahv_core::Real;
 
 /// Time derivative of the state, eq. (1).
@@ -10,100 +10,31 @@ use ahv_core::Real;
 /// 103 operations: 38 additions, 60 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
+    drift_from(x, u, p, &i)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
+/// [`drift`] from what is computed once.
+#[inline(always)]
+pub fn drift_from<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) -> State<R> {
     // Motion, (1)
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha; // lb/ft
-    let thrust = p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha; // lb/ft
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e;
-
-    // Forces and moment, (2)
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
-
-    // Curve fits, (2)
-    let generalized_force_1 = p.n_1_0
-        + p.n_1_alpha_2 * alpha_2
-        + p.n_1_alpha * x.alpha; // (ft*slug)^0.5/s^2
+    let alpha_rate = x.pitch_rate - i.gamma_rate; // rad/s
 
     // Flexible modes, (1)
-    let modal_load_1 = generalized_force_1
-        - p.damping_1 * x.eta_dot_1
-        - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
-
-    // Curve fits, (2)
-    let generalized_force_2 = p.n_2_0
-        + p.n_2_alpha_2 * alpha_2
-        + p.n_2_alpha * x.alpha
-        + p.n_2_delta_e * u.delta_e; // (ft*slug)^0.5/s^2
-
-    // Flexible modes, (1)
-    let modal_load_2 = generalized_force_2
-        - p.damping_2 * x.eta_dot_2
-        - p.stiffness_2 * x.eta_2; // (ft*slug)^0.5/s^2
-
-    // Motion, (1)
-    let pitch_acceleration = (pitching_moment - p.psi_1 * modal_load_1
-        - p.psi_2 * modal_load_2) * p.inv_effective_inertia; // rad/s^2
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * c_l + thrust * sin_alpha * inverse_momentum; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-    let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
-
-    // Flexible modes, (1)
-    let eta_acceleration_1 = modal_load_1 - p.psi_1 * pitch_acceleration; // (ft*slug)^0.5/s^2
-    let eta_acceleration_2 = modal_load_2 - p.psi_2 * pitch_acceleration; // (ft*slug)^0.5/s^2
+    let eta_acceleration_1 = i.modal_load_1 - p.psi_1 * i.pitch_acceleration; // (ft*slug)^0.5/s^2
+    let eta_acceleration_2 = i.modal_load_2 - p.psi_2 * i.pitch_acceleration; // (ft*slug)^0.5/s^2
 
     State {
-        velocity: velocity_rate,
-        altitude: altitude_rate,
-        gamma: gamma_rate,
+        velocity: i.velocity_rate,
+        altitude: i.altitude_rate,
+        gamma: i.gamma_rate,
         alpha: alpha_rate,
-        pitch_rate: pitch_acceleration,
+        pitch_rate: i.pitch_acceleration,
         eta_1: x.eta_dot_1,
         eta_dot_1: eta_acceleration_1,
         eta_2: x.eta_dot_2,

@@ -2,31 +2,25 @@
 
 //! Functions of COM. Units are foot, slug, second and radian.
 
-use super::{Input, Prepared, State};
+use super::{Input, Prepared, State, intermediates};
 use ahv_core::Real;
 
 /// Air density, eq. (2). Unit: slug/ft^3.
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
-pub fn density<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-
-    p.rho_0 * density_ratio
+pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    let i = intermediates(x, u, p);
+    i.density
 }
 
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
 ///
 /// 7 operations: 1 addition, 5 multiplications, 1 exp.
 #[inline(always)]
-pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-
-    R::HALF * density * velocity_2
+pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    let i = intermediates(x, u, p);
+    i.dynamic_pressure
 }
 
 /// Lift coefficient, eq. (3). Unit: 1.
@@ -34,10 +28,8 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -
 /// 4 operations: 2 additions, 2 multiplications.
 #[inline(always)]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Curve fits, (3)
-    p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e
+    let i = intermediates(x, u, p);
+    i.c_l
 }
 
 /// Drag coefficient, eq. (3). Unit: 1.
@@ -45,15 +37,8 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 10 operations: 4 additions, 6 multiplications.
 #[inline(always)]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let delta_e_2 = u.delta_e * u.delta_e;
-
-    p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
+    let i = intermediates(x, u, p);
+    i.c_d
 }
 
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
@@ -61,13 +46,8 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 7 operations: 3 additions, 4 multiplications.
 #[inline(always)]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-
-    p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
+    let i = intermediates(x, u, p);
+    i.c_m
 }
 
 /// Thrust, eq. (3). Unit: lb/ft.
@@ -75,19 +55,8 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 16 operations: 7 additions, 9 multiplications.
 #[inline(always)]
 pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha; // lb/ft
-
-    p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha
+    let i = intermediates(x, u, p);
+    i.thrust
 }
 
 /// Lift, eq. (2). Unit: lb/ft.
@@ -95,20 +64,10 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 13 operations: 3 additions, 9 multiplications, 1 exp.
 #[inline(always)]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Curve fits, (3)
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e;
+    let i = intermediates(x, u, p);
 
     // Forces and moment, (2)
-    reference_force * c_l
+    i.reference_force * i.c_l
 }
 
 /// Drag, eq. (2). Unit: lb/ft.
@@ -116,24 +75,8 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 19 operations: 5 additions, 13 multiplications, 1 exp.
 #[inline(always)]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e;
-
-    // Forces and moment, (2)
-    reference_force * c_d
+    let i = intermediates(x, u, p);
+    i.drag
 }
 
 /// Pitching moment, eq. (2). Unit: lb.
@@ -141,45 +84,17 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 34 operations: 12 additions, 21 multiplications, 1 exp.
 #[inline(always)]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha; // lb/ft
-    let thrust = p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha; // lb/ft
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e;
-
-    // Forces and moment, (2)
-    p.z_t * thrust + reference_force * p.c_bar * c_m
+    let i = intermediates(x, u, p);
+    i.pitching_moment
 }
 
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
 ///
 /// 5 operations: 2 additions, 3 multiplications.
 #[inline(always)]
-pub fn generalized_force_1<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    // Curve fits, (2)
-    let alpha_2 = x.alpha * x.alpha;
-
-    p.n_1_0
-        + p.n_1_alpha_2 * alpha_2
-        + p.n_1_alpha * x.alpha
+pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    let i = intermediates(x, u, p);
+    i.generalized_force_1
 }
 
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -187,11 +102,6 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>
 /// 7 operations: 3 additions, 4 multiplications.
 #[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Curve fits, (2)
-    let alpha_2 = x.alpha * x.alpha;
-
-    p.n_2_0
-        + p.n_2_alpha_2 * alpha_2
-        + p.n_2_alpha * x.alpha
-        + p.n_2_delta_e * u.delta_e
+    let i = intermediates(x, u, p);
+    i.generalized_force_2
 }

@@ -2,7 +2,7 @@
 
 //! Functions of COM. Units are foot, slug, second and radian.
 
-use super::{Hessian, Input, Prepared, State};
+use super::{Hessian, Input, Prepared, State, intermediates, slopes};
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`Hessian`] stand.
@@ -65,234 +65,158 @@ pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
 /// 220 operations: 49 additions, 166 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 46] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha; // lb/ft
-    let thrust = p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha; // lb/ft
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e;
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-
-    // Derivatives with respect to gamma
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_thrust_phi_d_alpha = p.three_t_phi_alpha_3 * alpha_2
-        + p.two_t_phi_alpha_2 * x.alpha
-        + p.t_phi_alpha; // lb/ft/rad
-    let d_thrust_d_alpha = p.three_t_alpha_3 * alpha_2
-        + p.two_t_alpha_2 * x.alpha
-        + p.t_alpha
-        + u.phi * d_thrust_phi_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
-
-    // Derivatives with respect to velocity
-    let d2_drag_d_velocity_d_velocity = c_d * p.s * density; // lb*s^2/ft^3
+    let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
     let d2_velocity_rate_d_velocity_d_velocity = -d2_drag_d_velocity_d_velocity
         * p.inv_m; // 1/ft
 
     // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * d_density_d_altitude; // lb*s/ft^4
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s
         * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_drag_d_velocity_d_altitude = c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
     let d2_velocity_rate_d_velocity_d_altitude = -d2_drag_d_velocity_d_altitude
         * p.inv_m; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_drag_d_velocity_d_alpha = d_reference_force_d_velocity * d_c_d_d_alpha; // lb*s/ft^2/rad
+    let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
     let d2_velocity_rate_d_velocity_d_alpha = -d2_drag_d_velocity_d_alpha * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to altitude
-    let radius_ratio_3 = radius_ratio * radius_ratio_2;
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = d_radius_ratio_d_altitude
-        * d_radius_ratio_d_altitude;
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
     let d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let density_ratio_over_h_s = density_ratio * p.inv_h_s;
+            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
     let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
     let d2_density_d_altitude_d_altitude = p.rho_0
         * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * velocity_2
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * d2_density_d_altitude_d_altitude; // lb/ft^4
     let d2_reference_force_d_altitude_d_altitude = p.s
         * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_drag_d_altitude_d_altitude = c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
-    let d2_velocity_rate_d_altitude_d_altitude = -(sin_gamma
+    let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
+    let d2_velocity_rate_d_altitude_d_altitude = -(i.sin_gamma
         * d2_gravity_d_altitude_d_altitude + d2_drag_d_altitude_d_altitude * p.inv_m); // 1/s^2/ft
 
     // Derivatives with respect to gamma
-    let d2_velocity_rate_d_altitude_d_gamma = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+    let d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to alpha
-    let d2_drag_d_altitude_d_alpha = d_reference_force_d_altitude * d_c_d_d_alpha; // lb/ft^2/rad
+    let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
     let d2_velocity_rate_d_altitude_d_alpha = -d2_drag_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -cos_alpha; // 1/rad^2
+    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d2_thrust_phi_d_alpha_d_alpha = p.six_t_phi_alpha_3 * x.alpha
         + R::TWO * p.t_phi_alpha_2; // lb/ft/rad^2
     let d2_thrust_d_alpha_d_alpha = p.six_t_alpha_3 * x.alpha
         + R::TWO * p.t_alpha_2
         + u.phi * d2_thrust_phi_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_drag_d_alpha_d_alpha = reference_force * p.two_c_d_alpha_2; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * d_thrust_d_alpha * d_cos_alpha_d_alpha
-        + thrust * d2_cos_alpha_d_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_alpha
+    let d2_drag_d_alpha_d_alpha = i.reference_force * p.two_c_d_alpha_2; // lb/ft/rad^2
+    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
 
     // Derivatives with respect to velocity
-    let inv_velocity_3 = inv_velocity * inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * gravity * inv_velocity_3; // s/ft^2
-    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
-    let inverse_momentum_3 = inverse_momentum * inverse_momentum_2;
-    let d2_force_turn_d_velocity_d_velocity = thrust * sin_alpha * p.two_m_2
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
+    let inverse_momentum_3 = i.inverse_momentum * s.inverse_momentum_2;
+    let d2_force_turn_d_velocity_d_velocity = i.thrust * i.sin_alpha * p.two_m_2
         * inverse_momentum_3; // rad*s/ft^2
     let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
-        - cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * d_radius_ratio_d_altitude + inv_velocity_2 * d_gravity_d_altitude); // 1/ft^2
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * d_density_d_altitude; // 1/ft^2
-    let d2_force_turn_d_velocity_d_altitude = c_l * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    let d2_force_turn_d_velocity_d_altitude = i.c_l
+        * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
     let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
-        - cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
 
     // Derivatives with respect to gamma
-    let d2_gamma_rate_d_velocity_d_gamma = -d_gravity_turn_d_velocity
-        * d_cos_gamma_d_gamma; // 1/ft
+    let d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity * p.c_l_alpha
-        - inverse_momentum_2 * p.m * (thrust * cos_alpha + sin_alpha * d_thrust_d_alpha); // 1/ft
+    let d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity * p.c_l_alpha
+        - s.inverse_momentum_2 * p.m
+            * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha); // 1/ft
 
     // Derivatives with respect to altitude
     let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * inv_velocity
+        * i.inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
     let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_force_turn_d_altitude_d_altitude = c_l * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_force_turn_d_altitude_d_altitude = i.c_l
+        * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
-        - cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
+        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
-    let d2_gamma_rate_d_altitude_d_gamma = -d_gravity_turn_d_altitude
-        * d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_altitude_d_alpha = d_turn_factor_d_altitude * p.c_l_alpha; // 1/s/ft
+    let d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude * p.c_l_alpha; // 1/s/ft
 
     // Derivatives with respect to gamma
-    let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_alpha_d_alpha = inverse_momentum
-        * (R::TWO * cos_alpha * d_thrust_d_alpha + sin_alpha * d2_thrust_d_alpha_d_alpha
-            + thrust * d_cos_alpha_d_alpha); // 1/s/rad
+    let d2_force_turn_d_alpha_d_alpha = i.inverse_momentum
+        * (R::TWO * i.cos_alpha * s.d_thrust_d_alpha
+            + i.sin_alpha * d2_thrust_d_alpha_d_alpha
+            + i.thrust * s.d_cos_alpha_d_alpha); // 1/s/rad
 
     // Derivatives with respect to velocity
-    let d2_pitching_moment_d_velocity_d_velocity = c_m * p.c_bar_s * density; // lb*s^2/ft^2
+    let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
     let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
         * p.inv_effective_inertia; // rad/ft^2
 
     // Derivatives with respect to altitude
-    let d2_pitching_moment_d_velocity_d_altitude = c_m * p.c_bar
+    let d2_pitching_moment_d_velocity_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
     let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
         * p.inv_effective_inertia; // rad/s/ft^2
 
     // Derivatives with respect to alpha
-    let d2_pitching_moment_d_velocity_d_alpha = d_reference_force_d_velocity * p.c_bar
-        * d_c_m_d_alpha; // lb*s/ft/rad
+    let d2_pitching_moment_d_velocity_d_alpha = s.d_reference_force_d_velocity * p.c_bar
+        * s.d_c_m_d_alpha; // lb*s/ft/rad
     let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
         * p.inv_effective_inertia; // 1/s/ft
 
     // Derivatives with respect to altitude
-    let d2_pitching_moment_d_altitude_d_altitude = c_m * p.c_bar
+    let d2_pitching_moment_d_altitude_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
     let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
         * p.inv_effective_inertia; // rad/s^2/ft^2
 
     // Derivatives with respect to alpha
-    let d2_pitching_moment_d_altitude_d_alpha = d_reference_force_d_altitude * p.c_bar
-        * d_c_m_d_alpha; // lb/ft/rad
+    let d2_pitching_moment_d_altitude_d_alpha = s.d_reference_force_d_altitude * p.c_bar
+        * s.d_c_m_d_alpha; // lb/ft/rad
     let d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha
         * p.inv_effective_inertia; // 1/s^2/ft
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + reference_force * p.two_c_bar_c_m_alpha_2; // lb/rad^2
+        + i.reference_force * p.two_c_bar_c_m_alpha_2; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = p.inv_effective_inertia
         * (d2_pitching_moment_d_alpha_d_alpha
             + p.minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2); // 1/s^2/rad
@@ -350,7 +274,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         d2_velocity_rate_d_velocity_d_alpha,
         d2_velocity_rate_d_altitude_d_alpha,
         d2_velocity_rate_d_alpha_d_alpha,
-        cos_gamma,
+        i.cos_gamma,
         d2_altitude_rate_d_gamma_d_gamma,
         d2_gamma_rate_d_velocity_d_velocity,
         d2_gamma_rate_d_velocity_d_altitude,

@@ -15,6 +15,7 @@ mod parameter_jacobian;
 mod parameters;
 mod prepared;
 mod provenance;
+mod stages;
 mod table;
 
 pub use drift::*;
@@ -24,6 +25,7 @@ pub use jacobians::*;
 pub use lie_derivatives::*;
 pub use outputs::*;
 pub use parameter_jacobian::*;
+pub use stages::*;
 pub use choices::*;
 pub use nominal::*;
 pub use parameters::{Parameters, Validity};

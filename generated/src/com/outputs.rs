@@ -2,7 +2,7 @@
 
 //! Functions of COM. Units are foot, slug, second and radian.
 
-use super::{Input, Outputs, Prepared, State};
+use super::{Input, Outputs, Prepared, State, intermediates};
 use ahv_core::Real;
 
 /// Quantities that people look at, which are not states.
@@ -10,68 +10,26 @@ use ahv_core::Real;
 /// 60 operations: 24 additions, 35 multiplications, 1 exp.
 #[inline(always)]
 pub fn outputs<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Outputs<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
 
     // Angles, (1)
     let theta = x.gamma + x.alpha; // rad
 
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha; // lb/ft
-    let thrust = p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha; // lb/ft
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e;
-
     // Forces and moment, (2)
-    let lift = reference_force * c_l; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
-
-    // Curve fits, (2)
-    let generalized_force_1 = p.n_1_0
-        + p.n_1_alpha_2 * alpha_2
-        + p.n_1_alpha * x.alpha; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = p.n_2_0
-        + p.n_2_alpha_2 * alpha_2
-        + p.n_2_alpha * x.alpha
-        + p.n_2_delta_e * u.delta_e; // (ft*slug)^0.5/s^2
+    let lift = i.reference_force * i.c_l; // lb/ft
 
     Outputs {
         theta,
-        density,
-        dynamic_pressure,
-        c_l,
-        c_d,
-        c_m,
-        thrust,
+        density: i.density,
+        dynamic_pressure: i.dynamic_pressure,
+        c_l: i.c_l,
+        c_d: i.c_d,
+        c_m: i.c_m,
+        thrust: i.thrust,
         lift,
-        drag,
-        pitching_moment,
-        generalized_force_1,
-        generalized_force_2,
+        drag: i.drag,
+        pitching_moment: i.pitching_moment,
+        generalized_force_1: i.generalized_force_1,
+        generalized_force_2: i.generalized_force_2,
     }
 }

@@ -2,7 +2,11 @@
 
 //! Functions of COM_RIGID. Units are foot, slug, second and radian.
 
-use super::{Input, InputJacobian, Prepared, State, StateJacobian};
+use super::{
+    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian,
+    drift_from, intermediates, slopes,
+};
+
 use ahv_core::{Pattern, Real, Vector};
 
 /// Where the entries of the compressed [`StateJacobian`] stand.
@@ -122,132 +126,63 @@ pub fn jacobians_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ([R; 18], [R; 8]) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    jacobians_values_from(x, u, p, &i, &s)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha; // lb/ft
-    let thrust = p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha; // lb/ft
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e;
-
+/// [`jacobians_values`] from what is computed once.
+#[inline(always)]
+pub fn jacobians_values_from<R: Real>(
+    _x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> ([R; 18], [R; 8]) {
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
+    let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
-    let d_force_turn_d_velocity = c_l * d_turn_factor_d_velocity
-        - thrust * sin_alpha * inverse_momentum_2 * p.m; // rad/ft
+    let d_force_turn_d_velocity = i.c_l * s.d_turn_factor_d_velocity
+        - i.thrust * i.sin_alpha * s.inverse_momentum_2 * p.m; // rad/ft
     let d_gamma_rate_d_velocity = d_force_turn_d_velocity
-        - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
-    let d_pitching_moment_d_velocity = c_m * p.c_bar * d_reference_force_d_velocity; // lb*s/ft
+        - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
+    let d_pitching_moment_d_velocity = i.c_m * p.c_bar * s.d_reference_force_d_velocity; // lb*s/ft
     let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
 
     // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
-    let d_velocity_rate_d_altitude = -(sin_gamma * d_gravity_d_altitude
+    let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft^2
+    let d_velocity_rate_d_altitude = -(i.sin_gamma * s.d_gravity_d_altitude
         + d_drag_d_altitude * p.inv_m); // 1/s^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_force_turn_d_altitude = c_l * d_turn_factor_d_altitude; // rad/s/ft
+    let d_force_turn_d_altitude = i.c_l * s.d_turn_factor_d_altitude; // rad/s/ft
     let d_gamma_rate_d_altitude = d_force_turn_d_altitude
-        - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
-    let d_pitching_moment_d_altitude = c_m * p.c_bar * d_reference_force_d_altitude; // lb/ft
+        - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
+    let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude; // lb/ft
     let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
+    let d_velocity_rate_d_gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
+    let d_gamma_rate_d_gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_thrust_phi_d_alpha = p.three_t_phi_alpha_3 * alpha_2
-        + p.two_t_phi_alpha_2 * x.alpha
-        + p.t_phi_alpha; // lb/ft/rad
-    let d_thrust_d_alpha = p.three_t_alpha_3 * alpha_2
-        + p.two_t_alpha_2 * x.alpha
-        + p.t_alpha
-        + u.phi * d_thrust_phi_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
+    let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
+    let d_path_force_d_alpha = i.thrust * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * s.d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha = inverse_momentum
-        * (thrust * cos_alpha + sin_alpha * d_thrust_d_alpha)
-        + turn_factor * p.c_l_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.z_t * d_thrust_d_alpha
-        + reference_force * p.c_bar * d_c_m_d_alpha; // lb/rad
+    let d_force_turn_d_alpha = i.inverse_momentum
+        * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha)
+        + i.turn_factor * p.c_l_alpha; // 1/s
+    let d_pitching_moment_d_alpha = p.z_t * s.d_thrust_d_alpha
+        + i.reference_force * p.c_bar * s.d_c_m_d_alpha; // lb/rad
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to phi
-    let d_path_force_d_phi = cos_alpha * thrust_phi; // lb/ft
-    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_force_turn_d_phi = inverse_momentum * sin_alpha * thrust_phi; // rad/s
-    let d_pitch_acceleration_d_phi = p.z_t_over_i_yy * thrust_phi; // rad/s^2
+    let d_pitch_acceleration_d_phi = p.z_t_over_i_yy * i.thrust_phi; // rad/s^2
 
     // Derivatives with respect to delta_e
-    let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
-    let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
-    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_alpha_rate_d_delta_e = -turn_factor * p.c_l_delta_e; // 1/s
-    let d_pitching_moment_d_delta_e = reference_force * p.c_bar_c_m_delta_e; // lb/rad
+    let d_alpha_rate_d_delta_e = -i.turn_factor * p.c_l_delta_e; // 1/s
+    let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_delta_e; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
     // Result
@@ -256,8 +191,8 @@ pub fn jacobians_values<R: Real>(
         d_velocity_rate_d_altitude,
         d_velocity_rate_d_gamma,
         d_velocity_rate_d_alpha,
-        sin_gamma,
-        d_altitude_rate_d_gamma,
+        i.sin_gamma,
+        s.d_altitude_rate_d_gamma,
         d_gamma_rate_d_velocity,
         d_gamma_rate_d_altitude,
         d_gamma_rate_d_gamma,
@@ -272,11 +207,11 @@ pub fn jacobians_values<R: Real>(
         d_pitch_acceleration_d_alpha,
     ];
     let input = [
-        d_velocity_rate_d_phi,
-        d_velocity_rate_d_delta_e,
-        d_force_turn_d_phi,
-        turn_factor * p.c_l_delta_e,
-        -d_force_turn_d_phi,
+        s.d_velocity_rate_d_phi,
+        s.d_velocity_rate_d_delta_e,
+        s.d_force_turn_d_phi,
+        i.turn_factor * p.c_l_delta_e,
+        -s.d_force_turn_d_phi,
         d_alpha_rate_d_delta_e,
         d_pitch_acceleration_d_phi,
         d_pitch_acceleration_d_delta_e,
@@ -307,185 +242,10 @@ pub fn drift_and_jacobians_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (State<R>, [R; 18], [R; 8]) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha; // lb/ft
-    let thrust = p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha; // lb/ft
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e;
-
-    // Forces and moment, (2)
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
-
-    // Motion, (1)
-    let thrust_cos_alpha = thrust * cos_alpha;
-    let path_force = thrust_cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * c_l + thrust * sin_alpha * inverse_momentum; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-    let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
-    let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
-    let d_force_turn_d_velocity = c_l * d_turn_factor_d_velocity
-        - thrust * sin_alpha * inverse_momentum_2 * p.m; // rad/ft
-    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
-        - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
-    let d_pitching_moment_d_velocity = c_m * p.c_bar * d_reference_force_d_velocity; // lb*s/ft
-    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
-
-    // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
-    let d_velocity_rate_d_altitude = -(sin_gamma * d_gravity_d_altitude
-        + d_drag_d_altitude * p.inv_m); // 1/s^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_force_turn_d_altitude = c_l * d_turn_factor_d_altitude; // rad/s/ft
-    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
-        - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
-    let d_pitching_moment_d_altitude = c_m * p.c_bar * d_reference_force_d_altitude; // lb/ft
-    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
-
-    // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_thrust_phi_d_alpha = p.three_t_phi_alpha_3 * alpha_2
-        + p.two_t_phi_alpha_2 * x.alpha
-        + p.t_phi_alpha; // lb/ft/rad
-    let d_thrust_d_alpha = p.three_t_alpha_3 * alpha_2
-        + p.two_t_alpha_2 * x.alpha
-        + p.t_alpha
-        + u.phi * d_thrust_phi_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha = inverse_momentum
-        * (thrust_cos_alpha + sin_alpha * d_thrust_d_alpha) + turn_factor * p.c_l_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.z_t * d_thrust_d_alpha
-        + reference_force * p.c_bar * d_c_m_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-
-    // Derivatives with respect to phi
-    let d_path_force_d_phi = cos_alpha * thrust_phi; // lb/ft
-    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_force_turn_d_phi = inverse_momentum * sin_alpha * thrust_phi; // rad/s
-    let d_pitch_acceleration_d_phi = p.z_t_over_i_yy * thrust_phi; // rad/s^2
-
-    // Derivatives with respect to delta_e
-    let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
-    let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
-    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_alpha_rate_d_delta_e = -turn_factor * p.c_l_delta_e; // 1/s
-    let d_pitching_moment_d_delta_e = reference_force * p.c_bar_c_m_delta_e; // lb/rad
-    let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
-
-    // Result
-    let drift = State {
-        velocity: velocity_rate,
-        altitude: altitude_rate,
-        gamma: gamma_rate,
-        alpha: alpha_rate,
-        pitch_rate: pitch_acceleration,
-    };
-    let state = [
-        d_velocity_rate_d_velocity,
-        d_velocity_rate_d_altitude,
-        d_velocity_rate_d_gamma,
-        d_velocity_rate_d_alpha,
-        sin_gamma,
-        d_altitude_rate_d_gamma,
-        d_gamma_rate_d_velocity,
-        d_gamma_rate_d_altitude,
-        d_gamma_rate_d_gamma,
-        d_force_turn_d_alpha,
-        -d_gamma_rate_d_velocity,
-        -d_gamma_rate_d_altitude,
-        -d_gamma_rate_d_gamma,
-        -d_force_turn_d_alpha,
-        R::ONE,
-        d_pitch_acceleration_d_velocity,
-        d_pitch_acceleration_d_altitude,
-        d_pitch_acceleration_d_alpha,
-    ];
-    let input = [
-        d_velocity_rate_d_phi,
-        d_velocity_rate_d_delta_e,
-        d_force_turn_d_phi,
-        turn_factor * p.c_l_delta_e,
-        -d_force_turn_d_phi,
-        d_alpha_rate_d_delta_e,
-        d_pitch_acceleration_d_phi,
-        d_pitch_acceleration_d_delta_e,
-    ];
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let drift = drift_from(x, u, p, &i);
+    let (state, input) = jacobians_values_from(x, u, p, &i, &s);
     (drift, state, input)
 }
 

@@ -11,6 +11,7 @@ mod lie_derivatives;
 mod outputs;
 mod parameter_jacobian;
 mod prepared;
+mod stages;
 
 pub use drift::*;
 pub use evaluations::*;
@@ -19,6 +20,7 @@ pub use jacobians::*;
 pub use lie_derivatives::*;
 pub use outputs::*;
 pub use parameter_jacobian::*;
+pub use stages::*;
 pub use crate::com::{
     Earth, NOMINAL, PROVENANCE, Parameters, SECTION5_3, SECTION5_3_PROVENANCE, SETS,
     TABLE, UNIT_SYSTEM, VALIDITY, Validity,

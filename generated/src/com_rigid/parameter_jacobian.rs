@@ -2,7 +2,10 @@
 
 //! Functions of COM_RIGID. Units are foot, slug, second and radian.
 
-use super::{Input, ParameterJacobian, Parameters, Prepared, State};
+use super::{
+    Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes,
+};
+
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
@@ -101,183 +104,128 @@ pub fn parameter_jacobian_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 78] {
-    // Air, (2)
-    let h_0_minus_altitude = p.h_0 - x.altitude;
-    let density_ratio = (h_0_minus_altitude * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-
-    // Motion, (1)
-    let inv_velocity = x.velocity.recip();
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
-        + p.t_phi_alpha * x.alpha; // lb/ft
-    let thrust = p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
-        + p.t_alpha * x.alpha; // lb/ft
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e;
-
-    // Forces and moment, (2)
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to parameters
-    let inverse_momentum_2 = inverse_momentum * inverse_momentum;
-    let density_velocity = density * x.velocity;
-    let s_density_velocity = p.s * density_velocity;
-    let d_force_turn_d_m = -(thrust * sin_alpha * inverse_momentum_2 * x.velocity
-        + c_l * s_density_velocity * p.half_inv_m_2); // rad*ft/s/slug
-    let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
+    let d_force_turn_d_m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
+        + i.c_l * s.d_reference_force_d_velocity * p.half_inv_m_2); // rad*ft/s/slug
+    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * velocity_2 * d_density_d_h_0; // lb/ft^3
+    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_drag_d_h_0 = c_d * d_reference_force_d_h_0; // lb/ft^2
+    let d_drag_d_h_0 = i.c_d * d_reference_force_d_h_0; // lb/ft^2
     let d_velocity_rate_d_h_0 = -d_drag_d_h_0 * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_force_turn_d_h_0 = c_l * d_turn_factor_d_h_0; // rad/s/ft
-    let d_pitching_moment_d_h_0 = c_m * p.c_bar * d_reference_force_d_h_0; // lb/ft
+    let d_force_turn_d_h_0 = i.c_l * d_turn_factor_d_h_0; // rad/s/ft
+    let d_pitching_moment_d_h_0 = i.c_m * p.c_bar * d_reference_force_d_h_0; // lb/ft
     let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
-    let d_density_ratio_d_h_s = -density_ratio * h_0_minus_altitude * p.inv_h_s_2; // 1/ft
+    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * velocity_2 * d_density_d_h_s; // lb/ft^3
+    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
     let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_drag_d_h_s = c_d * d_reference_force_d_h_s; // lb/ft^2
+    let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft^2
     let d_velocity_rate_d_h_s = -d_drag_d_h_s * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_force_turn_d_h_s = c_l * d_turn_factor_d_h_s; // rad/s/ft
-    let d_pitching_moment_d_h_s = c_m * p.c_bar * d_reference_force_d_h_s; // lb/ft
+    let d_force_turn_d_h_s = i.c_l * d_turn_factor_d_h_s; // rad/s/ft
+    let d_pitching_moment_d_h_s = i.c_m * p.c_bar * d_reference_force_d_h_s; // lb/ft
     let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
-        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
+        * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio
+        * (p.earth_curvature * i.radius_ratio
             * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio
+        * (i.radius_ratio
             * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-    let pitching_moment_over_i_yy = pitching_moment * p.inv_i_yy;
+    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
 
     [
-        -path_force * p.inv_m_2,
-        -c_d * dynamic_pressure * p.inv_m,
-        c_d * p.minus_half_s_over_m * velocity_2 * density_ratio,
+        -i.path_force * p.inv_m_2,
+        -i.c_d * i.dynamic_pressure * p.inv_m,
+        i.c_d * p.minus_half_s_over_m * i.velocity_2 * i.density_ratio,
         d_velocity_rate_d_h_0,
         d_velocity_rate_d_h_s,
-        -sin_gamma * radius_ratio_2,
-        sin_gamma * p.two_g_earth_curvature_over_r_e * radius_ratio
+        -i.sin_gamma * i.radius_ratio_2,
+        i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
             * slope_of_radius_ratio_in_earth_curvature,
-        sin_gamma * p.minus_two_g_over_r_e * radius_ratio
+        i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
             * slope_of_radius_ratio_in_earth_curvature,
-        cos_alpha * u.phi * alpha_3 * p.inv_m,
-        cos_alpha * u.phi * alpha_2 * p.inv_m,
-        cos_alpha * u.phi * x.alpha * p.inv_m,
-        cos_alpha * u.phi * p.inv_m,
-        cos_alpha * alpha_3 * p.inv_m,
-        cos_alpha * alpha_2 * p.inv_m,
-        cos_alpha * x.alpha * p.inv_m,
-        cos_alpha * p.inv_m,
-        -reference_force * alpha_2 * p.inv_m,
-        -reference_force * x.alpha * p.inv_m,
-        -reference_force * delta_e_2 * p.inv_m,
-        -reference_force * u.delta_e * p.inv_m,
-        -reference_force * p.inv_m,
+        i.cos_alpha * u.phi * i.alpha_3 * p.inv_m,
+        i.cos_alpha * u.phi * i.alpha_2 * p.inv_m,
+        i.cos_alpha * u.phi * x.alpha * p.inv_m,
+        i.cos_alpha * u.phi * p.inv_m,
+        i.cos_alpha * i.alpha_3 * p.inv_m,
+        i.cos_alpha * i.alpha_2 * p.inv_m,
+        i.cos_alpha * x.alpha * p.inv_m,
+        i.cos_alpha * p.inv_m,
+        -i.reference_force * i.alpha_2 * p.inv_m,
+        -i.reference_force * x.alpha * p.inv_m,
+        -i.reference_force * i.delta_e_2 * p.inv_m,
+        -i.reference_force * u.delta_e * p.inv_m,
+        -i.reference_force * p.inv_m,
         d_force_turn_d_m,
-        c_l * density_velocity * p.half_over_m,
-        c_l * p.half_s_over_m * x.velocity * density_ratio,
+        i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m,
+        i.c_l * p.half_s_over_m * x.velocity * i.density_ratio,
         d_force_turn_d_h_0,
         d_force_turn_d_h_s,
-        -cos_gamma * radius_ratio_2 * inv_velocity,
+        -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
         d_gamma_rate_d_r_e,
         d_gamma_rate_d_spherical_earth,
-        inverse_momentum * sin_alpha * u.phi * alpha_3,
-        inverse_momentum * sin_alpha * u.phi * alpha_2,
-        inverse_momentum * sin_alpha * u.phi * x.alpha,
-        inverse_momentum * sin_alpha * u.phi,
-        inverse_momentum * sin_alpha * alpha_3,
-        inverse_momentum * sin_alpha * alpha_2,
-        inverse_momentum * sin_alpha * x.alpha,
-        inverse_momentum * sin_alpha,
-        turn_factor * x.alpha,
-        turn_factor * u.delta_e,
-        turn_factor,
+        i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3,
+        i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2,
+        i.inverse_momentum * i.sin_alpha * u.phi * x.alpha,
+        i.inverse_momentum * i.sin_alpha * u.phi,
+        i.inverse_momentum * i.sin_alpha * i.alpha_3,
+        i.inverse_momentum * i.sin_alpha * i.alpha_2,
+        i.inverse_momentum * i.sin_alpha * x.alpha,
+        i.inverse_momentum * i.sin_alpha,
+        i.turn_factor * x.alpha,
+        i.turn_factor * u.delta_e,
+        i.turn_factor,
         -d_force_turn_d_m,
-        c_l * density_velocity * p.minus_half_over_m,
-        c_l * p.minus_half_s_over_m * x.velocity * density_ratio,
+        i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m,
+        i.c_l * p.minus_half_s_over_m * x.velocity * i.density_ratio,
         -d_force_turn_d_h_0,
         -d_force_turn_d_h_s,
-        cos_gamma * radius_ratio_2 * inv_velocity,
+        i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
         -d_gamma_rate_d_r_e,
         -d_gamma_rate_d_spherical_earth,
-        -inverse_momentum * sin_alpha * u.phi * alpha_3,
-        -inverse_momentum * sin_alpha * u.phi * alpha_2,
-        -inverse_momentum * sin_alpha * u.phi * x.alpha,
-        -inverse_momentum * sin_alpha * u.phi,
-        -inverse_momentum * sin_alpha * alpha_3,
-        -inverse_momentum * sin_alpha * alpha_2,
-        -inverse_momentum * sin_alpha * x.alpha,
-        -inverse_momentum * sin_alpha,
-        -turn_factor * x.alpha,
-        -turn_factor * u.delta_e,
-        -turn_factor,
-        -pitching_moment_over_i_yy * p.inv_i_yy,
-        c_m * p.c_bar_over_i_yy * dynamic_pressure,
-        c_m * reference_force * p.inv_i_yy,
-        thrust * p.inv_i_yy,
-        c_m * p.half_c_bar_s_over_i_yy * velocity_2 * density_ratio,
+        -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3,
+        -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2,
+        -i.inverse_momentum * i.sin_alpha * u.phi * x.alpha,
+        -i.inverse_momentum * i.sin_alpha * u.phi,
+        -i.inverse_momentum * i.sin_alpha * i.alpha_3,
+        -i.inverse_momentum * i.sin_alpha * i.alpha_2,
+        -i.inverse_momentum * i.sin_alpha * x.alpha,
+        -i.inverse_momentum * i.sin_alpha,
+        -i.turn_factor * x.alpha,
+        -i.turn_factor * u.delta_e,
+        -i.turn_factor,
+        -i.pitch_acceleration * p.inv_i_yy,
+        i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure,
+        i.c_m * i.reference_force * p.inv_i_yy,
+        i.thrust * p.inv_i_yy,
+        i.c_m * p.half_c_bar_s_over_i_yy * i.velocity_2 * i.density_ratio,
         d_pitch_acceleration_d_h_0,
         d_pitch_acceleration_d_h_s,
-        p.z_t_over_i_yy * u.phi * alpha_3,
-        p.z_t_over_i_yy * u.phi * alpha_2,
+        p.z_t_over_i_yy * u.phi * i.alpha_3,
+        p.z_t_over_i_yy * u.phi * i.alpha_2,
         p.z_t_over_i_yy * u.phi * x.alpha,
         p.z_t_over_i_yy * u.phi,
-        p.z_t_over_i_yy * alpha_3,
-        p.z_t_over_i_yy * alpha_2,
+        p.z_t_over_i_yy * i.alpha_3,
+        p.z_t_over_i_yy * i.alpha_2,
         p.z_t_over_i_yy * x.alpha,
         p.z_t_over_i_yy,
-        reference_force * p.c_bar_over_i_yy * alpha_2,
-        reference_force * p.c_bar_over_i_yy * x.alpha,
-        reference_force * p.c_bar_over_i_yy * u.delta_e,
-        reference_force * p.c_bar_over_i_yy,
+        i.reference_force * p.c_bar_over_i_yy * i.alpha_2,
+        i.reference_force * p.c_bar_over_i_yy * x.alpha,
+        i.reference_force * p.c_bar_over_i_yy * u.delta_e,
+        i.reference_force * p.c_bar_over_i_yy,
     ]
 }
 

@@ -2,7 +2,7 @@
 
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
-use super::{Hessian, Input, Prepared, State};
+use super::{Hessian, Input, Prepared, State, intermediates, slopes};
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`Hessian`] stand.
@@ -104,512 +104,369 @@ pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
 /// 401 operations: 105 additions, 291 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 85] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * x.eta_1
-        + p.c_l_eta_2 * x.eta_2
-        + p.c_l_eta_3 * x.eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * x.eta_1
-        + p.c_d_eta_2 * x.eta_2
-        + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * x.eta_1
-        + p.c_m_eta_2 * x.eta_2
-        + p.c_m_eta_3 * x.eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Curve fits, (3)
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_thrust_d_velocity = c_t * d_reference_force_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_thrust_d_altitude = c_t * d_reference_force_d_altitude; // lb/ft^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-
-    // Derivatives with respect to gamma
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + p.c_l_alpha; // 1/rad
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-
-    // Derivatives with respect to eta_1
-    let d_normal_coefficient_d_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_2
-    let d_normal_coefficient_d_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_3
-    let d_normal_coefficient_d_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
-
-    // Derivatives with respect to velocity
-    let d2_thrust_d_velocity_d_velocity = c_t * p.s * density; // lb*s^2/ft^3
-    let d2_drag_d_velocity_d_velocity = c_d * p.s * density; // lb*s^2/ft^3
-    let d2_path_force_d_velocity_d_velocity = cos_alpha * d2_thrust_d_velocity_d_velocity
-        - d2_drag_d_velocity_d_velocity; // lb*s^2/ft^3
+    let d2_thrust_d_velocity_d_velocity = i.c_t * p.s * i.density; // lb*s^2/ft^3
+    let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
+    let d2_path_force_d_velocity_d_velocity = i.cos_alpha
+        * d2_thrust_d_velocity_d_velocity - d2_drag_d_velocity_d_velocity; // lb*s^2/ft^3
     let d2_velocity_rate_d_velocity_d_velocity = d2_path_force_d_velocity_d_velocity
         * p.inv_m; // 1/ft
 
     // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * d_density_d_altitude; // lb*s/ft^4
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s
         * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_thrust_d_velocity_d_altitude = c_t * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_drag_d_velocity_d_altitude = c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_path_force_d_velocity_d_altitude = cos_alpha * d2_thrust_d_velocity_d_altitude
-        - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_thrust_d_velocity_d_altitude = i.c_t
+        * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_path_force_d_velocity_d_altitude = i.cos_alpha
+        * d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
     let d2_velocity_rate_d_velocity_d_altitude = d2_path_force_d_velocity_d_altitude
         * p.inv_m; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_thrust_d_velocity_d_alpha = d_reference_force_d_velocity * d_c_t_d_alpha; // lb*s/ft^2/rad
-    let d2_drag_d_velocity_d_alpha = d_reference_force_d_velocity * d_c_d_d_alpha; // lb*s/ft^2/rad
-    let d2_path_force_d_velocity_d_alpha = d_thrust_d_velocity * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_velocity_d_alpha
+    let d2_thrust_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_t_d_alpha; // lb*s/ft^2/rad
+    let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
+    let d2_path_force_d_velocity_d_alpha = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_velocity_d_alpha
         - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
     let d2_velocity_rate_d_velocity_d_alpha = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to eta_1
-    let d2_thrust_d_velocity_d_eta_1 = d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_eta_1 = d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_eta_1 = cos_alpha * d2_thrust_d_velocity_d_eta_1
+    let d2_thrust_d_velocity_d_eta_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_eta_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_eta_1 = i.cos_alpha * d2_thrust_d_velocity_d_eta_1
         - d2_drag_d_velocity_d_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_velocity_rate_d_velocity_d_eta_1 = d2_path_force_d_velocity_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_thrust_d_velocity_d_eta_2 = d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_eta_2 = d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_eta_2 = cos_alpha * d2_thrust_d_velocity_d_eta_2
+    let d2_thrust_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_eta_2 = i.cos_alpha * d2_thrust_d_velocity_d_eta_2
         - d2_drag_d_velocity_d_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_velocity_rate_d_velocity_d_eta_2 = d2_path_force_d_velocity_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_thrust_d_velocity_d_eta_3 = d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_eta_3 = d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_eta_3 = cos_alpha * d2_thrust_d_velocity_d_eta_3
+    let d2_thrust_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_eta_3 = i.cos_alpha * d2_thrust_d_velocity_d_eta_3
         - d2_drag_d_velocity_d_eta_3; // lb*s/ft^2.5/slug^0.5
     let d2_velocity_rate_d_velocity_d_eta_3 = d2_path_force_d_velocity_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to altitude
-    let radius_ratio_3 = radius_ratio * radius_ratio_2;
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = d_radius_ratio_d_altitude
-        * d_radius_ratio_d_altitude;
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
     let d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let density_ratio_over_h_s = density_ratio * p.inv_h_s;
+            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
     let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
     let d2_density_d_altitude_d_altitude = p.rho_0
         * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * velocity_2
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * d2_density_d_altitude_d_altitude; // lb/ft^4
     let d2_reference_force_d_altitude_d_altitude = p.s
         * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_thrust_d_altitude_d_altitude = c_t * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
-    let d2_drag_d_altitude_d_altitude = c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
-    let d2_path_force_d_altitude_d_altitude = cos_alpha * d2_thrust_d_altitude_d_altitude
-        - d2_drag_d_altitude_d_altitude; // lb/ft^3
+    let d2_thrust_d_altitude_d_altitude = i.c_t
+        * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
+    let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
+    let d2_path_force_d_altitude_d_altitude = i.cos_alpha
+        * d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude; // lb/ft^3
     let d2_velocity_rate_d_altitude_d_altitude = d2_path_force_d_altitude_d_altitude
-        * p.inv_m - sin_gamma * d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
+        * p.inv_m - i.sin_gamma * d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
 
     // Derivatives with respect to gamma
-    let d2_velocity_rate_d_altitude_d_gamma = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+    let d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to alpha
-    let d2_thrust_d_altitude_d_alpha = d_reference_force_d_altitude * d_c_t_d_alpha; // lb/ft^2/rad
-    let d2_drag_d_altitude_d_alpha = d_reference_force_d_altitude * d_c_d_d_alpha; // lb/ft^2/rad
-    let d2_path_force_d_altitude_d_alpha = d_thrust_d_altitude * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_altitude_d_alpha
+    let d2_thrust_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_t_d_alpha; // lb/ft^2/rad
+    let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
+    let d2_path_force_d_altitude_d_alpha = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_altitude_d_alpha
         - d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
     let d2_velocity_rate_d_altitude_d_alpha = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to eta_1
-    let d2_thrust_d_altitude_d_eta_1 = d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
-    let d2_drag_d_altitude_d_eta_1 = d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
-    let d2_path_force_d_altitude_d_eta_1 = cos_alpha * d2_thrust_d_altitude_d_eta_1
+    let d2_thrust_d_altitude_d_eta_1 = s.d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
+    let d2_drag_d_altitude_d_eta_1 = s.d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
+    let d2_path_force_d_altitude_d_eta_1 = i.cos_alpha * d2_thrust_d_altitude_d_eta_1
         - d2_drag_d_altitude_d_eta_1; // lb/ft^2.5/slug^0.5
     let d2_velocity_rate_d_altitude_d_eta_1 = d2_path_force_d_altitude_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_thrust_d_altitude_d_eta_2 = d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
-    let d2_drag_d_altitude_d_eta_2 = d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
-    let d2_path_force_d_altitude_d_eta_2 = cos_alpha * d2_thrust_d_altitude_d_eta_2
+    let d2_thrust_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
+    let d2_drag_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
+    let d2_path_force_d_altitude_d_eta_2 = i.cos_alpha * d2_thrust_d_altitude_d_eta_2
         - d2_drag_d_altitude_d_eta_2; // lb/ft^2.5/slug^0.5
     let d2_velocity_rate_d_altitude_d_eta_2 = d2_path_force_d_altitude_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_thrust_d_altitude_d_eta_3 = d_reference_force_d_altitude * p.c_t_eta_3; // lb/ft^2.5/slug^0.5
-    let d2_drag_d_altitude_d_eta_3 = d_reference_force_d_altitude * p.c_d_eta_3; // lb/ft^2.5/slug^0.5
-    let d2_path_force_d_altitude_d_eta_3 = cos_alpha * d2_thrust_d_altitude_d_eta_3
+    let d2_thrust_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_t_eta_3; // lb/ft^2.5/slug^0.5
+    let d2_drag_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_d_eta_3; // lb/ft^2.5/slug^0.5
+    let d2_path_force_d_altitude_d_eta_3 = i.cos_alpha * d2_thrust_d_altitude_d_eta_3
         - d2_drag_d_altitude_d_eta_3; // lb/ft^2.5/slug^0.5
     let d2_velocity_rate_d_altitude_d_eta_3 = d2_path_force_d_altitude_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -cos_alpha; // 1/rad^2
+    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
         + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
     let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
         + R::TWO * p.c_t_alpha_2
         + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_drag_d_alpha_d_alpha = reference_force * p.two_c_d_alpha_2; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * d_thrust_d_alpha * d_cos_alpha_d_alpha
-        + thrust * d2_cos_alpha_d_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_alpha
+    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_drag_d_alpha_d_alpha = i.reference_force * p.two_c_d_alpha_2; // lb/ft/rad^2
+    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to eta_1
-    let d2_path_force_d_alpha_d_eta_1 = d_cos_alpha_d_alpha * reference_force
+    let d2_path_force_d_alpha_d_eta_1 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
     let d2_velocity_rate_d_alpha_d_eta_1 = d2_path_force_d_alpha_d_eta_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_path_force_d_alpha_d_eta_2 = d_cos_alpha_d_alpha * reference_force
+    let d2_path_force_d_alpha_d_eta_2 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
     let d2_velocity_rate_d_alpha_d_eta_2 = d2_path_force_d_alpha_d_eta_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_path_force_d_alpha_d_eta_3 = d_cos_alpha_d_alpha * reference_force
+    let d2_path_force_d_alpha_d_eta_3 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
     let d2_velocity_rate_d_alpha_d_eta_3 = d2_path_force_d_alpha_d_eta_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
 
     // Derivatives with respect to velocity
-    let inv_velocity_3 = inv_velocity * inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * gravity * inv_velocity_3; // s/ft^2
-    let d2_gamma_rate_d_velocity_d_velocity = -cos_gamma
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
+    let d2_gamma_rate_d_velocity_d_velocity = -i.cos_gamma
         * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * d_radius_ratio_d_altitude + inv_velocity_2 * d_gravity_d_altitude); // 1/ft^2
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * d_density_d_altitude; // 1/ft^2
-    let d2_force_turn_d_velocity_d_altitude = normal_coefficient
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    let d2_force_turn_d_velocity_d_altitude = i.normal_coefficient
         * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
     let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
-        - cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
 
     // Derivatives with respect to gamma
-    let d2_gamma_rate_d_velocity_d_gamma = -d_gravity_turn_d_velocity
-        * d_cos_gamma_d_gamma; // 1/ft
+    let d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_alpha; // 1/ft
+    let d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha; // 1/ft
 
     // Derivatives with respect to eta_1
-    let d2_force_turn_d_velocity_d_eta_1 = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_eta_1; // rad/ft^1.5/slug^0.5
+    let d2_force_turn_d_velocity_d_eta_1 = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_eta_1; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_force_turn_d_velocity_d_eta_2 = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_eta_2; // rad/ft^1.5/slug^0.5
+    let d2_force_turn_d_velocity_d_eta_2 = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_eta_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_force_turn_d_velocity_d_eta_3 = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_eta_3; // rad/ft^1.5/slug^0.5
+    let d2_force_turn_d_velocity_d_eta_3 = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_eta_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
     let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * inv_velocity
+        * i.inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
     let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_force_turn_d_altitude_d_altitude = normal_coefficient
+    let d2_force_turn_d_altitude_d_altitude = i.normal_coefficient
         * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
-        - cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
+        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
-    let d2_gamma_rate_d_altitude_d_gamma = -d_gravity_turn_d_altitude
-        * d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * d_normal_coefficient_d_alpha; // 1/s/ft
+    let d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_alpha; // 1/s/ft
 
     // Derivatives with respect to eta_1
-    let d2_force_turn_d_altitude_d_eta_1 = d_turn_factor_d_altitude
-        * d_normal_coefficient_d_eta_1; // rad/s/ft^1.5/slug^0.5
+    let d2_force_turn_d_altitude_d_eta_1 = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_eta_1; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_force_turn_d_altitude_d_eta_2 = d_turn_factor_d_altitude
-        * d_normal_coefficient_d_eta_2; // rad/s/ft^1.5/slug^0.5
+    let d2_force_turn_d_altitude_d_eta_2 = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_eta_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_force_turn_d_altitude_d_eta_3 = d_turn_factor_d_altitude
-        * d_normal_coefficient_d_eta_3; // rad/s/ft^1.5/slug^0.5
+    let d2_force_turn_d_altitude_d_eta_3 = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_eta_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to gamma
-    let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
-        + sin_alpha * d2_c_t_d_alpha_d_alpha
-        + c_t * d_cos_alpha_d_alpha; // 1/rad^2
-    let d2_force_turn_d_alpha_d_alpha = turn_factor
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
+        + i.c_t * s.d_cos_alpha_d_alpha; // 1/rad^2
+    let d2_force_turn_d_alpha_d_alpha = i.turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to eta_1
-    let d2_normal_coefficient_d_alpha_d_eta_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
-    let d2_force_turn_d_alpha_d_eta_1 = turn_factor
-        * d2_normal_coefficient_d_alpha_d_eta_1; // 1/s/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_eta_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_normal_coefficient_d_alpha_d_eta_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
-    let d2_force_turn_d_alpha_d_eta_2 = turn_factor
-        * d2_normal_coefficient_d_alpha_d_eta_2; // 1/s/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_eta_2 = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_normal_coefficient_d_alpha_d_eta_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
-    let d2_force_turn_d_alpha_d_eta_3 = turn_factor
-        * d2_normal_coefficient_d_alpha_d_eta_3; // 1/s/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_eta_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to velocity
-    let d2_pitching_moment_d_velocity_d_velocity = p.c_bar_s * c_m * density
+    let d2_pitching_moment_d_velocity_d_velocity = p.c_bar_s * i.c_m * i.density
         + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
     let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
         * p.inv_i_yy; // rad/ft^2
 
     // Derivatives with respect to altitude
-    let d2_pitching_moment_d_velocity_d_altitude = p.c_bar * c_m
+    let d2_pitching_moment_d_velocity_d_altitude = p.c_bar * i.c_m
         * d2_reference_force_d_velocity_d_altitude
         + p.z_t * d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
     let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
         * p.inv_i_yy; // rad/s/ft^2
 
     // Derivatives with respect to alpha
-    let d2_pitching_moment_d_velocity_d_alpha = d_reference_force_d_velocity * p.c_bar
-        * d_c_m_d_alpha + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
+    let d2_pitching_moment_d_velocity_d_alpha = s.d_reference_force_d_velocity * p.c_bar
+        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
     let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
         * p.inv_i_yy; // 1/s/ft
 
     // Derivatives with respect to eta_1
-    let d2_pitching_moment_d_velocity_d_eta_1 = d_reference_force_d_velocity
+    let d2_pitching_moment_d_velocity_d_eta_1 = s.d_reference_force_d_velocity
         * p.c_bar_c_m_eta_1 + p.z_t * d2_thrust_d_velocity_d_eta_1; // lb*s/ft^1.5/slug^0.5
     let d2_pitch_acceleration_d_velocity_d_eta_1 = d2_pitching_moment_d_velocity_d_eta_1
         * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_pitching_moment_d_velocity_d_eta_2 = d_reference_force_d_velocity
+    let d2_pitching_moment_d_velocity_d_eta_2 = s.d_reference_force_d_velocity
         * p.c_bar_c_m_eta_2 + p.z_t * d2_thrust_d_velocity_d_eta_2; // lb*s/ft^1.5/slug^0.5
     let d2_pitch_acceleration_d_velocity_d_eta_2 = d2_pitching_moment_d_velocity_d_eta_2
         * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_pitching_moment_d_velocity_d_eta_3 = d_reference_force_d_velocity
+    let d2_pitching_moment_d_velocity_d_eta_3 = s.d_reference_force_d_velocity
         * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_velocity_d_eta_3; // lb*s/ft^1.5/slug^0.5
     let d2_pitch_acceleration_d_velocity_d_eta_3 = d2_pitching_moment_d_velocity_d_eta_3
         * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
-    let d2_pitching_moment_d_altitude_d_altitude = p.c_bar * c_m
+    let d2_pitching_moment_d_altitude_d_altitude = p.c_bar * i.c_m
         * d2_reference_force_d_altitude_d_altitude
         + p.z_t * d2_thrust_d_altitude_d_altitude; // lb/ft^2
     let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
         * p.inv_i_yy; // rad/s^2/ft^2
 
     // Derivatives with respect to alpha
-    let d2_pitching_moment_d_altitude_d_alpha = d_reference_force_d_altitude * p.c_bar
-        * d_c_m_d_alpha + p.z_t * d2_thrust_d_altitude_d_alpha; // lb/ft/rad
+    let d2_pitching_moment_d_altitude_d_alpha = s.d_reference_force_d_altitude * p.c_bar
+        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_altitude_d_alpha; // lb/ft/rad
     let d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha
         * p.inv_i_yy; // 1/s^2/ft
 
     // Derivatives with respect to eta_1
-    let d2_pitching_moment_d_altitude_d_eta_1 = d_reference_force_d_altitude
+    let d2_pitching_moment_d_altitude_d_eta_1 = s.d_reference_force_d_altitude
         * p.c_bar_c_m_eta_1 + p.z_t * d2_thrust_d_altitude_d_eta_1; // lb/ft^1.5/slug^0.5
     let d2_pitch_acceleration_d_altitude_d_eta_1 = d2_pitching_moment_d_altitude_d_eta_1
         * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_pitching_moment_d_altitude_d_eta_2 = d_reference_force_d_altitude
+    let d2_pitching_moment_d_altitude_d_eta_2 = s.d_reference_force_d_altitude
         * p.c_bar_c_m_eta_2 + p.z_t * d2_thrust_d_altitude_d_eta_2; // lb/ft^1.5/slug^0.5
     let d2_pitch_acceleration_d_altitude_d_eta_2 = d2_pitching_moment_d_altitude_d_eta_2
         * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_pitching_moment_d_altitude_d_eta_3 = d_reference_force_d_altitude
+    let d2_pitching_moment_d_altitude_d_eta_3 = s.d_reference_force_d_altitude
         * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_altitude_d_eta_3; // lb/ft^1.5/slug^0.5
     let d2_pitch_acceleration_d_altitude_d_eta_3 = d2_pitching_moment_d_altitude_d_eta_3
         * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to alpha
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.two_c_bar_c_m_alpha_2 * reference_force; // lb/rad^2
+        + p.two_c_bar_c_m_alpha_2 * i.reference_force; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_generalized_force_1_d_velocity_d_velocity = c_n_1 * p.s * density; // slug^0.5/ft^1.5
+    let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_1_d_velocity_d_altitude = c_n_1
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
 
     // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_1_d_altitude_d_altitude = c_n_1
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
 
     // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
 
     // Derivatives with respect to velocity
-    let d2_generalized_force_2_d_velocity_d_velocity = c_n_2 * p.s * density; // slug^0.5/ft^1.5
+    let d2_generalized_force_2_d_velocity_d_velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_2_d_velocity_d_altitude = c_n_2
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
 
     // Derivatives with respect to alpha
-    let d2_generalized_force_2_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_2_d_altitude_d_altitude = c_n_2
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
 
     // Derivatives with respect to alpha
-    let d2_generalized_force_2_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
 
     // Derivatives with respect to velocity
-    let d2_generalized_force_3_d_velocity_d_velocity = c_n_3 * p.s * density; // slug^0.5/ft^1.5
+    let d2_generalized_force_3_d_velocity_d_velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_3_d_velocity_d_altitude = c_n_3
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
 
     // Derivatives with respect to alpha
-    let d2_generalized_force_3_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_3_d_altitude_d_altitude = c_n_3
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
 
     // Derivatives with respect to alpha
-    let d2_generalized_force_3_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
 
     [
         d2_velocity_rate_d_velocity_d_velocity,
@@ -629,7 +486,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         d2_velocity_rate_d_velocity_d_eta_3,
         d2_velocity_rate_d_altitude_d_eta_3,
         d2_velocity_rate_d_alpha_d_eta_3,
-        cos_gamma,
+        i.cos_gamma,
         d2_altitude_rate_d_gamma_d_gamma,
         d2_gamma_rate_d_velocity_d_velocity,
         d2_gamma_rate_d_velocity_d_altitude,

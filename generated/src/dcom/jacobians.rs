@@ -2,7 +2,11 @@
 
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
-use super::{Input, InputJacobian, Prepared, State, StateJacobian};
+use super::{
+    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian,
+    drift_from, intermediates, slopes,
+};
+
 use ahv_core::{Pattern, Real, Vector};
 
 /// Where the entries of the compressed [`StateJacobian`] stand.
@@ -230,309 +234,159 @@ pub fn jacobians_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ([R; 48], [R; 18]) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    jacobians_values_from(x, u, p, &i, &s)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * x.eta_1
-        + p.c_l_eta_2 * x.eta_2
-        + p.c_l_eta_3 * x.eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * x.eta_1
-        + p.c_d_eta_2 * x.eta_2
-        + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * x.eta_1
-        + p.c_m_eta_2 * x.eta_2
-        + p.c_m_eta_3 * x.eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Curve fits, (3)
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
+/// [`jacobians_values`] from what is computed once.
+#[inline(always)]
+pub fn jacobians_values_from<R: Real>(
+    _x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> ([R; 48], [R; 18]) {
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_thrust_d_velocity = c_t * d_reference_force_d_velocity; // lb*s/ft^2
-    let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
-    let d_path_force_d_velocity = cos_alpha * d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
+    let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
+    let d_path_force_d_velocity = i.cos_alpha * s.d_thrust_d_velocity
+        - d_drag_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let d_force_turn_d_velocity = normal_coefficient * d_turn_factor_d_velocity; // rad/ft
+    let d_force_turn_d_velocity = i.normal_coefficient * s.d_turn_factor_d_velocity; // rad/ft
     let d_gamma_rate_d_velocity = d_force_turn_d_velocity
-        - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
-    let d_pitching_moment_d_velocity = p.c_bar * c_m * d_reference_force_d_velocity
-        + p.z_t * d_thrust_d_velocity; // lb*s/ft
+        - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
+    let d_pitching_moment_d_velocity = p.c_bar * i.c_m * s.d_reference_force_d_velocity
+        + p.z_t * s.d_thrust_d_velocity; // lb*s/ft
     let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
-    let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    let d_generalized_force_1_d_velocity = i.c_n_1 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    let d_generalized_force_2_d_velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    let d_generalized_force_3_d_velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
 
     // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_thrust_d_altitude = c_t * d_reference_force_d_altitude; // lb/ft^2
-    let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
-    let d_path_force_d_altitude = cos_alpha * d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
+    let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft^2
+    let d_path_force_d_altitude = i.cos_alpha * s.d_thrust_d_altitude
+        - d_drag_d_altitude; // lb/ft^2
     let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m
-        - sin_gamma * d_gravity_d_altitude; // 1/s^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_force_turn_d_altitude = normal_coefficient * d_turn_factor_d_altitude; // rad/s/ft
+        - i.sin_gamma * s.d_gravity_d_altitude; // 1/s^2
+    let d_force_turn_d_altitude = i.normal_coefficient * s.d_turn_factor_d_altitude; // rad/s/ft
     let d_gamma_rate_d_altitude = d_force_turn_d_altitude
-        - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
-    let d_pitching_moment_d_altitude = p.c_bar * c_m * d_reference_force_d_altitude
-        + p.z_t * d_thrust_d_altitude; // lb/ft
+        - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
+    let d_pitching_moment_d_altitude = p.c_bar * i.c_m * s.d_reference_force_d_altitude
+        + p.z_t * s.d_thrust_d_altitude; // lb/ft
     let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
-    let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-
-    // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + p.c_l_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
-        + p.z_t * d_thrust_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_1_d_altitude = i.c_n_1 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_altitude = i.c_n_2 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_altitude = i.c_n_3 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
 
     // Derivatives with respect to eta_1
-    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
-    let d_path_force_d_eta_1 = reference_force * (cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_1 = i.reference_force * (s.cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_coefficient_d_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_eta_1 = turn_factor * d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_1 = reference_force
+    let d_force_turn_d_eta_1 = i.turn_factor * s.d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_1 = i.reference_force
         * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
-    let d_path_force_d_eta_2 = reference_force * (cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_2 = i.reference_force * (s.cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_coefficient_d_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_eta_2 = turn_factor * d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_2 = reference_force
+    let d_force_turn_d_eta_2 = i.turn_factor * s.d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_2 = i.reference_force
         * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
-    let d_path_force_d_eta_3 = reference_force * (cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let d_path_force_d_eta_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_coefficient_d_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_eta_3 = turn_factor * d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_3 = reference_force
+    let d_force_turn_d_eta_3 = i.turn_factor * s.d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_3 = i.reference_force
         * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
-    let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
-    let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
-    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_normal_coefficient_d_phi = sin_alpha * c_t_phi;
-    let d_force_turn_d_phi = turn_factor * d_normal_coefficient_d_phi; // rad/s
+    let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
     // Derivatives with respect to delta_e
-    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
-        + p.c_d_delta_c; // 1/rad
-    let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
-        + p.c_d_delta_e
-        + slope_of_c_d_in_canard_deflection * p.canard_gain; // 1/rad
-    let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
-    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_delta_e = turn_factor * p.elevator_lift; // 1/s
-    let d_pitching_moment_d_delta_e = p.c_bar_times_d_c_m_d_delta_e * reference_force; // lb/rad
+    let d_pitching_moment_d_delta_e = p.c_bar_times_d_c_m_d_delta_e * i.reference_force; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
-    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to delta_c
-    let d_drag_d_delta_c = reference_force * slope_of_c_d_in_canard_deflection
-        * p.canard_command; // lb/ft/rad
-    let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_delta_c = turn_factor * p.c_l_delta_c_canard_command; // 1/s
     let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c_canard_command
-        * reference_force; // lb/rad
+        * i.reference_force; // lb/rad
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-    let d_generalized_force_1_d_delta_c = reference_force
+    let d_generalized_force_1_d_delta_c = i.reference_force
         * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force
+    let d_generalized_force_2_d_delta_c = i.reference_force
         * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force
+    let d_generalized_force_3_d_delta_c = i.reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
 
     // Result
     let state = [
         d_velocity_rate_d_velocity,
         d_velocity_rate_d_altitude,
-        d_velocity_rate_d_gamma,
-        d_velocity_rate_d_alpha,
+        s.d_velocity_rate_d_gamma,
+        s.d_velocity_rate_d_alpha,
         d_velocity_rate_d_eta_1,
         d_velocity_rate_d_eta_2,
         d_velocity_rate_d_eta_3,
-        sin_gamma,
-        d_altitude_rate_d_gamma,
+        i.sin_gamma,
+        s.d_altitude_rate_d_gamma,
         d_gamma_rate_d_velocity,
         d_gamma_rate_d_altitude,
-        d_gamma_rate_d_gamma,
-        d_force_turn_d_alpha,
+        s.d_gamma_rate_d_gamma,
+        s.d_force_turn_d_alpha,
         d_force_turn_d_eta_1,
         d_force_turn_d_eta_2,
         d_force_turn_d_eta_3,
         -d_gamma_rate_d_velocity,
         -d_gamma_rate_d_altitude,
-        -d_gamma_rate_d_gamma,
-        -d_force_turn_d_alpha,
+        -s.d_gamma_rate_d_gamma,
+        -s.d_force_turn_d_alpha,
         R::ONE,
         -d_force_turn_d_eta_1,
         -d_force_turn_d_eta_2,
         -d_force_turn_d_eta_3,
         d_pitch_acceleration_d_velocity,
         d_pitch_acceleration_d_altitude,
-        d_pitch_acceleration_d_alpha,
+        s.d_pitch_acceleration_d_alpha,
         d_pitch_acceleration_d_eta_1,
         d_pitch_acceleration_d_eta_2,
         d_pitch_acceleration_d_eta_3,
         R::ONE,
         d_generalized_force_1_d_velocity,
         d_generalized_force_1_d_altitude,
-        d_generalized_force_1_d_alpha,
+        s.d_generalized_force_1_d_alpha,
         p.minus_stiffness_1,
         p.minus_damping_1,
         R::ONE,
         d_generalized_force_2_d_velocity,
         d_generalized_force_2_d_altitude,
-        d_generalized_force_2_d_alpha,
+        s.d_generalized_force_2_d_alpha,
         p.minus_stiffness_2,
         p.minus_damping_2,
         R::ONE,
         d_generalized_force_3_d_velocity,
         d_generalized_force_3_d_altitude,
-        d_generalized_force_3_d_alpha,
+        s.d_generalized_force_3_d_alpha,
         p.minus_stiffness_3,
         p.minus_damping_3,
     ];
     let input = [
-        d_velocity_rate_d_phi,
-        d_velocity_rate_d_delta_e,
-        d_velocity_rate_d_delta_c,
-        d_force_turn_d_phi,
-        d_force_turn_d_delta_e,
-        d_force_turn_d_delta_c,
-        -d_force_turn_d_phi,
-        -d_force_turn_d_delta_e,
-        -d_force_turn_d_delta_c,
+        s.d_velocity_rate_d_phi,
+        s.d_velocity_rate_d_delta_e,
+        s.d_velocity_rate_d_delta_c,
+        s.d_force_turn_d_phi,
+        s.d_force_turn_d_delta_e,
+        s.d_force_turn_d_delta_c,
+        -s.d_force_turn_d_phi,
+        -s.d_force_turn_d_delta_e,
+        -s.d_force_turn_d_delta_c,
         d_pitch_acceleration_d_phi,
         d_pitch_acceleration_d_delta_e,
         d_pitch_acceleration_d_delta_c,
@@ -569,359 +423,10 @@ pub fn drift_and_jacobians_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (State<R>, [R; 48], [R; 18]) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * x.eta_1
-        + p.c_l_eta_2 * x.eta_2
-        + p.c_l_eta_3 * x.eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * x.eta_1
-        + p.c_d_eta_2 * x.eta_2
-        + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * x.eta_1
-        + p.c_m_eta_2 * x.eta_2
-        + p.c_m_eta_3 * x.eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Curve fits, (3)
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-    let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
-
-    // Flexible modes, (1)
-    let eta_acceleration_1 = generalized_force_1
-        - p.damping_1 * x.eta_dot_1
-        - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
-    let eta_acceleration_2 = generalized_force_2
-        - p.damping_2 * x.eta_dot_2
-        - p.stiffness_2 * x.eta_2; // (ft*slug)^0.5/s^2
-    let eta_acceleration_3 = generalized_force_3
-        - p.damping_3 * x.eta_dot_3
-        - p.stiffness_3 * x.eta_3; // (ft*slug)^0.5/s^2
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_thrust_d_velocity = c_t * d_reference_force_d_velocity; // lb*s/ft^2
-    let d_drag_d_velocity = c_d * d_reference_force_d_velocity; // lb*s/ft^2
-    let d_path_force_d_velocity = cos_alpha * d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
-    let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let d_force_turn_d_velocity = normal_coefficient * d_turn_factor_d_velocity; // rad/ft
-    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
-        - cos_gamma * d_gravity_turn_d_velocity; // rad/ft
-    let d_pitching_moment_d_velocity = p.c_bar * c_m * d_reference_force_d_velocity
-        + p.z_t * d_thrust_d_velocity; // lb*s/ft
-    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
-    let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-
-    // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_thrust_d_altitude = c_t * d_reference_force_d_altitude; // lb/ft^2
-    let d_drag_d_altitude = c_d * d_reference_force_d_altitude; // lb/ft^2
-    let d_path_force_d_altitude = cos_alpha * d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
-    let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m
-        - sin_gamma * d_gravity_d_altitude; // 1/s^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_force_turn_d_altitude = normal_coefficient * d_turn_factor_d_altitude; // rad/s/ft
-    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
-        - cos_gamma * d_gravity_turn_d_altitude; // rad/s/ft
-    let d_pitching_moment_d_altitude = p.c_bar * c_m * d_reference_force_d_altitude
-        + p.z_t * d_thrust_d_altitude; // lb/ft
-    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
-    let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-
-    // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + p.c_l_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
-        + p.z_t * d_thrust_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-
-    // Derivatives with respect to eta_1
-    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
-    let d_path_force_d_eta_1 = reference_force * (cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_coefficient_d_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_eta_1 = turn_factor * d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_1 = reference_force
-        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_2
-    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
-    let d_path_force_d_eta_2 = reference_force * (cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_coefficient_d_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_eta_2 = turn_factor * d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_2 = reference_force
-        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_3
-    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
-    let d_path_force_d_eta_3 = reference_force * (cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_normal_coefficient_d_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
-    let d_force_turn_d_eta_3 = turn_factor * d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_3 = reference_force
-        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to phi
-    let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
-    let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
-    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_normal_coefficient_d_phi = sin_alpha * c_t_phi;
-    let d_force_turn_d_phi = turn_factor * d_normal_coefficient_d_phi; // rad/s
-    let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
-    let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
-
-    // Derivatives with respect to delta_e
-    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
-        + p.c_d_delta_c; // 1/rad
-    let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
-        + p.c_d_delta_e
-        + slope_of_c_d_in_canard_deflection * p.canard_gain; // 1/rad
-    let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
-    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_delta_e = turn_factor * p.elevator_lift; // 1/s
-    let d_pitching_moment_d_delta_e = p.c_bar_times_d_c_m_d_delta_e * reference_force; // lb/rad
-    let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
-    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-
-    // Derivatives with respect to delta_c
-    let d_drag_d_delta_c = reference_force * slope_of_c_d_in_canard_deflection
-        * p.canard_command; // lb/ft/rad
-    let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_delta_c = turn_factor * p.c_l_delta_c_canard_command; // 1/s
-    let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c_canard_command
-        * reference_force; // lb/rad
-    let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-    let d_generalized_force_1_d_delta_c = reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-
-    // Result
-    let drift = State {
-        velocity: velocity_rate,
-        altitude: altitude_rate,
-        gamma: gamma_rate,
-        alpha: alpha_rate,
-        pitch_rate: pitch_acceleration,
-        eta_1: x.eta_dot_1,
-        eta_dot_1: eta_acceleration_1,
-        eta_2: x.eta_dot_2,
-        eta_dot_2: eta_acceleration_2,
-        eta_3: x.eta_dot_3,
-        eta_dot_3: eta_acceleration_3,
-    };
-    let state = [
-        d_velocity_rate_d_velocity,
-        d_velocity_rate_d_altitude,
-        d_velocity_rate_d_gamma,
-        d_velocity_rate_d_alpha,
-        d_velocity_rate_d_eta_1,
-        d_velocity_rate_d_eta_2,
-        d_velocity_rate_d_eta_3,
-        sin_gamma,
-        d_altitude_rate_d_gamma,
-        d_gamma_rate_d_velocity,
-        d_gamma_rate_d_altitude,
-        d_gamma_rate_d_gamma,
-        d_force_turn_d_alpha,
-        d_force_turn_d_eta_1,
-        d_force_turn_d_eta_2,
-        d_force_turn_d_eta_3,
-        -d_gamma_rate_d_velocity,
-        -d_gamma_rate_d_altitude,
-        -d_gamma_rate_d_gamma,
-        -d_force_turn_d_alpha,
-        R::ONE,
-        -d_force_turn_d_eta_1,
-        -d_force_turn_d_eta_2,
-        -d_force_turn_d_eta_3,
-        d_pitch_acceleration_d_velocity,
-        d_pitch_acceleration_d_altitude,
-        d_pitch_acceleration_d_alpha,
-        d_pitch_acceleration_d_eta_1,
-        d_pitch_acceleration_d_eta_2,
-        d_pitch_acceleration_d_eta_3,
-        R::ONE,
-        d_generalized_force_1_d_velocity,
-        d_generalized_force_1_d_altitude,
-        d_generalized_force_1_d_alpha,
-        p.minus_stiffness_1,
-        p.minus_damping_1,
-        R::ONE,
-        d_generalized_force_2_d_velocity,
-        d_generalized_force_2_d_altitude,
-        d_generalized_force_2_d_alpha,
-        p.minus_stiffness_2,
-        p.minus_damping_2,
-        R::ONE,
-        d_generalized_force_3_d_velocity,
-        d_generalized_force_3_d_altitude,
-        d_generalized_force_3_d_alpha,
-        p.minus_stiffness_3,
-        p.minus_damping_3,
-    ];
-    let input = [
-        d_velocity_rate_d_phi,
-        d_velocity_rate_d_delta_e,
-        d_velocity_rate_d_delta_c,
-        d_force_turn_d_phi,
-        d_force_turn_d_delta_e,
-        d_force_turn_d_delta_c,
-        -d_force_turn_d_phi,
-        -d_force_turn_d_delta_e,
-        -d_force_turn_d_delta_c,
-        d_pitch_acceleration_d_phi,
-        d_pitch_acceleration_d_delta_e,
-        d_pitch_acceleration_d_delta_c,
-        d_generalized_force_1_d_delta_e,
-        d_generalized_force_1_d_delta_c,
-        d_generalized_force_2_d_delta_e,
-        d_generalized_force_2_d_delta_c,
-        d_generalized_force_3_d_delta_e,
-        d_generalized_force_3_d_delta_c,
-    ];
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let drift = drift_from(x, u, p, &i);
+    let (state, input) = jacobians_values_from(x, u, p, &i, &s);
     (drift, state, input)
 }
 

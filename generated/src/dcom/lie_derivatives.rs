@@ -3,7 +3,7 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 #![allow(non_snake_case)]
 
-use super::{Input, Prepared, State};
+use super::{Input, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
 /// Lie derivative of the velocity along the drift at the held input, eq. (1). Unit: ft/s/s.
@@ -11,62 +11,8 @@ use ahv_core::Real;
 /// 67 operations: 24 additions, 39 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
-    let sin_gamma = x.gamma.sin();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * x.eta_1
-        + p.c_d_eta_2 * x.eta_2
-        + p.c_d_eta_3 * x.eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-
-    path_force * p.inv_m - gravity * sin_gamma
+    let i = intermediates(x, u, p);
+    i.velocity_rate
 }
 
 /// Lie derivatives of the velocity along the input columns: its relative degree is 1, eq. (1).
@@ -74,51 +20,12 @@ pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 34 operations: 8 additions, 24 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-
-    // Derivatives with respect to phi
-    let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
-    let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
-    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-
-    // Derivatives with respect to delta_e
-    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
-        + p.c_d_delta_c; // 1/rad
-    let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
-        + p.c_d_delta_e
-        + slope_of_c_d_in_canard_deflection * p.canard_gain; // 1/rad
-    let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
-    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-
-    // Derivatives with respect to delta_c
-    let d_drag_d_delta_c = reference_force * slope_of_c_d_in_canard_deflection
-        * p.canard_command; // lb/ft/rad
-    let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
-
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
     Input {
-        phi: d_velocity_rate_d_phi,
-        delta_e: d_velocity_rate_d_delta_e,
-        delta_c: d_velocity_rate_d_delta_c,
+        phi: s.d_velocity_rate_d_phi,
+        delta_e: s.d_velocity_rate_d_delta_e,
+        delta_c: s.d_velocity_rate_d_delta_c,
     }
 }
 
@@ -127,97 +34,21 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
 /// 58 operations: 21 additions, 32 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-    let cos_gamma = x.gamma.cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * x.eta_1
-        + p.c_l_eta_2 * x.eta_2
-        + p.c_l_eta_3 * x.eta_3;
-
-    // Forces and moment, (1)
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Motion, (1)
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-
-    force_turn - gravity_turn * cos_gamma
+    let i = intermediates(x, u, p);
+    i.gamma_rate
 }
 
 /// Lie derivatives of the gamma along the input columns: its relative degree is 1, eq. (1).
 ///
 /// 19 operations: 4 additions, 13 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-
-    // Derivatives with respect to phi
-    let d_normal_coefficient_d_phi = sin_alpha * c_t_phi;
-    let d_force_turn_d_phi = turn_factor * d_normal_coefficient_d_phi; // rad/s
-
-    // Derivatives with respect to delta_e
-    let d_force_turn_d_delta_e = turn_factor * p.elevator_lift; // 1/s
-
-    // Derivatives with respect to delta_c
-    let d_force_turn_d_delta_c = turn_factor * p.c_l_delta_c_canard_command; // 1/s
-
+pub fn L_g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
     Input {
-        phi: d_force_turn_d_phi,
-        delta_e: d_force_turn_d_delta_e,
-        delta_c: d_force_turn_d_delta_c,
+        phi: s.d_force_turn_d_phi,
+        delta_e: s.d_force_turn_d_delta_e,
+        delta_c: s.d_force_turn_d_delta_c,
     }
 }
 
@@ -225,12 +56,9 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
 ///
 /// 2 operations: 1 multiplication, 1 sin_cos.
 #[inline(always)]
-pub fn L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
-    // Angles, (1)
-    let sin_gamma = x.gamma.sin();
-
-    // Motion, (1)
-    x.velocity * sin_gamma
+pub fn L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    let i = intermediates(x, u, p);
+    i.altitude_rate
 }
 
 /// Second Lie derivative of the altitude along the drift at the held input, eq. (1). Unit: ft/s^2.
@@ -238,83 +66,11 @@ pub fn L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 /// 95 operations: 34 additions, 56 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * x.eta_1
-        + p.c_l_eta_2 * x.eta_2
-        + p.c_l_eta_3 * x.eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * x.eta_1
-        + p.c_d_eta_2 * x.eta_2
-        + p.c_d_eta_3 * x.eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-
-    // Derivatives with respect to gamma
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Lie derivatives, (1)
-    sin_gamma * velocity_rate + d_altitude_rate_d_gamma * gamma_rate
+    i.sin_gamma * i.velocity_rate + s.d_altitude_rate_d_gamma * i.gamma_rate
 }
 
 /// Lie derivatives of L_f h along the input columns: the relative degree of the altitude is 2, eq. (1).
@@ -322,69 +78,20 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 51 operations: 11 additions, 37 multiplications, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-
-    // Derivatives with respect to gamma
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to phi
-    let d_thrust_d_phi = reference_force * c_t_phi; // lb/ft
-    let d_path_force_d_phi = cos_alpha * d_thrust_d_phi; // lb/ft
-    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_normal_coefficient_d_phi = sin_alpha * c_t_phi;
-    let d_force_turn_d_phi = turn_factor * d_normal_coefficient_d_phi; // rad/s
+    let d_altitude_acceleration_d_phi = i.sin_gamma * s.d_velocity_rate_d_phi
+        + s.d_altitude_rate_d_gamma * s.d_force_turn_d_phi; // ft/s^2
 
     // Derivatives with respect to delta_e
-    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
-        + p.c_d_delta_c; // 1/rad
-    let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
-        + p.c_d_delta_e
-        + slope_of_c_d_in_canard_deflection * p.canard_gain; // 1/rad
-    let d_drag_d_delta_e = reference_force * d_c_d_d_delta_e; // lb/ft/rad
-    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_delta_e = turn_factor * p.elevator_lift; // 1/s
+    let d_altitude_acceleration_d_delta_e = i.sin_gamma * s.d_velocity_rate_d_delta_e
+        + s.d_altitude_rate_d_gamma * s.d_force_turn_d_delta_e; // ft/s^2/rad
 
     // Derivatives with respect to delta_c
-    let d_drag_d_delta_c = reference_force * slope_of_c_d_in_canard_deflection
-        * p.canard_command; // lb/ft/rad
-    let d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_delta_c = turn_factor * p.c_l_delta_c_canard_command; // 1/s
-
-    // Derivatives with respect to phi
-    let d_altitude_acceleration_d_phi = sin_gamma * d_velocity_rate_d_phi
-        + d_altitude_rate_d_gamma * d_force_turn_d_phi; // ft/s^2
-
-    // Derivatives with respect to delta_e
-    let d_altitude_acceleration_d_delta_e = sin_gamma * d_velocity_rate_d_delta_e
-        + d_altitude_rate_d_gamma * d_force_turn_d_delta_e; // ft/s^2/rad
-
-    // Derivatives with respect to delta_c
-    let d_altitude_acceleration_d_delta_c = sin_gamma * d_velocity_rate_d_delta_c
-        + d_altitude_rate_d_gamma * d_force_turn_d_delta_c; // ft/s^2/rad
+    let d_altitude_acceleration_d_delta_c = i.sin_gamma * s.d_velocity_rate_d_delta_c
+        + s.d_altitude_rate_d_gamma * s.d_force_turn_d_delta_c; // ft/s^2/rad
 
     Input {
         phi: d_altitude_acceleration_d_phi,

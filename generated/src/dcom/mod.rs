@@ -17,6 +17,7 @@ mod parameter_jacobian;
 mod parameters;
 mod prepared;
 mod provenance;
+mod stages;
 mod table;
 
 pub use diffusion::*;
@@ -28,6 +29,7 @@ pub use lie_derivatives::*;
 pub use noise_derivatives::*;
 pub use outputs::*;
 pub use parameter_jacobian::*;
+pub use stages::*;
 pub use choices::*;
 pub use nominal::*;
 pub use parameters::{Parameters, Validity};

@@ -2,7 +2,7 @@
 
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
-use super::{Input, Noise, NoiseDerivatives, Prepared, State};
+use super::{Input, Noise, NoiseDerivatives, Prepared, State, intermediates, slopes};
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`NoiseDerivatives`] stand.
@@ -52,241 +52,152 @@ pub fn noise_derivatives_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 29] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_thrust_d_velocity = c_t * d_reference_force_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_thrust_d_altitude = c_t * d_reference_force_d_altitude; // lb/ft^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
+    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + p.c_l_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -cos_alpha; // 1/rad^2
+    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
         + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
     let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
         + R::TWO * p.c_t_alpha_2
         + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_drag_d_alpha_d_alpha = reference_force * p.two_c_d_alpha_2; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * d_thrust_d_alpha * d_cos_alpha_d_alpha
-        + thrust * d2_cos_alpha_d_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_alpha
+    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_drag_d_alpha_d_alpha = i.reference_force * p.two_c_d_alpha_2; // lb/ft/rad^2
+    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
-        + sin_alpha * d2_c_t_d_alpha_d_alpha
-        + c_t * d_cos_alpha_d_alpha; // 1/rad^2
-    let d2_force_turn_d_alpha_d_alpha = turn_factor
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
+        + i.c_t * s.d_cos_alpha_d_alpha; // 1/rad^2
+    let d2_force_turn_d_alpha_d_alpha = i.turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.two_c_bar_c_m_alpha_2 * reference_force; // lb/rad^2
+        + p.two_c_bar_c_m_alpha_2 * i.reference_force; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
-    let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
 
     // Derivatives with respect to altitude
-    let d2_velocity_rate_d_gamma_d_altitude = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+    let d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_thrust_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_t_d_alpha; // lb*s/ft^2/rad
-    let d2_drag_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_d_d_alpha; // lb*s/ft^2/rad
-    let d2_path_force_d_alpha_d_velocity = d_thrust_d_velocity * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_velocity
+    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha; // lb*s/ft^2/rad
+    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
+    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
         - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
     let d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to altitude
-    let d2_thrust_d_alpha_d_altitude = d_reference_force_d_altitude * d_c_t_d_alpha; // lb/ft^2/rad
-    let d2_drag_d_alpha_d_altitude = d_reference_force_d_altitude * d_c_d_d_alpha; // lb/ft^2/rad
-    let d2_path_force_d_alpha_d_altitude = d_thrust_d_altitude * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_altitude
+    let d2_thrust_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_t_d_alpha; // lb/ft^2/rad
+    let d2_drag_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
+    let d2_path_force_d_alpha_d_altitude = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_altitude
         - d2_drag_d_alpha_d_altitude; // lb/ft^2/rad
     let d2_velocity_rate_d_alpha_d_altitude = d2_path_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_gamma_rate_d_gamma_d_velocity = -d_gravity_turn_d_velocity
-        * d_cos_gamma_d_gamma; // 1/ft
+    let d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to altitude
-    let d2_gamma_rate_d_gamma_d_altitude = -d_gravity_turn_d_altitude
-        * d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_gamma_rate_d_gamma_d_altitude = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to velocity
-    let d2_force_turn_d_alpha_d_velocity = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_alpha; // 1/ft
+    let d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha; // 1/ft
 
     // Derivatives with respect to altitude
-    let d2_force_turn_d_alpha_d_altitude = d_turn_factor_d_altitude
-        * d_normal_coefficient_d_alpha; // 1/s/ft
+    let d2_force_turn_d_alpha_d_altitude = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_alpha; // 1/s/ft
 
     // Derivatives with respect to velocity
-    let d2_pitching_moment_d_alpha_d_velocity = d_reference_force_d_velocity * p.c_bar
-        * d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
+    let d2_pitching_moment_d_alpha_d_velocity = s.d_reference_force_d_velocity * p.c_bar
+        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
     let d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
         * p.inv_i_yy; // 1/s/ft
 
     // Derivatives with respect to altitude
-    let d2_pitching_moment_d_alpha_d_altitude = d_reference_force_d_altitude * p.c_bar
-        * d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
+    let d2_pitching_moment_d_alpha_d_altitude = s.d_reference_force_d_altitude * p.c_bar
+        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
     let d2_pitch_acceleration_d_alpha_d_altitude = d2_pitching_moment_d_alpha_d_altitude
         * p.inv_i_yy; // 1/s^2/ft
 
     // Derivatives with respect to velocity
-    let d2_generalized_force_1_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_1_d_alpha_d_altitude = d_reference_force_d_altitude
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_1_d_alpha_d_altitude = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_generalized_force_2_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_2_d_alpha_d_altitude = d_reference_force_d_altitude
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_2_d_alpha_d_altitude = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_generalized_force_3_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_3_d_alpha_d_altitude = d_reference_force_d_altitude
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let noise_derivatives_term_1 = d2_gamma_rate_d_gamma_d_velocity * d_velocity_rate_d_gamma
-        + d2_gamma_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
-        + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma;
+    let d2_generalized_force_3_d_alpha_d_altitude = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let noise_derivatives_term_1 = d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
+        + d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+        + d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
     let noise_derivatives_term_2 = d2_force_turn_d_alpha_d_velocity
-        * d_velocity_rate_d_gamma;
+        * s.d_velocity_rate_d_gamma;
     let noise_derivatives_term_3 = d2_force_turn_d_alpha_d_altitude
-        * d_altitude_rate_d_gamma;
+        * s.d_altitude_rate_d_gamma;
     let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = d2_force_turn_d_alpha_d_alpha
-        * d_gamma_rate_d_gamma;
+        * s.d_gamma_rate_d_gamma;
     let noise_derivatives_term_4 = d2_gamma_rate_d_gamma_d_velocity
-        * d_velocity_rate_d_alpha + d2_gamma_rate_d_gamma_d_gamma * d_force_turn_d_alpha;
+        * s.d_velocity_rate_d_alpha
+        + d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
     let noise_derivatives_term_5 = d2_force_turn_d_alpha_d_velocity
-        * d_velocity_rate_d_alpha;
+        * s.d_velocity_rate_d_alpha;
     let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
-        * d_force_turn_d_alpha;
+        * s.d_force_turn_d_alpha;
 
     [
         p.w_gamma_2
-            * (d2_velocity_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
-                + d2_velocity_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
+            * (d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+                + d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         p.w_alpha_w_gamma
-            * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_gamma
-                + d2_velocity_rate_d_alpha_d_altitude * d_altitude_rate_d_gamma
-                - d2_velocity_rate_d_alpha_d_alpha * d_gamma_rate_d_gamma),
-        p.w_alpha_w_gamma * d2_velocity_rate_d_gamma_d_gamma * d_force_turn_d_alpha,
+            * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + d2_velocity_rate_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+        p.w_alpha_w_gamma * d2_velocity_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha,
         p.w_alpha_2
-            * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_velocity_rate_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_velocity_rate_d_alpha_d_alpha,
         p.w_gamma_2
-            * (cos_gamma * d_velocity_rate_d_gamma
-                + d2_altitude_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
+            * (i.cos_gamma * s.d_velocity_rate_d_gamma
+                + d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         p.w_alpha_w_gamma
-            * (cos_gamma * d_velocity_rate_d_alpha
-                + d2_altitude_rate_d_gamma_d_gamma * d_force_turn_d_alpha),
+            * (i.cos_gamma * s.d_velocity_rate_d_alpha
+                + d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
         p.w_gamma_2 * noise_derivatives_term_1,
         p.w_alpha_w_gamma
             * (noise_derivatives_term_2 + noise_derivatives_term_3
@@ -306,36 +217,36 @@ pub fn noise_derivatives_values<R: Real>(
                 - noise_derivatives_term_5),
         -p.w_alpha_w_q * d2_force_turn_d_alpha_d_alpha,
         p.w_alpha_w_gamma
-            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_gamma
-                + d2_pitch_acceleration_d_alpha_d_altitude * d_altitude_rate_d_gamma
-                - d2_pitch_acceleration_d_alpha_d_alpha * d_gamma_rate_d_gamma),
+            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + d2_pitch_acceleration_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_pitch_acceleration_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_pitch_acceleration_d_alpha_d_alpha,
         p.w_alpha_w_gamma
-            * (d2_generalized_force_1_d_alpha_d_velocity * d_velocity_rate_d_gamma
-                + d2_generalized_force_1_d_alpha_d_altitude * d_altitude_rate_d_gamma
-                - d2_generalized_force_1_d_alpha_d_alpha * d_gamma_rate_d_gamma),
+            * (d2_generalized_force_1_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + d2_generalized_force_1_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - d2_generalized_force_1_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_generalized_force_1_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_generalized_force_1_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_generalized_force_1_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_generalized_force_1_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_generalized_force_1_d_alpha_d_alpha,
         p.w_alpha_w_gamma
-            * (d2_generalized_force_2_d_alpha_d_velocity * d_velocity_rate_d_gamma
-                + d2_generalized_force_2_d_alpha_d_altitude * d_altitude_rate_d_gamma
-                - d2_generalized_force_2_d_alpha_d_alpha * d_gamma_rate_d_gamma),
+            * (d2_generalized_force_2_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + d2_generalized_force_2_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - d2_generalized_force_2_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_generalized_force_2_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_generalized_force_2_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_generalized_force_2_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_generalized_force_2_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_generalized_force_2_d_alpha_d_alpha,
         p.w_alpha_w_gamma
-            * (d2_generalized_force_3_d_alpha_d_velocity * d_velocity_rate_d_gamma
-                + d2_generalized_force_3_d_alpha_d_altitude * d_altitude_rate_d_gamma
-                - d2_generalized_force_3_d_alpha_d_alpha * d_gamma_rate_d_gamma),
+            * (d2_generalized_force_3_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + d2_generalized_force_3_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - d2_generalized_force_3_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_generalized_force_3_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_generalized_force_3_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_generalized_force_3_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_generalized_force_3_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_generalized_force_3_d_alpha_d_alpha,
     ]
 }
@@ -355,179 +266,95 @@ pub fn noise_derivatives<R: Real>(
 /// 192 operations: 55 additions, 132 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_thrust_d_velocity = c_t * d_reference_force_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
+    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + p.c_l_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -cos_alpha; // 1/rad^2
+    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
         + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
     let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
         + R::TWO * p.c_t_alpha_2
         + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_drag_d_alpha_d_alpha = reference_force * p.two_c_d_alpha_2; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * d_thrust_d_alpha * d_cos_alpha_d_alpha
-        + thrust * d2_cos_alpha_d_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_alpha
+    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_drag_d_alpha_d_alpha = i.reference_force * p.two_c_d_alpha_2; // lb/ft/rad^2
+    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
-        + sin_alpha * d2_c_t_d_alpha_d_alpha
-        + c_t * d_cos_alpha_d_alpha; // 1/rad^2
-    let d2_force_turn_d_alpha_d_alpha = turn_factor
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
+        + i.c_t * s.d_cos_alpha_d_alpha; // 1/rad^2
+    let d2_force_turn_d_alpha_d_alpha = i.turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.two_c_bar_c_m_alpha_2 * reference_force; // lb/rad^2
+        + p.two_c_bar_c_m_alpha_2 * i.reference_force; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
-    let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
 
     // Derivatives with respect to altitude
-    let d2_velocity_rate_d_gamma_d_altitude = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+    let d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_thrust_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_t_d_alpha; // lb*s/ft^2/rad
-    let d2_drag_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_d_d_alpha; // lb*s/ft^2/rad
-    let d2_path_force_d_alpha_d_velocity = d_thrust_d_velocity * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_velocity
+    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha; // lb*s/ft^2/rad
+    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
+    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
         - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
     let d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
-    let d2_gamma_rate_d_gamma_d_velocity = -d_gravity_turn_d_velocity
-        * d_cos_gamma_d_gamma; // 1/ft
+    let d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to altitude
-    let d2_gamma_rate_d_gamma_d_altitude = -d_gravity_turn_d_altitude
-        * d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_gamma_rate_d_gamma_d_altitude = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to velocity
-    let d2_force_turn_d_alpha_d_velocity = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_alpha; // 1/ft
-    let d2_pitching_moment_d_alpha_d_velocity = d_reference_force_d_velocity * p.c_bar
-        * d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
+    let d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha; // 1/ft
+    let d2_pitching_moment_d_alpha_d_velocity = s.d_reference_force_d_velocity * p.c_bar
+        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
     let d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
         * p.inv_i_yy; // 1/s/ft
-    let d2_generalized_force_1_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_2_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_3_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
     let ito_correction_term_1 = p.half_w_gamma_2
-        * (d2_gamma_rate_d_gamma_d_velocity * d_velocity_rate_d_gamma
-            + d2_gamma_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
-            + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma);
+        * (d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
+            + d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+            + d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
     let ito_correction_term_2 = d2_force_turn_d_alpha_d_velocity
-        * d_velocity_rate_d_alpha;
+        * s.d_velocity_rate_d_alpha;
     let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
-        * d_force_turn_d_alpha;
+        * s.d_force_turn_d_alpha;
 
     State {
         velocity: p.half_w_gamma_2
-            * (d2_velocity_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
-                + d2_velocity_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma)
+            * (d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+                + d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma)
             + p.half_w_alpha_2
-                * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                    - d2_velocity_rate_d_alpha_d_alpha * d_force_turn_d_alpha),
+                * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                    - d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         altitude: p.half_w_gamma_2
-            * (cos_gamma * d_velocity_rate_d_gamma
-                + d2_altitude_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
+            * (i.cos_gamma * s.d_velocity_rate_d_gamma
+                + d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         gamma: ito_correction_term_1
             + p.half_w_alpha_2
                 * (ito_correction_term_2
@@ -536,19 +363,19 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
             * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
                 - ito_correction_term_2) - ito_correction_term_1,
         pitch_rate: p.half_w_alpha_2
-            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_pitch_acceleration_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_1: R::ZERO,
         eta_dot_1: p.half_w_alpha_2
-            * (d2_generalized_force_1_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_generalized_force_1_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_generalized_force_1_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_generalized_force_1_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_2: R::ZERO,
         eta_dot_2: p.half_w_alpha_2
-            * (d2_generalized_force_2_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_generalized_force_2_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_generalized_force_2_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_generalized_force_2_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_3: R::ZERO,
         eta_dot_3: p.half_w_alpha_2
-            * (d2_generalized_force_3_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_generalized_force_3_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_generalized_force_3_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_generalized_force_3_d_alpha_d_alpha * s.d_force_turn_d_alpha),
     }
 }

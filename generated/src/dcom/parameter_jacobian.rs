@@ -2,7 +2,10 @@
 
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
-use super::{Input, ParameterJacobian, Parameters, Prepared, State};
+use super::{
+    Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes,
+};
+
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
@@ -187,155 +190,62 @@ pub fn parameter_jacobian_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 164] {
-    // Air, (2)
-    let h_0_minus_altitude = p.h_0 - x.altitude;
-    let density_ratio = (h_0_minus_altitude * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * x.eta_1
-        + p.c_t_eta_2 * x.eta_2
-        + p.c_t_eta_3 * x.eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * x.eta_1
-        + p.c_l_eta_2 * x.eta_2
-        + p.c_l_eta_3 * x.eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * x.eta_1
-        + p.c_d_eta_2 * x.eta_2
-        + p.c_d_eta_3 * x.eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * x.eta_1
-        + p.c_m_eta_2 * x.eta_2
-        + p.c_m_eta_3 * x.eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Curve fits, (3)
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-
-    // Derivatives with respect to delta_e
-    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
-        + p.c_d_delta_c; // 1/rad
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to parameters
-    let d_path_force_d_s = dynamic_pressure * (c_t * cos_alpha - c_d); // lb/ft^2
+    let d_path_force_d_s = i.dynamic_pressure * (i.c_t * i.cos_alpha - i.c_d); // lb/ft^2
     let d_velocity_rate_d_s = d_path_force_d_s * p.inv_m; // 1/s^2
-    let d_pitching_moment_d_s = dynamic_pressure * (p.c_bar * c_m + p.z_t * c_t); // lb/ft
+    let d_pitching_moment_d_s = i.dynamic_pressure * (p.c_bar * i.c_m + p.z_t * i.c_t); // lb/ft
     let d_pitch_acceleration_d_s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
-    let d_path_force_d_rho_0 = p.s * density_ratio
-        * (R::HALF * cos_alpha * c_t * velocity_2 - R::HALF * c_d * velocity_2); // lb*ft^2/slug
+    let d_path_force_d_rho_0 = p.s * i.density_ratio
+        * (R::HALF * i.cos_alpha * i.c_t * i.velocity_2
+            - R::HALF * i.c_d * i.velocity_2); // lb*ft^2/slug
     let d_velocity_rate_d_rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
-    let d_pitching_moment_d_rho_0 = p.s * density_ratio
-        * (p.half_c_bar * c_m * velocity_2 + p.half_z_t * c_t * velocity_2); // lb*ft^3/slug
+    let d_pitching_moment_d_rho_0 = p.s * i.density_ratio
+        * (p.half_c_bar * i.c_m * i.velocity_2 + p.half_z_t * i.c_t * i.velocity_2); // lb*ft^3/slug
     let d_pitch_acceleration_d_rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
-    let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
+    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * velocity_2 * d_density_d_h_0; // lb/ft^3
+    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_thrust_d_h_0 = c_t * d_reference_force_d_h_0; // lb/ft^2
-    let d_drag_d_h_0 = c_d * d_reference_force_d_h_0; // lb/ft^2
-    let d_path_force_d_h_0 = cos_alpha * d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
+    let d_thrust_d_h_0 = i.c_t * d_reference_force_d_h_0; // lb/ft^2
+    let d_drag_d_h_0 = i.c_d * d_reference_force_d_h_0; // lb/ft^2
+    let d_path_force_d_h_0 = i.cos_alpha * d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
     let d_velocity_rate_d_h_0 = d_path_force_d_h_0 * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_force_turn_d_h_0 = normal_coefficient * d_turn_factor_d_h_0; // rad/s/ft
-    let d_pitching_moment_d_h_0 = p.c_bar * c_m * d_reference_force_d_h_0
+    let d_force_turn_d_h_0 = i.normal_coefficient * d_turn_factor_d_h_0; // rad/s/ft
+    let d_pitching_moment_d_h_0 = p.c_bar * i.c_m * d_reference_force_d_h_0
         + p.z_t * d_thrust_d_h_0; // lb/ft
     let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
-    let d_generalized_force_1_d_h_0 = c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_0 = c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_0 = c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_density_ratio_d_h_s = -density_ratio * h_0_minus_altitude * p.inv_h_s_2; // 1/ft
+    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * velocity_2 * d_density_d_h_s; // lb/ft^3
+    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
     let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_thrust_d_h_s = c_t * d_reference_force_d_h_s; // lb/ft^2
-    let d_drag_d_h_s = c_d * d_reference_force_d_h_s; // lb/ft^2
-    let d_path_force_d_h_s = cos_alpha * d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
+    let d_thrust_d_h_s = i.c_t * d_reference_force_d_h_s; // lb/ft^2
+    let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft^2
+    let d_path_force_d_h_s = i.cos_alpha * d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
     let d_velocity_rate_d_h_s = d_path_force_d_h_s * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_force_turn_d_h_s = normal_coefficient * d_turn_factor_d_h_s; // rad/s/ft
-    let d_pitching_moment_d_h_s = p.c_bar * c_m * d_reference_force_d_h_s
+    let d_force_turn_d_h_s = i.normal_coefficient * d_turn_factor_d_h_s; // rad/s/ft
+    let d_pitching_moment_d_h_s = p.c_bar * i.c_m * d_reference_force_d_h_s
         + p.z_t * d_thrust_d_h_s; // lb/ft
     let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
-    let d_generalized_force_1_d_h_s = c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_s = c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_s = c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
-    let inv_velocity = x.velocity.recip();
+    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
-        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
+        * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio
+        * (p.earth_curvature * i.radius_ratio
             * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_eta_acceleration_1_d_omega_1 = -(x.eta_dot_1 * p.two_zeta_1
         + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
     let d_eta_acceleration_2_d_omega_2 = -(x.eta_dot_2 * p.two_zeta_2
@@ -343,195 +253,192 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_eta_acceleration_3_d_omega_3 = -(x.eta_dot_3 * p.two_zeta_3
         + x.eta_3 * p.two_omega_3); // ft^0.5*slug^0.5/s/rad
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio
+        * (i.radius_ratio
             * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_c_l_d_c_l_delta_e = u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
-    let d_force_turn_d_c_l_delta_e = turn_factor * d_c_l_d_c_l_delta_e; // rad^2/s
-    let density_velocity = density * x.velocity;
-    let s_density_velocity = p.s * density_velocity;
-    let pitching_moment_over_i_yy = pitching_moment * p.inv_i_yy;
-    let reference_force_alpha_2 = reference_force * alpha_2;
-    let reference_force_alpha = reference_force * x.alpha;
-    let reference_force_delta_e = reference_force * u.delta_e;
-    let reference_force_canard_deflection = reference_force * canard_deflection;
+    let d_force_turn_d_c_l_delta_e = i.turn_factor * d_c_l_d_c_l_delta_e; // rad^2/s
+    let reference_force_alpha_2 = i.reference_force * i.alpha_2;
+    let reference_force_alpha = i.reference_force * x.alpha;
+    let reference_force_delta_e = i.reference_force * u.delta_e;
+    let reference_force_canard_deflection = i.reference_force * i.canard_deflection;
 
     [
-        -path_force * p.inv_m_2,
+        -i.path_force * p.inv_m_2,
         d_velocity_rate_d_s,
         d_velocity_rate_d_rho_0,
         d_velocity_rate_d_h_0,
         d_velocity_rate_d_h_s,
-        -sin_gamma * radius_ratio_2,
-        sin_gamma * p.two_g_earth_curvature_over_r_e * radius_ratio
+        -i.sin_gamma * i.radius_ratio_2,
+        i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
             * slope_of_radius_ratio_in_earth_curvature,
-        -reference_force * slope_of_c_d_in_canard_deflection * u.delta_c * p.inv_m,
-        reference_force * slope_of_c_d_in_canard_deflection * u.delta_e
+        -i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_c * p.inv_m,
+        i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
             * p.c_l_delta_e_over_c_l_delta_c_m,
-        sin_gamma * p.minus_two_g_over_r_e * radius_ratio
+        i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
             * slope_of_radius_ratio_in_earth_curvature,
-        cos_alpha * reference_force * u.phi * alpha_3 * p.inv_m,
-        cos_alpha * reference_force * u.phi * alpha_2 * p.inv_m,
-        cos_alpha * reference_force * u.phi * x.alpha * p.inv_m,
-        cos_alpha * reference_force * u.phi * p.inv_m,
-        cos_alpha * reference_force * alpha_3 * p.inv_m,
-        cos_alpha * reference_force * alpha_2 * p.inv_m,
-        cos_alpha * reference_force * x.alpha * p.inv_m,
-        cos_alpha * reference_force * p.inv_m,
-        cos_alpha * reference_force * x.eta_1 * p.inv_m,
-        cos_alpha * reference_force * x.eta_2 * p.inv_m,
-        cos_alpha * reference_force * x.eta_3 * p.inv_m,
-        reference_force * slope_of_c_d_in_canard_deflection * u.delta_e
+        i.cos_alpha * i.reference_force * u.phi * i.alpha_3 * p.inv_m,
+        i.cos_alpha * i.reference_force * u.phi * i.alpha_2 * p.inv_m,
+        i.cos_alpha * i.reference_force * u.phi * x.alpha * p.inv_m,
+        i.cos_alpha * i.reference_force * u.phi * p.inv_m,
+        i.cos_alpha * i.reference_force * i.alpha_3 * p.inv_m,
+        i.cos_alpha * i.reference_force * i.alpha_2 * p.inv_m,
+        i.cos_alpha * i.reference_force * x.alpha * p.inv_m,
+        i.cos_alpha * i.reference_force * p.inv_m,
+        i.cos_alpha * i.reference_force * x.eta_1 * p.inv_m,
+        i.cos_alpha * i.reference_force * x.eta_2 * p.inv_m,
+        i.cos_alpha * i.reference_force * x.eta_3 * p.inv_m,
+        i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
             * p.canard_slaving_over_c_l_delta_c_m,
-        -reference_force * slope_of_c_d_in_canard_deflection * u.delta_e
+        -i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
             * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m,
-        -reference_force * alpha_2 * p.inv_m,
-        -reference_force * x.alpha * p.inv_m,
-        -reference_force * delta_e_2 * p.inv_m,
-        -reference_force * u.delta_e * p.inv_m,
-        -reference_force * canard_deflection_2 * p.inv_m,
-        -reference_force * canard_deflection * p.inv_m,
-        -reference_force * p.inv_m,
-        -reference_force * x.eta_1 * p.inv_m,
-        -reference_force * x.eta_2 * p.inv_m,
-        -reference_force * x.eta_3 * p.inv_m,
-        normal_coefficient * s_density_velocity * p.minus_half_inv_m_2,
-        normal_coefficient * density_velocity * p.half_over_m,
-        normal_coefficient * p.half_s_over_m * x.velocity * density_ratio,
+        -i.reference_force * i.alpha_2 * p.inv_m,
+        -i.reference_force * x.alpha * p.inv_m,
+        -i.reference_force * i.delta_e_2 * p.inv_m,
+        -i.reference_force * u.delta_e * p.inv_m,
+        -i.reference_force * i.canard_deflection_2 * p.inv_m,
+        -i.reference_force * i.canard_deflection * p.inv_m,
+        -i.reference_force * p.inv_m,
+        -i.reference_force * x.eta_1 * p.inv_m,
+        -i.reference_force * x.eta_2 * p.inv_m,
+        -i.reference_force * x.eta_3 * p.inv_m,
+        i.normal_coefficient * s.d_reference_force_d_velocity * p.minus_half_inv_m_2,
+        i.normal_coefficient * s.d_dynamic_pressure_d_velocity * p.half_over_m,
+        i.normal_coefficient * p.half_s_over_m * x.velocity * i.density_ratio,
         d_force_turn_d_h_0,
         d_force_turn_d_h_s,
-        -cos_gamma * radius_ratio_2 * inv_velocity,
+        -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
         d_gamma_rate_d_r_e,
-        turn_factor * p.c_l_delta_c * u.delta_c,
-        -turn_factor * u.delta_e * p.c_l_delta_e,
+        i.turn_factor * p.c_l_delta_c * u.delta_c,
+        -i.turn_factor * u.delta_e * p.c_l_delta_e,
         d_gamma_rate_d_spherical_earth,
-        turn_factor * sin_alpha * u.phi * alpha_3,
-        turn_factor * sin_alpha * u.phi * alpha_2,
-        turn_factor * sin_alpha * u.phi * x.alpha,
-        turn_factor * sin_alpha * u.phi,
-        turn_factor * sin_alpha * alpha_3,
-        turn_factor * sin_alpha * alpha_2,
-        turn_factor * sin_alpha * x.alpha,
-        turn_factor * sin_alpha,
-        turn_factor * sin_alpha * x.eta_1,
-        turn_factor * sin_alpha * x.eta_2,
-        turn_factor * sin_alpha * x.eta_3,
-        turn_factor * x.alpha,
+        i.turn_factor * i.sin_alpha * u.phi * i.alpha_3,
+        i.turn_factor * i.sin_alpha * u.phi * i.alpha_2,
+        i.turn_factor * i.sin_alpha * u.phi * x.alpha,
+        i.turn_factor * i.sin_alpha * u.phi,
+        i.turn_factor * i.sin_alpha * i.alpha_3,
+        i.turn_factor * i.sin_alpha * i.alpha_2,
+        i.turn_factor * i.sin_alpha * x.alpha,
+        i.turn_factor * i.sin_alpha,
+        i.turn_factor * i.sin_alpha * x.eta_1,
+        i.turn_factor * i.sin_alpha * x.eta_2,
+        i.turn_factor * i.sin_alpha * x.eta_3,
+        i.turn_factor * x.alpha,
         d_force_turn_d_c_l_delta_e,
-        turn_factor * canard_commanded,
-        turn_factor,
-        turn_factor * x.eta_1,
-        turn_factor * x.eta_2,
-        turn_factor * x.eta_3,
-        normal_coefficient * s_density_velocity * p.half_inv_m_2,
-        normal_coefficient * density_velocity * p.minus_half_over_m,
-        normal_coefficient * p.minus_half_s_over_m * x.velocity * density_ratio,
+        i.turn_factor * i.canard_commanded,
+        i.turn_factor,
+        i.turn_factor * x.eta_1,
+        i.turn_factor * x.eta_2,
+        i.turn_factor * x.eta_3,
+        i.normal_coefficient * s.d_reference_force_d_velocity * p.half_inv_m_2,
+        i.normal_coefficient * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m,
+        i.normal_coefficient * p.minus_half_s_over_m * x.velocity * i.density_ratio,
         -d_force_turn_d_h_0,
         -d_force_turn_d_h_s,
-        cos_gamma * radius_ratio_2 * inv_velocity,
+        i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
         -d_gamma_rate_d_r_e,
-        -turn_factor * p.c_l_delta_c * u.delta_c,
-        turn_factor * u.delta_e * p.c_l_delta_e,
+        -i.turn_factor * p.c_l_delta_c * u.delta_c,
+        i.turn_factor * u.delta_e * p.c_l_delta_e,
         -d_gamma_rate_d_spherical_earth,
-        -turn_factor * sin_alpha * u.phi * alpha_3,
-        -turn_factor * sin_alpha * u.phi * alpha_2,
-        -turn_factor * sin_alpha * u.phi * x.alpha,
-        -turn_factor * sin_alpha * u.phi,
-        -turn_factor * sin_alpha * alpha_3,
-        -turn_factor * sin_alpha * alpha_2,
-        -turn_factor * sin_alpha * x.alpha,
-        -turn_factor * sin_alpha,
-        -turn_factor * sin_alpha * x.eta_1,
-        -turn_factor * sin_alpha * x.eta_2,
-        -turn_factor * sin_alpha * x.eta_3,
-        -turn_factor * x.alpha,
+        -i.turn_factor * i.sin_alpha * u.phi * i.alpha_3,
+        -i.turn_factor * i.sin_alpha * u.phi * i.alpha_2,
+        -i.turn_factor * i.sin_alpha * u.phi * x.alpha,
+        -i.turn_factor * i.sin_alpha * u.phi,
+        -i.turn_factor * i.sin_alpha * i.alpha_3,
+        -i.turn_factor * i.sin_alpha * i.alpha_2,
+        -i.turn_factor * i.sin_alpha * x.alpha,
+        -i.turn_factor * i.sin_alpha,
+        -i.turn_factor * i.sin_alpha * x.eta_1,
+        -i.turn_factor * i.sin_alpha * x.eta_2,
+        -i.turn_factor * i.sin_alpha * x.eta_3,
+        -i.turn_factor * x.alpha,
         -d_force_turn_d_c_l_delta_e,
-        -turn_factor * canard_commanded,
-        -turn_factor,
-        -turn_factor * x.eta_1,
-        -turn_factor * x.eta_2,
-        -turn_factor * x.eta_3,
-        -pitching_moment_over_i_yy * p.inv_i_yy,
+        -i.turn_factor * i.canard_commanded,
+        -i.turn_factor,
+        -i.turn_factor * x.eta_1,
+        -i.turn_factor * x.eta_2,
+        -i.turn_factor * x.eta_3,
+        -i.pitch_acceleration * p.inv_i_yy,
         d_pitch_acceleration_d_s,
-        reference_force * c_m * p.inv_i_yy,
-        thrust * p.inv_i_yy,
+        i.reference_force * i.c_m * p.inv_i_yy,
+        i.thrust * p.inv_i_yy,
         d_pitch_acceleration_d_rho_0,
         d_pitch_acceleration_d_h_0,
         d_pitch_acceleration_d_h_s,
-        p.c_bar_c_m_delta_c_over_i_yy * reference_force * u.delta_c,
-        -p.c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy * reference_force
+        p.c_bar_c_m_delta_c_over_i_yy * i.reference_force * u.delta_c,
+        -p.c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy * i.reference_force
             * u.delta_e,
-        p.z_t_over_i_yy * reference_force * u.phi * alpha_3,
-        p.z_t_over_i_yy * reference_force * u.phi * alpha_2,
-        p.z_t_over_i_yy * reference_force * u.phi * x.alpha,
-        p.z_t_over_i_yy * reference_force * u.phi,
-        p.z_t_over_i_yy * reference_force * alpha_3,
-        p.z_t_over_i_yy * reference_force * alpha_2,
-        p.z_t_over_i_yy * reference_force * x.alpha,
-        p.z_t_over_i_yy * reference_force,
-        p.z_t_over_i_yy * reference_force * x.eta_1,
-        p.z_t_over_i_yy * reference_force * x.eta_2,
-        p.z_t_over_i_yy * reference_force * x.eta_3,
-        -p.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy * reference_force
+        p.z_t_over_i_yy * i.reference_force * u.phi * i.alpha_3,
+        p.z_t_over_i_yy * i.reference_force * u.phi * i.alpha_2,
+        p.z_t_over_i_yy * i.reference_force * u.phi * x.alpha,
+        p.z_t_over_i_yy * i.reference_force * u.phi,
+        p.z_t_over_i_yy * i.reference_force * i.alpha_3,
+        p.z_t_over_i_yy * i.reference_force * i.alpha_2,
+        p.z_t_over_i_yy * i.reference_force * x.alpha,
+        p.z_t_over_i_yy * i.reference_force,
+        p.z_t_over_i_yy * i.reference_force * x.eta_1,
+        p.z_t_over_i_yy * i.reference_force * x.eta_2,
+        p.z_t_over_i_yy * i.reference_force * x.eta_3,
+        -p.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy * i.reference_force
             * u.delta_e,
-        p.parameter_jacobian_constant_1 * reference_force * u.delta_e,
-        p.c_bar_over_i_yy * reference_force * alpha_2,
-        p.c_bar_over_i_yy * reference_force * x.alpha,
-        p.c_bar_over_i_yy * reference_force * u.delta_e,
-        p.c_bar_over_i_yy * reference_force * canard_deflection,
-        p.c_bar_over_i_yy * reference_force,
-        p.c_bar_over_i_yy * reference_force * x.eta_1,
-        p.c_bar_over_i_yy * reference_force * x.eta_2,
-        p.c_bar_over_i_yy * reference_force * x.eta_3,
-        c_n_1 * dynamic_pressure,
-        c_n_1 * p.half_s * velocity_2 * density_ratio,
+        p.parameter_jacobian_constant_1 * i.reference_force * u.delta_e,
+        p.c_bar_over_i_yy * i.reference_force * i.alpha_2,
+        p.c_bar_over_i_yy * i.reference_force * x.alpha,
+        p.c_bar_over_i_yy * i.reference_force * u.delta_e,
+        p.c_bar_over_i_yy * i.reference_force * i.canard_deflection,
+        p.c_bar_over_i_yy * i.reference_force,
+        p.c_bar_over_i_yy * i.reference_force * x.eta_1,
+        p.c_bar_over_i_yy * i.reference_force * x.eta_2,
+        p.c_bar_over_i_yy * i.reference_force * x.eta_3,
+        i.c_n_1 * i.dynamic_pressure,
+        i.c_n_1 * p.half_s * i.velocity_2 * i.density_ratio,
         d_generalized_force_1_d_h_0,
         d_generalized_force_1_d_h_s,
         d_eta_acceleration_1_d_omega_1,
         x.eta_dot_1 * p.minus_two_omega_1,
-        reference_force * p.c_n_1_delta_c * u.delta_c,
-        -reference_force * p.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
-        -reference_force * p.c_n_1_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
-        reference_force * p.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+        i.reference_force * p.c_n_1_delta_c * u.delta_c,
+        -i.reference_force * p.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
+        -i.reference_force * p.c_n_1_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
+        i.reference_force * p.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
             * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,
         reference_force_canard_deflection,
-        reference_force,
-        c_n_2 * dynamic_pressure,
-        c_n_2 * p.half_s * velocity_2 * density_ratio,
+        i.reference_force,
+        i.c_n_2 * i.dynamic_pressure,
+        i.c_n_2 * p.half_s * i.velocity_2 * i.density_ratio,
         d_generalized_force_2_d_h_0,
         d_generalized_force_2_d_h_s,
         d_eta_acceleration_2_d_omega_2,
         x.eta_dot_2 * p.minus_two_omega_2,
-        reference_force * p.c_n_2_delta_c * u.delta_c,
-        -reference_force * p.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
-        -reference_force * p.c_n_2_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
-        reference_force * p.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+        i.reference_force * p.c_n_2_delta_c * u.delta_c,
+        -i.reference_force * p.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
+        -i.reference_force * p.c_n_2_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
+        i.reference_force * p.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
             * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,
         reference_force_canard_deflection,
-        reference_force,
-        c_n_3 * dynamic_pressure,
-        c_n_3 * p.half_s * velocity_2 * density_ratio,
+        i.reference_force,
+        i.c_n_3 * i.dynamic_pressure,
+        i.c_n_3 * p.half_s * i.velocity_2 * i.density_ratio,
         d_generalized_force_3_d_h_0,
         d_generalized_force_3_d_h_s,
         d_eta_acceleration_3_d_omega_3,
         x.eta_dot_3 * p.minus_two_omega_3,
-        reference_force * p.c_n_3_delta_c * u.delta_c,
-        -reference_force * p.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
-        -reference_force * p.c_n_3_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
-        reference_force * p.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+        i.reference_force * p.c_n_3_delta_c * u.delta_c,
+        -i.reference_force * p.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e,
+        -i.reference_force * p.c_n_3_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e,
+        i.reference_force * p.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
             * u.delta_e,
         reference_force_alpha_2,
         reference_force_alpha,
         reference_force_delta_e,
         reference_force_canard_deflection,
-        reference_force,
+        i.reference_force,
     ]
 }
 

@@ -2,7 +2,7 @@
 
 //! Functions of FLEXIBLE_MODE. Units are foot, slug, second and radian.
 
-use super::{Diffusion, Input, Noise, Prepared, State};
+use super::{Diffusion, Input, Noise, Prepared, State, drift};
 use ahv_core::{Pattern, Real, Vector};
 
 /// Where the entries of the compressed [`Diffusion`] stand.
@@ -54,28 +54,9 @@ pub fn drift_and_diffusion<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (State<R>, Diffusion<R>) {
-    // Response of the mode, (5)
-    let eta_acceleration = u.force
-        - p.damping * x.eta_dot
-        - p.stiffness * x.eta; // (ft*slug)^0.5/s^2
-
-    // Coloured noise, (27)
-    let chi_rate = -p.chi_decay * x.chi; // (ft*slug)^0.5/s
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let no_state_noise = State::splat(no_noise);
-    let drift = State {
-        eta: x.eta_dot,
-        eta_dot: eta_acceleration,
-        chi: chi_rate,
-    };
-    let diffusion = State {
-        eta_dot: Noise { xi: p.sigma },
-        chi: Noise { xi: p.chi_diffusion },
-        ..no_state_noise
-    };
-    (drift, diffusion)
+    let drift = drift(x, u, p);
+    let diffusion = diffusion_values(x, u, p);
+    (drift, dense_diffusion(&diffusion))
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (17).
@@ -105,24 +86,7 @@ pub fn drift_and_noise_increment<R: Real>(
     p: &Prepared<R>,
     dw: &Noise<R>,
 ) -> (State<R>, State<R>) {
-    // Response of the mode, (5)
-    let eta_acceleration = u.force
-        - p.damping * x.eta_dot
-        - p.stiffness * x.eta; // (ft*slug)^0.5/s^2
-
-    // Coloured noise, (27)
-    let chi_rate = -p.chi_decay * x.chi; // (ft*slug)^0.5/s
-
-    // Result
-    let drift = State {
-        eta: x.eta_dot,
-        eta_dot: eta_acceleration,
-        chi: chi_rate,
-    };
-    let increment = State {
-        eta: R::ZERO,
-        eta_dot: p.sigma * dw.xi,
-        chi: p.chi_diffusion * dw.xi,
-    };
+    let drift = drift(x, u, p);
+    let increment = noise_increment(x, u, p, dw);
     (drift, increment)
 }

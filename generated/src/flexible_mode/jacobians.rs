@@ -2,7 +2,7 @@
 
 //! Functions of FLEXIBLE_MODE. Units are foot, slug, second and radian.
 
-use super::{Input, InputJacobian, Prepared, State, StateJacobian};
+use super::{Input, InputJacobian, Prepared, State, StateJacobian, drift};
 use ahv_core::{Pattern, Real, Vector};
 
 /// Where the entries of the compressed [`StateJacobian`] stand.
@@ -94,22 +94,8 @@ pub fn drift_and_jacobians_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (State<R>, [R; 4], [R; 1]) {
-    // Response of the mode, (5)
-    let eta_acceleration = u.force
-        - p.damping * x.eta_dot
-        - p.stiffness * x.eta; // (ft*slug)^0.5/s^2
-
-    // Coloured noise, (27)
-    let chi_rate = -p.chi_decay * x.chi; // (ft*slug)^0.5/s
-
-    // Result
-    let drift = State {
-        eta: x.eta_dot,
-        eta_dot: eta_acceleration,
-        chi: chi_rate,
-    };
-    let state = [R::ONE, p.minus_stiffness, p.minus_damping, p.minus_chi_decay];
-    let input = [R::ONE];
+    let drift = drift(x, u, p);
+    let (state, input) = jacobians_values(x, u, p);
     (drift, state, input)
 }
 

@@ -2,7 +2,11 @@
 
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
-use super::{Diffusion, Input, Noise, Prepared, State};
+use super::{
+    Diffusion, Input, Intermediates, Noise, Prepared, Slopes, State, drift_from,
+    intermediates, slopes,
+};
+
 use ahv_core::{Pattern, Real, Vector};
 
 /// Where the entries of the compressed [`Diffusion`] stand.
@@ -84,146 +88,30 @@ pub fn diffusion_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 14] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    diffusion_values_from(x, u, p, &i, &s)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
-    // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha
-        + p.c_d_alpha
-        + p.c_d_eta_1 * d_eta_static_1_d_alpha
-        + p.c_d_eta_2 * d_eta_static_2_d_alpha
-        + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_alpha = p.c_l_alpha
-        + p.c_l_eta_1 * d_eta_static_1_d_alpha
-        + p.c_l_eta_2 * d_eta_static_2_d_alpha
-        + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
-        + p.c_m_alpha
-        + p.c_m_eta_1 * d_eta_static_1_d_alpha
-        + p.c_m_eta_2 * d_eta_static_2_d_alpha
-        + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
-        + p.z_t * d_thrust_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-
+/// [`diffusion_values`] from what is computed once.
+#[inline(always)]
+pub fn diffusion_values_from<R: Real>(
+    _x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    _i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> [R; 14] {
     [
-        d_velocity_rate_d_gamma * p.w_gamma,
-        d_velocity_rate_d_alpha * p.w_alpha,
-        d_altitude_rate_d_gamma * p.w_gamma,
-        d_gamma_rate_d_gamma * p.w_gamma,
-        d_force_turn_d_alpha * p.w_alpha,
-        -d_gamma_rate_d_gamma * p.w_gamma,
-        -d_force_turn_d_alpha * p.w_alpha,
+        s.d_velocity_rate_d_gamma * p.w_gamma,
+        s.d_velocity_rate_d_alpha * p.w_alpha,
+        s.d_altitude_rate_d_gamma * p.w_gamma,
+        s.d_gamma_rate_d_gamma * p.w_gamma,
+        s.d_force_turn_d_alpha * p.w_alpha,
+        -s.d_gamma_rate_d_gamma * p.w_gamma,
+        -s.d_force_turn_d_alpha * p.w_alpha,
         p.w_q,
-        d_pitch_acceleration_d_alpha * p.w_alpha,
+        s.d_pitch_acceleration_d_alpha * p.w_alpha,
         p.chi_diffusion_1,
         p.chi_diffusion_2_shared_noise,
         p.chi_diffusion_2_own_noise,
@@ -248,233 +136,11 @@ pub fn drift_and_diffusion<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (State<R>, Diffusion<R>) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * eta_1
-        + p.c_l_eta_2 * eta_2
-        + p.c_l_eta_3 * eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * eta_1
-        + p.c_d_eta_2 * eta_2
-        + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * eta_1
-        + p.c_m_eta_2 * eta_2
-        + p.c_m_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-    let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
-
-    // Coloured noise, (27)
-    let chi_rate_1 = -p.chi_decay_1 * x.chi_1; // (ft*slug)^0.5/s
-    let chi_rate_2 = -p.chi_decay_2 * x.chi_2; // (ft*slug)^0.5/s
-    let chi_rate_3 = -p.chi_decay_3 * x.chi_3; // (ft*slug)^0.5/s
-
-    // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha
-        + p.c_d_alpha
-        + p.c_d_eta_1 * d_eta_static_1_d_alpha
-        + p.c_d_eta_2 * d_eta_static_2_d_alpha
-        + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_alpha = p.c_l_alpha
-        + p.c_l_eta_1 * d_eta_static_1_d_alpha
-        + p.c_l_eta_2 * d_eta_static_2_d_alpha
-        + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
-        + p.c_m_alpha
-        + p.c_m_eta_1 * d_eta_static_1_d_alpha
-        + p.c_m_eta_2 * d_eta_static_2_d_alpha
-        + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
-        + p.z_t * d_thrust_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let drift = State {
-        velocity: velocity_rate,
-        altitude: altitude_rate,
-        gamma: gamma_rate,
-        alpha: alpha_rate,
-        pitch_rate: pitch_acceleration,
-        chi_1: chi_rate_1,
-        chi_2: chi_rate_2,
-        chi_3: chi_rate_3,
-    };
-    let diffusion = State {
-        velocity: Noise {
-            w_gamma: d_velocity_rate_d_gamma * p.w_gamma,
-            w_alpha: d_velocity_rate_d_alpha * p.w_alpha,
-            ..no_noise
-        },
-        altitude: Noise {
-            w_gamma: d_altitude_rate_d_gamma * p.w_gamma,
-            ..no_noise
-        },
-        gamma: Noise {
-            w_gamma: d_gamma_rate_d_gamma * p.w_gamma,
-            w_alpha: d_force_turn_d_alpha * p.w_alpha,
-            ..no_noise
-        },
-        alpha: Noise {
-            w_gamma: -d_gamma_rate_d_gamma * p.w_gamma,
-            w_alpha: -d_force_turn_d_alpha * p.w_alpha,
-            w_q: p.w_q,
-            ..no_noise
-        },
-        pitch_rate: Noise {
-            w_alpha: d_pitch_acceleration_d_alpha * p.w_alpha,
-            ..no_noise
-        },
-        chi_1: Noise {
-            xi_1: p.chi_diffusion_1,
-            ..no_noise
-        },
-        chi_2: Noise {
-            xi_1: p.chi_diffusion_2_shared_noise,
-            xi_2: p.chi_diffusion_2_own_noise,
-            ..no_noise
-        },
-        chi_3: Noise {
-            xi_1: p.chi_diffusion_3_shared_noise,
-            xi_3: p.chi_diffusion_3_own_noise,
-            ..no_noise
-        },
-    };
-    (drift, diffusion)
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let drift = drift_from(x, u, p, &i);
+    let diffusion = diffusion_values_from(x, u, p, &i, &s);
+    (drift, dense_diffusion(&diffusion))
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
@@ -487,150 +153,36 @@ pub fn noise_increment<R: Real>(
     p: &Prepared<R>,
     dw: &Noise<R>,
 ) -> State<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    noise_increment_from(x, u, p, dw, &i, &s)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
-    // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha
-        + p.c_d_alpha
-        + p.c_d_eta_1 * d_eta_static_1_d_alpha
-        + p.c_d_eta_2 * d_eta_static_2_d_alpha
-        + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_alpha = p.c_l_alpha
-        + p.c_l_eta_1 * d_eta_static_1_d_alpha
-        + p.c_l_eta_2 * d_eta_static_2_d_alpha
-        + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
-        + p.c_m_alpha
-        + p.c_m_eta_1 * d_eta_static_1_d_alpha
-        + p.c_m_eta_2 * d_eta_static_2_d_alpha
-        + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
-        + p.z_t * d_thrust_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = d_gamma_rate_d_gamma
+/// [`noise_increment`] from what is computed once.
+#[inline(always)]
+pub fn noise_increment_from<R: Real>(
+    _x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    dw: &Noise<R>,
+    _i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> State<R> {
+    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = s.d_gamma_rate_d_gamma
         * p.w_gamma * dw.w_gamma;
-    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = d_force_turn_d_alpha
+    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = s.d_force_turn_d_alpha
         * p.w_alpha * dw.w_alpha;
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {
-        velocity: d_velocity_rate_d_gamma * p.w_gamma * dw.w_gamma
-            + d_velocity_rate_d_alpha * p.w_alpha * dw.w_alpha,
-        altitude: d_altitude_rate_d_gamma * p.w_gamma * dw.w_gamma,
+        velocity: s.d_velocity_rate_d_gamma * p.w_gamma * dw.w_gamma
+            + s.d_velocity_rate_d_alpha * p.w_alpha * dw.w_alpha,
+        altitude: s.d_altitude_rate_d_gamma * p.w_gamma * dw.w_gamma,
         gamma: d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
             + d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
         alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
             - d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
-        pitch_rate: d_pitch_acceleration_d_alpha * p.w_alpha * dw.w_alpha,
+        pitch_rate: s.d_pitch_acceleration_d_alpha * p.w_alpha * dw.w_alpha,
         chi_1: p.chi_diffusion_1 * dw.xi_1,
         chi_2: p.chi_diffusion_2 * (shared_noise_dxi_1 + p.own_noise * dw.xi_2),
         chi_3: p.chi_diffusion_3 * (shared_noise_dxi_1 + p.own_noise * dw.xi_3),
@@ -647,208 +199,9 @@ pub fn drift_and_noise_increment<R: Real>(
     p: &Prepared<R>,
     dw: &Noise<R>,
 ) -> (State<R>, State<R>) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * eta_1
-        + p.c_l_eta_2 * eta_2
-        + p.c_l_eta_3 * eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * eta_1
-        + p.c_d_eta_2 * eta_2
-        + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * eta_1
-        + p.c_m_eta_2 * eta_2
-        + p.c_m_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-    let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
-
-    // Coloured noise, (27)
-    let chi_rate_1 = -p.chi_decay_1 * x.chi_1; // (ft*slug)^0.5/s
-    let chi_rate_2 = -p.chi_decay_2 * x.chi_2; // (ft*slug)^0.5/s
-    let chi_rate_3 = -p.chi_decay_3 * x.chi_3; // (ft*slug)^0.5/s
-
-    // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha
-        + p.c_d_alpha
-        + p.c_d_eta_1 * d_eta_static_1_d_alpha
-        + p.c_d_eta_2 * d_eta_static_2_d_alpha
-        + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_alpha = p.c_l_alpha
-        + p.c_l_eta_1 * d_eta_static_1_d_alpha
-        + p.c_l_eta_2 * d_eta_static_2_d_alpha
-        + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
-        + p.c_m_alpha
-        + p.c_m_eta_1 * d_eta_static_1_d_alpha
-        + p.c_m_eta_2 * d_eta_static_2_d_alpha
-        + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
-        + p.z_t * d_thrust_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = d_gamma_rate_d_gamma
-        * p.w_gamma * dw.w_gamma;
-    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = d_force_turn_d_alpha
-        * p.w_alpha * dw.w_alpha;
-    let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
-
-    // Result
-    let drift = State {
-        velocity: velocity_rate,
-        altitude: altitude_rate,
-        gamma: gamma_rate,
-        alpha: alpha_rate,
-        pitch_rate: pitch_acceleration,
-        chi_1: chi_rate_1,
-        chi_2: chi_rate_2,
-        chi_3: chi_rate_3,
-    };
-    let increment = State {
-        velocity: d_velocity_rate_d_gamma * p.w_gamma * dw.w_gamma
-            + d_velocity_rate_d_alpha * p.w_alpha * dw.w_alpha,
-        altitude: d_altitude_rate_d_gamma * p.w_gamma * dw.w_gamma,
-        gamma: d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
-            + d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
-        alpha: p.w_q * dw.w_q - d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma
-            - d_force_turn_d_alpha_times_w_alpha_times_dw_alpha,
-        pitch_rate: d_pitch_acceleration_d_alpha * p.w_alpha * dw.w_alpha,
-        chi_1: p.chi_diffusion_1 * dw.xi_1,
-        chi_2: p.chi_diffusion_2 * (shared_noise_dxi_1 + p.own_noise * dw.xi_2),
-        chi_3: p.chi_diffusion_3 * (shared_noise_dxi_1 + p.own_noise * dw.xi_3),
-    };
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let drift = drift_from(x, u, p, &i);
+    let increment = noise_increment_from(x, u, p, dw, &i, &s);
     (drift, increment)
 }

@@ -13,6 +13,7 @@ mod noise_derivatives;
 mod outputs;
 mod parameter_jacobian;
 mod prepared;
+mod stages;
 mod strict_feedback;
 
 pub use diffusion::*;
@@ -24,6 +25,7 @@ pub use lie_derivatives::*;
 pub use noise_derivatives::*;
 pub use outputs::*;
 pub use parameter_jacobian::*;
+pub use stages::*;
 pub use strict_feedback::*;
 pub use crate::dcom::{
     Canard, Earth, ModalNoise, NOMINAL, PROVENANCE, Parameters, Reduction, SECTION5_3,

@@ -2,7 +2,7 @@
 
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
-use super::{Input, Noise, NoiseDerivatives, Prepared, State};
+use super::{Input, Noise, NoiseDerivatives, Prepared, State, intermediates, slopes};
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`NoiseDerivatives`] stand.
@@ -52,186 +52,21 @@ pub fn noise_derivatives_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 29] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_eta_static_1_d_velocity = d_generalized_force_1_d_velocity * p.inv_omega_1_2; // slug^0.5*s/ft^0.5
-    let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_eta_static_2_d_velocity = d_generalized_force_2_d_velocity * p.inv_omega_2_2; // slug^0.5*s/ft^0.5
-    let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_eta_static_3_d_velocity = d_generalized_force_3_d_velocity * p.inv_omega_3_2; // slug^0.5*s/ft^0.5
-    let d_c_t_d_velocity = p.c_t_eta_1 * d_eta_static_1_d_velocity
-        + p.c_t_eta_2 * d_eta_static_2_d_velocity
-        + p.c_t_eta_3 * d_eta_static_3_d_velocity; // s/ft
-    let d_thrust_d_velocity = c_t * d_reference_force_d_velocity
-        + reference_force * d_c_t_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_1_d_altitude = d_generalized_force_1_d_altitude * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_2_d_altitude = d_generalized_force_2_d_altitude * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_3_d_altitude = d_generalized_force_3_d_altitude * p.inv_omega_3_2; // slug^0.5/ft^0.5
-    let d_c_t_d_altitude = p.c_t_eta_1 * d_eta_static_1_d_altitude
-        + p.c_t_eta_2 * d_eta_static_2_d_altitude
-        + p.c_t_eta_3 * d_eta_static_3_d_altitude; // 1/ft
-    let d_thrust_d_altitude = c_t * d_reference_force_d_altitude
-        + reference_force * d_c_t_d_altitude; // lb/ft^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
+    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha
-        + p.c_d_alpha
-        + p.c_d_eta_1 * d_eta_static_1_d_alpha
-        + p.c_d_eta_2 * d_eta_static_2_d_alpha
-        + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_alpha = p.c_l_alpha
-        + p.c_l_eta_1 * d_eta_static_1_d_alpha
-        + p.c_l_eta_2 * d_eta_static_2_d_alpha
-        + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
-        + p.c_m_alpha
-        + p.c_m_eta_1 * d_eta_static_1_d_alpha
-        + p.c_m_eta_2 * d_eta_static_2_d_alpha
-        + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -cos_alpha; // 1/rad^2
-    let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_eta_static_1_d_alpha_d_alpha = d2_generalized_force_1_d_alpha_d_alpha
         * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_eta_static_2_d_alpha_d_alpha = d2_generalized_force_2_d_alpha_d_alpha
         * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_eta_static_3_d_alpha_d_alpha = d2_generalized_force_3_d_alpha_d_alpha
         * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
     let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
@@ -242,63 +77,57 @@ pub fn noise_derivatives_values<R: Real>(
         + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_alpha
         + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
         + p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_alpha
         + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_drag_d_alpha_d_alpha = reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * d_thrust_d_alpha * d_cos_alpha_d_alpha
-        + thrust * d2_cos_alpha_d_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_alpha
+    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to chi_1
-    let d2_path_force_d_alpha_d_chi_1 = d_cos_alpha_d_alpha * reference_force
+    let d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
     let d2_velocity_rate_d_alpha_d_chi_1 = d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_path_force_d_alpha_d_chi_2 = d_cos_alpha_d_alpha * reference_force
+    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
     let d2_velocity_rate_d_alpha_d_chi_2 = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_path_force_d_alpha_d_chi_3 = d_cos_alpha_d_alpha * reference_force
+    let d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
     let d2_velocity_rate_d_alpha_d_chi_3 = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
     let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
-        + sin_alpha * d2_c_t_d_alpha_d_alpha
-        + c_t * d_cos_alpha_d_alpha
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
+        + i.c_t * s.d_cos_alpha_d_alpha
         + d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    let d2_force_turn_d_alpha_d_alpha = turn_factor
+    let d2_force_turn_d_alpha_d_alpha = i.turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
-    let d2_normal_coefficient_d_alpha_d_chi_1 = cos_alpha * p.c_t_eta_1; // 1/rad/ft^0.5/slug^0.5
-    let d2_force_turn_d_alpha_d_chi_1 = turn_factor
-        * d2_normal_coefficient_d_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_chi_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_normal_coefficient_d_alpha_d_chi_2 = cos_alpha * p.c_t_eta_2; // 1/rad/ft^0.5/slug^0.5
-    let d2_force_turn_d_alpha_d_chi_2 = turn_factor
-        * d2_normal_coefficient_d_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_chi_2 = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_normal_coefficient_d_alpha_d_chi_3 = cos_alpha * p.c_t_eta_3; // 1/rad/ft^0.5/slug^0.5
-    let d2_force_turn_d_alpha_d_chi_3 = turn_factor
-        * d2_normal_coefficient_d_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
+    let d2_force_turn_d_alpha_d_chi_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha
     let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
@@ -306,106 +135,106 @@ pub fn noise_derivatives_values<R: Real>(
         + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.c_bar * reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
+        + p.c_bar * i.reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
 
     // Derivatives with respect to altitude
-    let d2_velocity_rate_d_gamma_d_altitude = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+    let d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_generalized_force_1_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_eta_static_1_d_alpha_d_velocity = d2_generalized_force_1_d_alpha_d_velocity
         * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_2_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_eta_static_2_d_alpha_d_velocity = d2_generalized_force_2_d_alpha_d_velocity
         * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_3_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_eta_static_3_d_alpha_d_velocity = d2_generalized_force_3_d_alpha_d_velocity
         * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
     let d2_c_t_d_alpha_d_velocity = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_velocity
         + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_velocity
         + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_thrust_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_t_d_alpha
-        + reference_force * d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
+    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
+        + i.reference_force * d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
     let d2_c_d_d_alpha_d_velocity = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_velocity
         + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_velocity
         + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_drag_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_d_d_alpha
-        + reference_force * d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_path_force_d_alpha_d_velocity = d_thrust_d_velocity * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_velocity
+    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
+        + i.reference_force * d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
+    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
         - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
     let d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to altitude
-    let d2_generalized_force_1_d_alpha_d_altitude = d_reference_force_d_altitude
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_1_d_alpha_d_altitude = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_eta_static_1_d_alpha_d_altitude = d2_generalized_force_1_d_alpha_d_altitude
         * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
-    let d2_generalized_force_2_d_alpha_d_altitude = d_reference_force_d_altitude
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_2_d_alpha_d_altitude = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_eta_static_2_d_alpha_d_altitude = d2_generalized_force_2_d_alpha_d_altitude
         * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
-    let d2_generalized_force_3_d_alpha_d_altitude = d_reference_force_d_altitude
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_3_d_alpha_d_altitude = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_eta_static_3_d_alpha_d_altitude = d2_generalized_force_3_d_alpha_d_altitude
         * p.inv_omega_3_2; // slug^0.5/ft^0.5/rad
     let d2_c_t_d_alpha_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_altitude
         + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_altitude
         + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_thrust_d_alpha_d_altitude = d_reference_force_d_altitude * d_c_t_d_alpha
-        + reference_force * d2_c_t_d_alpha_d_altitude; // lb/ft^2/rad
+    let d2_thrust_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
+        + i.reference_force * d2_c_t_d_alpha_d_altitude; // lb/ft^2/rad
     let d2_c_d_d_alpha_d_altitude = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_altitude
         + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_altitude
         + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_drag_d_alpha_d_altitude = d_reference_force_d_altitude * d_c_d_d_alpha
-        + reference_force * d2_c_d_d_alpha_d_altitude; // lb/ft^2/rad
-    let d2_path_force_d_alpha_d_altitude = d_thrust_d_altitude * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_altitude
+    let d2_drag_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
+        + i.reference_force * d2_c_d_d_alpha_d_altitude; // lb/ft^2/rad
+    let d2_path_force_d_alpha_d_altitude = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_altitude
         - d2_drag_d_alpha_d_altitude; // lb/ft^2/rad
     let d2_velocity_rate_d_alpha_d_altitude = d2_path_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_gamma_rate_d_gamma_d_velocity = -d_gravity_turn_d_velocity
-        * d_cos_gamma_d_gamma; // 1/ft
+    let d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to altitude
-    let d2_gamma_rate_d_gamma_d_altitude = -d_gravity_turn_d_altitude
-        * d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_gamma_rate_d_gamma_d_altitude = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to velocity
     let d2_c_l_d_alpha_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_velocity
         + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_velocity
         + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_normal_coefficient_d_alpha_d_velocity = d_c_t_d_velocity * cos_alpha
-        + sin_alpha * d2_c_t_d_alpha_d_velocity
+    let d2_normal_coefficient_d_alpha_d_velocity = s.d_c_t_d_velocity * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_velocity
         + d2_c_l_d_alpha_d_velocity; // s/rad/ft
-    let d2_force_turn_d_alpha_d_velocity = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_alpha
-        + turn_factor * d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
+    let d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha
+        + i.turn_factor * d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
 
     // Derivatives with respect to altitude
     let d2_c_l_d_alpha_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_altitude
         + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_altitude
         + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_normal_coefficient_d_alpha_d_altitude = d_c_t_d_altitude * cos_alpha
-        + sin_alpha * d2_c_t_d_alpha_d_altitude
+    let d2_normal_coefficient_d_alpha_d_altitude = s.d_c_t_d_altitude * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_altitude
         + d2_c_l_d_alpha_d_altitude; // 1/rad/ft
-    let d2_force_turn_d_alpha_d_altitude = d_turn_factor_d_altitude
-        * d_normal_coefficient_d_alpha
-        + turn_factor * d2_normal_coefficient_d_alpha_d_altitude; // 1/s/ft
+    let d2_force_turn_d_alpha_d_altitude = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_alpha
+        + i.turn_factor * d2_normal_coefficient_d_alpha_d_altitude; // 1/s/ft
 
     // Derivatives with respect to velocity
     let d2_c_m_d_alpha_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_velocity
         + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_velocity
         + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
     let d2_pitching_moment_d_alpha_d_velocity = p.c_bar
-        * (d_reference_force_d_velocity * d_c_m_d_alpha
-            + reference_force * d2_c_m_d_alpha_d_velocity)
+        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
+            + i.reference_force * d2_c_m_d_alpha_d_velocity)
         + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
     let d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
         * p.inv_i_yy; // 1/s/ft
@@ -415,26 +244,27 @@ pub fn noise_derivatives_values<R: Real>(
         + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_altitude
         + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
     let d2_pitching_moment_d_alpha_d_altitude = p.c_bar
-        * (d_reference_force_d_altitude * d_c_m_d_alpha
-            + reference_force * d2_c_m_d_alpha_d_altitude)
+        * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
+            + i.reference_force * d2_c_m_d_alpha_d_altitude)
         + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
     let d2_pitch_acceleration_d_alpha_d_altitude = d2_pitching_moment_d_alpha_d_altitude
         * p.inv_i_yy; // 1/s^2/ft
-    let noise_derivatives_term_1 = d2_gamma_rate_d_gamma_d_velocity * d_velocity_rate_d_gamma
-        + d2_gamma_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
-        + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma;
+    let noise_derivatives_term_1 = d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
+        + d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+        + d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
     let noise_derivatives_term_2 = d2_force_turn_d_alpha_d_velocity
-        * d_velocity_rate_d_gamma;
+        * s.d_velocity_rate_d_gamma;
     let noise_derivatives_term_3 = d2_force_turn_d_alpha_d_altitude
-        * d_altitude_rate_d_gamma;
+        * s.d_altitude_rate_d_gamma;
     let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = d2_force_turn_d_alpha_d_alpha
-        * d_gamma_rate_d_gamma;
+        * s.d_gamma_rate_d_gamma;
     let noise_derivatives_term_4 = d2_gamma_rate_d_gamma_d_velocity
-        * d_velocity_rate_d_alpha + d2_gamma_rate_d_gamma_d_gamma * d_force_turn_d_alpha;
+        * s.d_velocity_rate_d_alpha
+        + d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
     let noise_derivatives_term_5 = d2_force_turn_d_alpha_d_velocity
-        * d_velocity_rate_d_alpha;
+        * s.d_velocity_rate_d_alpha;
     let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
-        * d_force_turn_d_alpha;
+        * s.d_force_turn_d_alpha;
     let noise_derivatives_term_6 = p.shared_noise
         * (p.chi_diffusion_2 * d2_force_turn_d_alpha_d_chi_2
             + p.chi_diffusion_3 * d2_force_turn_d_alpha_d_chi_3)
@@ -442,16 +272,16 @@ pub fn noise_derivatives_values<R: Real>(
 
     [
         p.w_gamma_2
-            * (d2_velocity_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
-                + d2_velocity_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
+            * (d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+                + d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         p.w_alpha_w_gamma
-            * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_gamma
-                + d2_velocity_rate_d_alpha_d_altitude * d_altitude_rate_d_gamma
-                - d2_velocity_rate_d_alpha_d_alpha * d_gamma_rate_d_gamma),
-        p.w_alpha_w_gamma * d2_velocity_rate_d_gamma_d_gamma * d_force_turn_d_alpha,
+            * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + d2_velocity_rate_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+        p.w_alpha_w_gamma * d2_velocity_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha,
         p.w_alpha_2
-            * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_velocity_rate_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_velocity_rate_d_alpha_d_alpha,
         p.w_alpha
             * (p.shared_noise
@@ -461,11 +291,11 @@ pub fn noise_derivatives_values<R: Real>(
         p.w_alpha_chi_diffusion_2_own_noise * d2_velocity_rate_d_alpha_d_chi_2,
         p.w_alpha_chi_diffusion_3_own_noise * d2_velocity_rate_d_alpha_d_chi_3,
         p.w_gamma_2
-            * (cos_gamma * d_velocity_rate_d_gamma
-                + d2_altitude_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
+            * (i.cos_gamma * s.d_velocity_rate_d_gamma
+                + d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         p.w_alpha_w_gamma
-            * (cos_gamma * d_velocity_rate_d_alpha
-                + d2_altitude_rate_d_gamma_d_gamma * d_force_turn_d_alpha),
+            * (i.cos_gamma * s.d_velocity_rate_d_alpha
+                + d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
         p.w_gamma_2 * noise_derivatives_term_1,
         p.w_alpha_w_gamma
             * (noise_derivatives_term_2 + noise_derivatives_term_3
@@ -491,12 +321,12 @@ pub fn noise_derivatives_values<R: Real>(
         -p.w_alpha_chi_diffusion_2_own_noise * d2_force_turn_d_alpha_d_chi_2,
         -p.w_alpha_chi_diffusion_3_own_noise * d2_force_turn_d_alpha_d_chi_3,
         p.w_alpha_w_gamma
-            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_gamma
-                + d2_pitch_acceleration_d_alpha_d_altitude * d_altitude_rate_d_gamma
-                - d2_pitch_acceleration_d_alpha_d_alpha * d_gamma_rate_d_gamma),
+            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + d2_pitch_acceleration_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         p.w_alpha_2
-            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_pitch_acceleration_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         p.w_alpha_w_q * d2_pitch_acceleration_d_alpha_d_alpha,
     ]
 }
@@ -516,170 +346,21 @@ pub fn noise_derivatives<R: Real>(
 /// 324 operations: 109 additions, 210 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_eta_static_1_d_velocity = d_generalized_force_1_d_velocity * p.inv_omega_1_2; // slug^0.5*s/ft^0.5
-    let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_eta_static_2_d_velocity = d_generalized_force_2_d_velocity * p.inv_omega_2_2; // slug^0.5*s/ft^0.5
-    let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_eta_static_3_d_velocity = d_generalized_force_3_d_velocity * p.inv_omega_3_2; // slug^0.5*s/ft^0.5
-    let d_c_t_d_velocity = p.c_t_eta_1 * d_eta_static_1_d_velocity
-        + p.c_t_eta_2 * d_eta_static_2_d_velocity
-        + p.c_t_eta_3 * d_eta_static_3_d_velocity; // s/ft
-    let d_thrust_d_velocity = c_t * d_reference_force_d_velocity
-        + reference_force * d_c_t_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_gamma_rate_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
+    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha
-        + p.c_d_alpha
-        + p.c_d_eta_1 * d_eta_static_1_d_alpha
-        + p.c_d_eta_2 * d_eta_static_2_d_alpha
-        + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_c_l_d_alpha = p.c_l_alpha
-        + p.c_l_eta_1 * d_eta_static_1_d_alpha
-        + p.c_l_eta_2 * d_eta_static_2_d_alpha
-        + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
-        + p.c_m_alpha
-        + p.c_m_eta_1 * d_eta_static_1_d_alpha
-        + p.c_m_eta_2 * d_eta_static_2_d_alpha
-        + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -cos_alpha; // 1/rad^2
-    let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_eta_static_1_d_alpha_d_alpha = d2_generalized_force_1_d_alpha_d_alpha
         * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_eta_static_2_d_alpha_d_alpha = d2_generalized_force_2_d_alpha_d_alpha
         * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_eta_static_3_d_alpha_d_alpha = d2_generalized_force_3_d_alpha_d_alpha
         * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
     let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
@@ -690,117 +371,117 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_alpha
         + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
         + p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_alpha
         + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_drag_d_alpha_d_alpha = reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * d_thrust_d_alpha * d_cos_alpha_d_alpha
-        + thrust * d2_cos_alpha_d_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_alpha
+    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
     let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
         + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha * cos_alpha
-        + sin_alpha * d2_c_t_d_alpha_d_alpha
-        + c_t * d_cos_alpha_d_alpha
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
+        + i.c_t * s.d_cos_alpha_d_alpha
         + d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    let d2_force_turn_d_alpha_d_alpha = turn_factor
+    let d2_force_turn_d_alpha_d_alpha = i.turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
     let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
         + p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_alpha
         + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_alpha
         + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.c_bar * reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
+        + p.c_bar * i.reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
     let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
 
     // Derivatives with respect to altitude
-    let d2_velocity_rate_d_gamma_d_altitude = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+    let d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let d2_generalized_force_1_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_eta_static_1_d_alpha_d_velocity = d2_generalized_force_1_d_alpha_d_velocity
         * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_2_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_eta_static_2_d_alpha_d_velocity = d2_generalized_force_2_d_alpha_d_velocity
         * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_3_d_alpha_d_velocity = d_reference_force_d_velocity
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_eta_static_3_d_alpha_d_velocity = d2_generalized_force_3_d_alpha_d_velocity
         * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
     let d2_c_t_d_alpha_d_velocity = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_velocity
         + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_velocity
         + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_thrust_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_t_d_alpha
-        + reference_force * d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
+    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
+        + i.reference_force * d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
     let d2_c_d_d_alpha_d_velocity = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_velocity
         + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_velocity
         + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_drag_d_alpha_d_velocity = d_reference_force_d_velocity * d_c_d_d_alpha
-        + reference_force * d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_path_force_d_alpha_d_velocity = d_thrust_d_velocity * d_cos_alpha_d_alpha
-        + cos_alpha * d2_thrust_d_alpha_d_velocity
+    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
+        + i.reference_force * d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
+    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
         - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
     let d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
-    let d2_gamma_rate_d_gamma_d_velocity = -d_gravity_turn_d_velocity
-        * d_cos_gamma_d_gamma; // 1/ft
+    let d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to altitude
-    let d2_gamma_rate_d_gamma_d_altitude = -d_gravity_turn_d_altitude
-        * d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_gamma_rate_d_gamma_d_altitude = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to velocity
     let d2_c_l_d_alpha_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_velocity
         + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_velocity
         + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_normal_coefficient_d_alpha_d_velocity = d_c_t_d_velocity * cos_alpha
-        + sin_alpha * d2_c_t_d_alpha_d_velocity
+    let d2_normal_coefficient_d_alpha_d_velocity = s.d_c_t_d_velocity * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_velocity
         + d2_c_l_d_alpha_d_velocity; // s/rad/ft
-    let d2_force_turn_d_alpha_d_velocity = d_turn_factor_d_velocity
-        * d_normal_coefficient_d_alpha
-        + turn_factor * d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
+    let d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha
+        + i.turn_factor * d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
     let d2_c_m_d_alpha_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_velocity
         + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_velocity
         + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
     let d2_pitching_moment_d_alpha_d_velocity = p.c_bar
-        * (d_reference_force_d_velocity * d_c_m_d_alpha
-            + reference_force * d2_c_m_d_alpha_d_velocity)
+        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
+            + i.reference_force * d2_c_m_d_alpha_d_velocity)
         + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
     let d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
         * p.inv_i_yy; // 1/s/ft
     let ito_correction_term_1 = p.half_w_gamma_2
-        * (d2_gamma_rate_d_gamma_d_velocity * d_velocity_rate_d_gamma
-            + d2_gamma_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
-            + d2_gamma_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma);
+        * (d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
+            + d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+            + d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
     let ito_correction_term_2 = d2_force_turn_d_alpha_d_velocity
-        * d_velocity_rate_d_alpha;
+        * s.d_velocity_rate_d_alpha;
     let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
-        * d_force_turn_d_alpha;
+        * s.d_force_turn_d_alpha;
 
     State {
         velocity: p.half_w_gamma_2
-            * (d2_velocity_rate_d_gamma_d_altitude * d_altitude_rate_d_gamma
-                + d2_velocity_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma)
+            * (d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+                + d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma)
             + p.half_w_alpha_2
-                * (d2_velocity_rate_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                    - d2_velocity_rate_d_alpha_d_alpha * d_force_turn_d_alpha),
+                * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                    - d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         altitude: p.half_w_gamma_2
-            * (cos_gamma * d_velocity_rate_d_gamma
-                + d2_altitude_rate_d_gamma_d_gamma * d_gamma_rate_d_gamma),
+            * (i.cos_gamma * s.d_velocity_rate_d_gamma
+                + d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         gamma: ito_correction_term_1
             + p.half_w_alpha_2
                 * (ito_correction_term_2
@@ -809,8 +490,8 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
             * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
                 - ito_correction_term_2) - ito_correction_term_1,
         pitch_rate: p.half_w_alpha_2
-            * (d2_pitch_acceleration_d_alpha_d_velocity * d_velocity_rate_d_alpha
-                - d2_pitch_acceleration_d_alpha_d_alpha * d_force_turn_d_alpha),
+            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         chi_1: R::ZERO,
         chi_2: R::ZERO,
         chi_3: R::ZERO,

@@ -2,7 +2,7 @@
 
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
-use super::{Input, Outputs, Prepared, State};
+use super::{Input, Outputs, Prepared, State, intermediates};
 use ahv_core::Real;
 
 /// Quantities that people look at, which are not states.
@@ -10,122 +10,37 @@ use ahv_core::Real;
 /// 120 operations: 51 additions, 68 multiplications, 1 exp.
 #[inline(always)]
 pub fn outputs<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Outputs<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
 
     // Angles, (1)
     let theta = x.gamma + x.alpha; // rad
 
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * eta_1
-        + p.c_l_eta_2 * eta_2
-        + p.c_l_eta_3 * eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * eta_1
-        + p.c_d_eta_2 * eta_2
-        + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * eta_1
-        + p.c_m_eta_2 * eta_2
-        + p.c_m_eta_3 * eta_3;
-
     // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let lift = reference_force * c_l; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+    let lift = i.reference_force * i.c_l; // lb/ft
 
     Outputs {
         theta,
-        density,
-        dynamic_pressure,
-        c_l,
-        c_d,
-        c_m,
-        c_t,
-        thrust,
+        density: i.density,
+        dynamic_pressure: i.dynamic_pressure,
+        c_l: i.c_l,
+        c_d: i.c_d,
+        c_m: i.c_m,
+        c_t: i.c_t,
+        thrust: i.thrust,
         lift,
-        drag,
-        pitching_moment,
-        c_n_1,
-        generalized_force_1,
-        eta_static_1,
-        eta_1,
-        c_n_2,
-        generalized_force_2,
-        eta_static_2,
-        eta_2,
-        c_n_3,
-        generalized_force_3,
-        eta_static_3,
-        eta_3,
+        drag: i.drag,
+        pitching_moment: i.pitching_moment,
+        c_n_1: i.c_n_1,
+        generalized_force_1: i.generalized_force_1,
+        eta_static_1: i.eta_static_1,
+        eta_1: i.eta_1,
+        c_n_2: i.c_n_2,
+        generalized_force_2: i.generalized_force_2,
+        eta_static_2: i.eta_static_2,
+        eta_2: i.eta_2,
+        c_n_3: i.c_n_3,
+        generalized_force_3: i.generalized_force_3,
+        eta_static_3: i.eta_static_3,
+        eta_3: i.eta_3,
     }
 }

@@ -2,7 +2,10 @@
 
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
-use super::{Input, ParameterJacobian, Parameters, Prepared, State};
+use super::{
+    Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes,
+};
+
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
@@ -223,330 +226,225 @@ pub fn parameter_jacobian_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 200] {
-    // Air, (2)
-    let h_0_minus_altitude = p.h_0 - x.altitude;
-    let density_ratio = (h_0_minus_altitude * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * eta_1
-        + p.c_l_eta_2 * eta_2
-        + p.c_l_eta_3 * eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * eta_1
-        + p.c_d_eta_2 * eta_2
-        + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * eta_1
-        + p.c_m_eta_2 * eta_2
-        + p.c_m_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-
-    // Derivatives with respect to delta_e
-    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * canard_deflection
-        + p.c_d_delta_c; // 1/rad
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to parameters
-    let d_c_t_d_s = dynamic_pressure
-        * (p.c_t_eta_1_inv_omega_1_2 * c_n_1 + p.c_t_eta_2_inv_omega_2_2 * c_n_2
-            + p.c_t_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
-    let d_thrust_d_s = c_t * dynamic_pressure + reference_force * d_c_t_d_s; // lb/ft^2
-    let d_c_d_d_s = dynamic_pressure
-        * (p.c_d_eta_1_times_inv_omega_1_2 * c_n_1
-            + p.c_d_eta_2_times_inv_omega_2_2 * c_n_2
-            + p.c_d_eta_3_times_inv_omega_3_2 * c_n_3); // 1/ft
-    let d_drag_d_s = c_d * dynamic_pressure + reference_force * d_c_d_d_s; // lb/ft^2
-    let d_path_force_d_s = cos_alpha * d_thrust_d_s - d_drag_d_s; // lb/ft^2
+    let d_c_t_d_s = i.dynamic_pressure
+        * (p.c_t_eta_1_inv_omega_1_2 * i.c_n_1 + p.c_t_eta_2_inv_omega_2_2 * i.c_n_2
+            + p.c_t_eta_3_inv_omega_3_2 * i.c_n_3); // 1/ft
+    let d_thrust_d_s = i.c_t * i.dynamic_pressure + i.reference_force * d_c_t_d_s; // lb/ft^2
+    let d_c_d_d_s = i.dynamic_pressure
+        * (p.c_d_eta_1_times_inv_omega_1_2 * i.c_n_1
+            + p.c_d_eta_2_times_inv_omega_2_2 * i.c_n_2
+            + p.c_d_eta_3_times_inv_omega_3_2 * i.c_n_3); // 1/ft
+    let d_drag_d_s = i.c_d * i.dynamic_pressure + i.reference_force * d_c_d_d_s; // lb/ft^2
+    let d_path_force_d_s = i.cos_alpha * d_thrust_d_s - d_drag_d_s; // lb/ft^2
     let d_velocity_rate_d_s = d_path_force_d_s * p.inv_m; // 1/s^2
-    let d_c_l_d_s = dynamic_pressure
-        * (p.c_l_eta_1_inv_omega_1_2 * c_n_1 + p.c_l_eta_2_inv_omega_2_2 * c_n_2
-            + p.c_l_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
-    let d_normal_coefficient_d_s = sin_alpha * d_c_t_d_s + d_c_l_d_s; // 1/ft
-    let density_velocity = density * x.velocity;
-    let d_force_turn_d_s = normal_coefficient * density_velocity * p.half_over_m
-        + turn_factor * d_normal_coefficient_d_s; // rad/s/ft
-    let d_c_m_d_s = dynamic_pressure
-        * (p.c_m_eta_1_inv_omega_1_2 * c_n_1 + p.c_m_eta_2_inv_omega_2_2 * c_n_2
-            + p.c_m_eta_3_inv_omega_3_2 * c_n_3); // 1/ft
+    let d_c_l_d_s = i.dynamic_pressure
+        * (p.c_l_eta_1_inv_omega_1_2 * i.c_n_1 + p.c_l_eta_2_inv_omega_2_2 * i.c_n_2
+            + p.c_l_eta_3_inv_omega_3_2 * i.c_n_3); // 1/ft
+    let d_normal_coefficient_d_s = i.sin_alpha * d_c_t_d_s + d_c_l_d_s; // 1/ft
+    let d_force_turn_d_s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity
+        * p.half_over_m + i.turn_factor * d_normal_coefficient_d_s; // rad/s/ft
+    let d_c_m_d_s = i.dynamic_pressure
+        * (p.c_m_eta_1_inv_omega_1_2 * i.c_n_1 + p.c_m_eta_2_inv_omega_2_2 * i.c_n_2
+            + p.c_m_eta_3_inv_omega_3_2 * i.c_n_3); // 1/ft
     let d_pitching_moment_d_s = p.c_bar
-        * (c_m * dynamic_pressure + reference_force * d_c_m_d_s) + p.z_t * d_thrust_d_s; // lb/ft
+        * (i.c_m * i.dynamic_pressure + i.reference_force * d_c_m_d_s)
+        + p.z_t * d_thrust_d_s; // lb/ft
     let d_pitch_acceleration_d_s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
-    let d_c_t_d_rho_0 = p.s * density_ratio
-        * (p.half_c_t_eta_1_inv_omega_1_2 * c_n_1 * velocity_2
-            + p.half_c_t_eta_2_inv_omega_2_2 * c_n_2 * velocity_2
-            + p.half_c_t_eta_3_inv_omega_3_2 * c_n_3 * velocity_2); // ft^3/slug
-    let d_thrust_d_rho_0 = c_t * p.half_s * velocity_2 * density_ratio
-        + reference_force * d_c_t_d_rho_0; // lb*ft^2/slug
-    let d_c_d_d_rho_0 = p.s * density_ratio
-        * (p.half_c_d_eta_1_times_inv_omega_1_2 * c_n_1 * velocity_2
-            + p.half_c_d_eta_2_times_inv_omega_2_2 * c_n_2 * velocity_2
-            + p.half_c_d_eta_3_times_inv_omega_3_2 * c_n_3 * velocity_2); // ft^3/slug
-    let d_drag_d_rho_0 = c_d * p.half_s * velocity_2 * density_ratio
-        + reference_force * d_c_d_d_rho_0; // lb*ft^2/slug
-    let d_path_force_d_rho_0 = cos_alpha * d_thrust_d_rho_0 - d_drag_d_rho_0; // lb*ft^2/slug
+    let d_c_t_d_rho_0 = p.s * i.density_ratio
+        * (p.half_c_t_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
+            + p.half_c_t_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
+            + p.half_c_t_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
+    let d_thrust_d_rho_0 = i.c_t * p.half_s * i.velocity_2 * i.density_ratio
+        + i.reference_force * d_c_t_d_rho_0; // lb*ft^2/slug
+    let d_c_d_d_rho_0 = p.s * i.density_ratio
+        * (p.half_c_d_eta_1_times_inv_omega_1_2 * i.c_n_1 * i.velocity_2
+            + p.half_c_d_eta_2_times_inv_omega_2_2 * i.c_n_2 * i.velocity_2
+            + p.half_c_d_eta_3_times_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
+    let d_drag_d_rho_0 = i.c_d * p.half_s * i.velocity_2 * i.density_ratio
+        + i.reference_force * d_c_d_d_rho_0; // lb*ft^2/slug
+    let d_path_force_d_rho_0 = i.cos_alpha * d_thrust_d_rho_0 - d_drag_d_rho_0; // lb*ft^2/slug
     let d_velocity_rate_d_rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
-    let d_c_l_d_rho_0 = p.s * density_ratio
-        * (p.half_c_l_eta_1_inv_omega_1_2 * c_n_1 * velocity_2
-            + p.half_c_l_eta_2_inv_omega_2_2 * c_n_2 * velocity_2
-            + p.half_c_l_eta_3_inv_omega_3_2 * c_n_3 * velocity_2); // ft^3/slug
-    let d_normal_coefficient_d_rho_0 = sin_alpha * d_c_t_d_rho_0 + d_c_l_d_rho_0; // ft^3/slug
-    let d_force_turn_d_rho_0 = normal_coefficient * p.half_s_over_m * x.velocity
-        * density_ratio + turn_factor * d_normal_coefficient_d_rho_0; // rad*ft^3/s/slug
-    let d_c_m_d_rho_0 = p.s * density_ratio
-        * (p.half_c_m_eta_1_inv_omega_1_2 * c_n_1 * velocity_2
-            + p.half_c_m_eta_2_inv_omega_2_2 * c_n_2 * velocity_2
-            + p.half_c_m_eta_3_inv_omega_3_2 * c_n_3 * velocity_2); // ft^3/slug
+    let d_c_l_d_rho_0 = p.s * i.density_ratio
+        * (p.half_c_l_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
+            + p.half_c_l_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
+            + p.half_c_l_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
+    let d_normal_coefficient_d_rho_0 = i.sin_alpha * d_c_t_d_rho_0 + d_c_l_d_rho_0; // ft^3/slug
+    let d_force_turn_d_rho_0 = i.normal_coefficient * p.half_s_over_m * x.velocity
+        * i.density_ratio + i.turn_factor * d_normal_coefficient_d_rho_0; // rad*ft^3/s/slug
+    let d_c_m_d_rho_0 = p.s * i.density_ratio
+        * (p.half_c_m_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
+            + p.half_c_m_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
+            + p.half_c_m_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
     let d_pitching_moment_d_rho_0 = p.c_bar
-        * (p.half_s * c_m * velocity_2 * density_ratio + reference_force * d_c_m_d_rho_0)
-        + p.z_t * d_thrust_d_rho_0; // lb*ft^3/slug
+        * (p.half_s * i.c_m * i.velocity_2 * i.density_ratio
+            + i.reference_force * d_c_m_d_rho_0) + p.z_t * d_thrust_d_rho_0; // lb*ft^3/slug
     let d_pitch_acceleration_d_rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
-    let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
+    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * velocity_2 * d_density_d_h_0; // lb/ft^3
+    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_eta_static_1_d_h_0 = d_generalized_force_1_d_h_0 * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_h_0 = c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_eta_static_2_d_h_0 = d_generalized_force_2_d_h_0 * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_h_0 = c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_eta_static_3_d_h_0 = d_generalized_force_3_d_h_0 * p.inv_omega_3_2; // slug^0.5/ft^0.5
     let d_c_t_d_h_0 = p.c_t_eta_1 * d_eta_static_1_d_h_0
         + p.c_t_eta_2 * d_eta_static_2_d_h_0
         + p.c_t_eta_3 * d_eta_static_3_d_h_0; // 1/ft
-    let d_thrust_d_h_0 = c_t * d_reference_force_d_h_0 + reference_force * d_c_t_d_h_0; // lb/ft^2
+    let d_thrust_d_h_0 = i.c_t * d_reference_force_d_h_0
+        + i.reference_force * d_c_t_d_h_0; // lb/ft^2
     let d_c_d_d_h_0 = p.c_d_eta_1 * d_eta_static_1_d_h_0
         + p.c_d_eta_2 * d_eta_static_2_d_h_0
         + p.c_d_eta_3 * d_eta_static_3_d_h_0; // 1/ft
-    let d_drag_d_h_0 = c_d * d_reference_force_d_h_0 + reference_force * d_c_d_d_h_0; // lb/ft^2
-    let d_path_force_d_h_0 = cos_alpha * d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
+    let d_drag_d_h_0 = i.c_d * d_reference_force_d_h_0 + i.reference_force * d_c_d_d_h_0; // lb/ft^2
+    let d_path_force_d_h_0 = i.cos_alpha * d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
     let d_velocity_rate_d_h_0 = d_path_force_d_h_0 * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
     let d_c_l_d_h_0 = p.c_l_eta_1 * d_eta_static_1_d_h_0
         + p.c_l_eta_2 * d_eta_static_2_d_h_0
         + p.c_l_eta_3 * d_eta_static_3_d_h_0; // 1/ft
-    let d_normal_coefficient_d_h_0 = sin_alpha * d_c_t_d_h_0 + d_c_l_d_h_0; // 1/ft
-    let d_force_turn_d_h_0 = normal_coefficient * d_turn_factor_d_h_0
-        + turn_factor * d_normal_coefficient_d_h_0; // rad/s/ft
+    let d_normal_coefficient_d_h_0 = i.sin_alpha * d_c_t_d_h_0 + d_c_l_d_h_0; // 1/ft
+    let d_force_turn_d_h_0 = i.normal_coefficient * d_turn_factor_d_h_0
+        + i.turn_factor * d_normal_coefficient_d_h_0; // rad/s/ft
     let d_c_m_d_h_0 = p.c_m_eta_1 * d_eta_static_1_d_h_0
         + p.c_m_eta_2 * d_eta_static_2_d_h_0
         + p.c_m_eta_3 * d_eta_static_3_d_h_0; // 1/ft
     let d_pitching_moment_d_h_0 = p.c_bar
-        * (c_m * d_reference_force_d_h_0 + reference_force * d_c_m_d_h_0)
+        * (i.c_m * d_reference_force_d_h_0 + i.reference_force * d_c_m_d_h_0)
         + p.z_t * d_thrust_d_h_0; // lb/ft
     let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
-    let d_density_ratio_d_h_s = -density_ratio * h_0_minus_altitude * p.inv_h_s_2; // 1/ft
+    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * velocity_2 * d_density_d_h_s; // lb/ft^3
+    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
     let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_eta_static_1_d_h_s = d_generalized_force_1_d_h_s * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_h_s = c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_eta_static_2_d_h_s = d_generalized_force_2_d_h_s * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_h_s = c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_eta_static_3_d_h_s = d_generalized_force_3_d_h_s * p.inv_omega_3_2; // slug^0.5/ft^0.5
     let d_c_t_d_h_s = p.c_t_eta_1 * d_eta_static_1_d_h_s
         + p.c_t_eta_2 * d_eta_static_2_d_h_s
         + p.c_t_eta_3 * d_eta_static_3_d_h_s; // 1/ft
-    let d_thrust_d_h_s = c_t * d_reference_force_d_h_s + reference_force * d_c_t_d_h_s; // lb/ft^2
+    let d_thrust_d_h_s = i.c_t * d_reference_force_d_h_s
+        + i.reference_force * d_c_t_d_h_s; // lb/ft^2
     let d_c_d_d_h_s = p.c_d_eta_1 * d_eta_static_1_d_h_s
         + p.c_d_eta_2 * d_eta_static_2_d_h_s
         + p.c_d_eta_3 * d_eta_static_3_d_h_s; // 1/ft
-    let d_drag_d_h_s = c_d * d_reference_force_d_h_s + reference_force * d_c_d_d_h_s; // lb/ft^2
-    let d_path_force_d_h_s = cos_alpha * d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
+    let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s + i.reference_force * d_c_d_d_h_s; // lb/ft^2
+    let d_path_force_d_h_s = i.cos_alpha * d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
     let d_velocity_rate_d_h_s = d_path_force_d_h_s * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
     let d_c_l_d_h_s = p.c_l_eta_1 * d_eta_static_1_d_h_s
         + p.c_l_eta_2 * d_eta_static_2_d_h_s
         + p.c_l_eta_3 * d_eta_static_3_d_h_s; // 1/ft
-    let d_normal_coefficient_d_h_s = sin_alpha * d_c_t_d_h_s + d_c_l_d_h_s; // 1/ft
-    let d_force_turn_d_h_s = normal_coefficient * d_turn_factor_d_h_s
-        + turn_factor * d_normal_coefficient_d_h_s; // rad/s/ft
+    let d_normal_coefficient_d_h_s = i.sin_alpha * d_c_t_d_h_s + d_c_l_d_h_s; // 1/ft
+    let d_force_turn_d_h_s = i.normal_coefficient * d_turn_factor_d_h_s
+        + i.turn_factor * d_normal_coefficient_d_h_s; // rad/s/ft
     let d_c_m_d_h_s = p.c_m_eta_1 * d_eta_static_1_d_h_s
         + p.c_m_eta_2 * d_eta_static_2_d_h_s
         + p.c_m_eta_3 * d_eta_static_3_d_h_s; // 1/ft
     let d_pitching_moment_d_h_s = p.c_bar
-        * (c_m * d_reference_force_d_h_s + reference_force * d_c_m_d_h_s)
+        * (i.c_m * d_reference_force_d_h_s + i.reference_force * d_c_m_d_h_s)
         + p.z_t * d_thrust_d_h_s; // lb/ft
     let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
-    let inv_velocity = x.velocity.recip();
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
-        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
+        * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio
+        * (p.earth_curvature * i.radius_ratio
             * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_gamma_rate_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-    let d_path_force_d_omega_1 = reference_force * p.inv_omega_1 * eta_static_1
-        * (R::TWO * p.c_d_eta_1 - cos_alpha * p.two_c_t_eta_1); // lb*s/ft/rad
+    let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    let d_path_force_d_omega_1 = i.reference_force * p.inv_omega_1 * i.eta_static_1
+        * (R::TWO * p.c_d_eta_1 - i.cos_alpha * p.two_c_t_eta_1); // lb*s/ft/rad
     let d_velocity_rate_d_omega_1 = d_path_force_d_omega_1 * p.inv_m; // ft/s/rad
-    let d_normal_coefficient_d_omega_1 = -p.inv_omega_1 * eta_static_1
-        * (sin_alpha * p.two_c_t_eta_1 + R::TWO * p.c_l_eta_1); // s/rad
-    let d_force_turn_d_omega_1 = turn_factor * d_normal_coefficient_d_omega_1;
+    let d_normal_coefficient_d_omega_1 = -p.inv_omega_1 * i.eta_static_1
+        * (i.sin_alpha * p.two_c_t_eta_1 + R::TWO * p.c_l_eta_1); // s/rad
+    let d_force_turn_d_omega_1 = i.turn_factor * d_normal_coefficient_d_omega_1;
     let d_pitching_moment_d_omega_1 = -p
-        .two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1 * reference_force
-        * eta_static_1; // lb*s/rad
+        .two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1 * i.reference_force
+        * i.eta_static_1; // lb*s/rad
     let d_pitch_acceleration_d_omega_1 = d_pitching_moment_d_omega_1 * p.inv_i_yy; // 1/s
     let d_chi_rate_1_d_omega_1 = -x.chi_1 * p.d_chi_decay_1_d_omega_1; // ft^0.5*slug^0.5/rad
-    let d_path_force_d_omega_2 = reference_force * p.inv_omega_2 * eta_static_2
-        * (R::TWO * p.c_d_eta_2 - cos_alpha * p.two_c_t_eta_2); // lb*s/ft/rad
+    let d_path_force_d_omega_2 = i.reference_force * p.inv_omega_2 * i.eta_static_2
+        * (R::TWO * p.c_d_eta_2 - i.cos_alpha * p.two_c_t_eta_2); // lb*s/ft/rad
     let d_velocity_rate_d_omega_2 = d_path_force_d_omega_2 * p.inv_m; // ft/s/rad
-    let d_normal_coefficient_d_omega_2 = -p.inv_omega_2 * eta_static_2
-        * (sin_alpha * p.two_c_t_eta_2 + R::TWO * p.c_l_eta_2); // s/rad
-    let d_force_turn_d_omega_2 = turn_factor * d_normal_coefficient_d_omega_2;
+    let d_normal_coefficient_d_omega_2 = -p.inv_omega_2 * i.eta_static_2
+        * (i.sin_alpha * p.two_c_t_eta_2 + R::TWO * p.c_l_eta_2); // s/rad
+    let d_force_turn_d_omega_2 = i.turn_factor * d_normal_coefficient_d_omega_2;
     let d_pitching_moment_d_omega_2 = -p
-        .two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2 * reference_force
-        * eta_static_2; // lb*s/rad
+        .two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2 * i.reference_force
+        * i.eta_static_2; // lb*s/rad
     let d_pitch_acceleration_d_omega_2 = d_pitching_moment_d_omega_2 * p.inv_i_yy; // 1/s
     let d_chi_rate_2_d_omega_2 = -x.chi_2 * p.d_chi_decay_2_d_omega_2; // ft^0.5*slug^0.5/rad
-    let d_path_force_d_omega_3 = reference_force * p.inv_omega_3 * eta_static_3
-        * (R::TWO * p.c_d_eta_3 - cos_alpha * p.two_c_t_eta_3); // lb*s/ft/rad
+    let d_path_force_d_omega_3 = i.reference_force * p.inv_omega_3 * i.eta_static_3
+        * (R::TWO * p.c_d_eta_3 - i.cos_alpha * p.two_c_t_eta_3); // lb*s/ft/rad
     let d_velocity_rate_d_omega_3 = d_path_force_d_omega_3 * p.inv_m; // ft/s/rad
-    let d_normal_coefficient_d_omega_3 = -p.inv_omega_3 * eta_static_3
-        * (sin_alpha * p.two_c_t_eta_3 + R::TWO * p.c_l_eta_3); // s/rad
-    let d_force_turn_d_omega_3 = turn_factor * d_normal_coefficient_d_omega_3;
+    let d_normal_coefficient_d_omega_3 = -p.inv_omega_3 * i.eta_static_3
+        * (i.sin_alpha * p.two_c_t_eta_3 + R::TWO * p.c_l_eta_3); // s/rad
+    let d_force_turn_d_omega_3 = i.turn_factor * d_normal_coefficient_d_omega_3;
     let d_pitching_moment_d_omega_3 = -p
-        .two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3 * reference_force
-        * eta_static_3; // lb*s/rad
+        .two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3 * i.reference_force
+        * i.eta_static_3; // lb*s/rad
     let d_pitch_acceleration_d_omega_3 = d_pitching_moment_d_omega_3 * p.inv_i_yy; // 1/s
     let d_chi_rate_3_d_omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
     let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // ft^0.5*slug^0.5/s
     let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // ft^0.5*slug^0.5/s
     let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // ft^0.5*slug^0.5/s
-    let d_c_t_d_canard_command = reference_force
+    let d_c_t_d_canard_command = i.reference_force
         * (p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
             + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c);
-    let d_thrust_d_canard_command = reference_force * d_c_t_d_canard_command; // lb/ft
-    let d_c_d_d_canard_command = reference_force
+    let d_thrust_d_canard_command = i.reference_force * d_c_t_d_canard_command; // lb/ft
+    let d_c_d_d_canard_command = i.reference_force
         * (p.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 * u.delta_c
             + p.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2 * u.delta_c
             + p.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 * u.delta_c)
-        + slope_of_c_d_in_canard_deflection * u.delta_c;
-    let d_drag_d_canard_command = reference_force * d_c_d_d_canard_command; // lb/ft
-    let d_path_force_d_canard_command = cos_alpha * d_thrust_d_canard_command
+        + s.slope_of_c_d_in_canard_deflection * u.delta_c;
+    let d_drag_d_canard_command = i.reference_force * d_c_d_d_canard_command; // lb/ft
+    let d_path_force_d_canard_command = i.cos_alpha * d_thrust_d_canard_command
         - d_drag_d_canard_command; // lb/ft
     let d_velocity_rate_d_canard_command = d_path_force_d_canard_command * p.inv_m; // ft/s^2
-    let d_c_l_d_canard_command = reference_force
+    let d_c_l_d_canard_command = i.reference_force
         * (p.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
             + p.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c)
         + p.c_l_delta_c * u.delta_c;
-    let d_normal_coefficient_d_canard_command = sin_alpha * d_c_t_d_canard_command
+    let d_normal_coefficient_d_canard_command = i.sin_alpha * d_c_t_d_canard_command
         + d_c_l_d_canard_command;
-    let d_force_turn_d_canard_command = turn_factor
+    let d_force_turn_d_canard_command = i.turn_factor
         * d_normal_coefficient_d_canard_command; // rad/s
-    let d_c_m_d_canard_command = reference_force
+    let d_c_m_d_canard_command = i.reference_force
         * (p.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
             + p.c_m_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c)
         + p.c_m_delta_c * u.delta_c;
-    let d_pitching_moment_d_canard_command = p.c_bar * reference_force
+    let d_pitching_moment_d_canard_command = p.c_bar * i.reference_force
         * d_c_m_d_canard_command + p.z_t * d_thrust_d_canard_command; // lb
     let d_pitch_acceleration_d_canard_command = d_pitching_moment_d_canard_command
         * p.inv_i_yy; // rad/s^2
     let d_c_t_d_canard_slaving_term_1 = p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
         + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
         + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
-    let d_c_t_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c * reference_force
+    let d_c_t_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c * i.reference_force
         * d_c_t_d_canard_slaving_term_1;
-    let d_thrust_d_canard_slaving = reference_force * d_c_t_d_canard_slaving; // lb/ft
-    let d_c_d_d_canard_slaving_term_1 = reference_force
+    let d_thrust_d_canard_slaving = i.reference_force * d_c_t_d_canard_slaving; // lb/ft
+    let d_c_d_d_canard_slaving_term_1 = i.reference_force
         * (p.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 * u.delta_e
             + p.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2 * u.delta_e
             + p.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 * u.delta_e)
-        + slope_of_c_d_in_canard_deflection * u.delta_e;
+        + s.slope_of_c_d_in_canard_deflection * u.delta_e;
     let d_c_d_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * d_c_d_d_canard_slaving_term_1;
-    let d_drag_d_canard_slaving = reference_force * d_c_d_d_canard_slaving; // lb/ft
-    let d_path_force_d_canard_slaving = cos_alpha * d_thrust_d_canard_slaving
+    let d_drag_d_canard_slaving = i.reference_force * d_c_d_d_canard_slaving; // lb/ft
+    let d_path_force_d_canard_slaving = i.cos_alpha * d_thrust_d_canard_slaving
         - d_drag_d_canard_slaving; // lb/ft
     let d_velocity_rate_d_canard_slaving = d_path_force_d_canard_slaving * p.inv_m; // ft/s^2
     let c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e = p
@@ -559,285 +457,277 @@ pub fn parameter_jacobian_values<R: Real>(
         + c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
         + c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e;
     let d_c_l_d_canard_slaving = -p.c_l_delta_e
-        * (p.inv_c_l_delta_c * reference_force * d_c_l_d_canard_slaving_term_1
+        * (p.inv_c_l_delta_c * i.reference_force * d_c_l_d_canard_slaving_term_1
             + u.delta_e);
-    let d_normal_coefficient_d_canard_slaving = sin_alpha * d_c_t_d_canard_slaving
+    let d_normal_coefficient_d_canard_slaving = i.sin_alpha * d_c_t_d_canard_slaving
         + d_c_l_d_canard_slaving;
-    let d_force_turn_d_canard_slaving = turn_factor
+    let d_force_turn_d_canard_slaving = i.turn_factor
         * d_normal_coefficient_d_canard_slaving; // rad/s
-    let d_c_m_d_canard_slaving_term_1 = reference_force
+    let d_c_m_d_canard_slaving_term_1 = i.reference_force
         * (p.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
             + p.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
             + p.c_m_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e)
         + p.c_m_delta_c * u.delta_e;
     let d_c_m_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * d_c_m_d_canard_slaving_term_1;
-    let d_pitching_moment_d_canard_slaving = p.c_bar * reference_force
+    let d_pitching_moment_d_canard_slaving = p.c_bar * i.reference_force
         * d_c_m_d_canard_slaving + p.z_t * d_thrust_d_canard_slaving; // lb
     let d_pitch_acceleration_d_canard_slaving = d_pitching_moment_d_canard_slaving
         * p.inv_i_yy; // rad/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio
+        * (i.radius_ratio
             * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_gamma_rate_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // ft^0.5*slug^0.5/s
     let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // ft^0.5*slug^0.5/s
     let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // ft^0.5*slug^0.5/s
-    let d_c_t_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * reference_force
+    let d_c_t_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * i.reference_force
         * d_c_t_d_canard_slaving_term_1; // rad
-    let d_thrust_d_c_l_delta_e = reference_force * d_c_t_d_c_l_delta_e; // lb*rad/ft
+    let d_thrust_d_c_l_delta_e = i.reference_force * d_c_t_d_c_l_delta_e; // lb*rad/ft
     let d_c_d_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
         * d_c_d_d_canard_slaving_term_1; // rad
-    let d_drag_d_c_l_delta_e = reference_force * d_c_d_d_c_l_delta_e; // lb*rad/ft
-    let d_path_force_d_c_l_delta_e = cos_alpha * d_thrust_d_c_l_delta_e
+    let d_drag_d_c_l_delta_e = i.reference_force * d_c_d_d_c_l_delta_e; // lb*rad/ft
+    let d_path_force_d_c_l_delta_e = i.cos_alpha * d_thrust_d_c_l_delta_e
         - d_drag_d_c_l_delta_e; // lb*rad/ft
     let d_velocity_rate_d_c_l_delta_e = d_path_force_d_c_l_delta_e * p.inv_m; // ft*rad/s^2
-    let d_c_l_d_c_l_delta_e = p.canard_slaving_over_c_l_delta_c * reference_force
+    let d_c_l_d_c_l_delta_e = p.canard_slaving_over_c_l_delta_c * i.reference_force
         * (-c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
             - c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
             - c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e)
         + u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
-    let d_normal_coefficient_d_c_l_delta_e = sin_alpha * d_c_t_d_c_l_delta_e
+    let d_normal_coefficient_d_c_l_delta_e = i.sin_alpha * d_c_t_d_c_l_delta_e
         + d_c_l_d_c_l_delta_e; // rad
-    let d_force_turn_d_c_l_delta_e = turn_factor * d_normal_coefficient_d_c_l_delta_e; // rad^2/s
+    let d_force_turn_d_c_l_delta_e = i.turn_factor * d_normal_coefficient_d_c_l_delta_e; // rad^2/s
     let d_c_m_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
         * d_c_m_d_canard_slaving_term_1; // rad
-    let d_pitching_moment_d_c_l_delta_e = p.c_bar * reference_force * d_c_m_d_c_l_delta_e
-        + p.z_t * d_thrust_d_c_l_delta_e; // lb*rad
+    let d_pitching_moment_d_c_l_delta_e = p.c_bar * i.reference_force
+        * d_c_m_d_c_l_delta_e + p.z_t * d_thrust_d_c_l_delta_e; // lb*rad
     let d_pitch_acceleration_d_c_l_delta_e = d_pitching_moment_d_c_l_delta_e
         * p.inv_i_yy; // rad^2/s^2
     let d_c_t_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * reference_force * d_c_t_d_canard_slaving_term_1; // rad
-    let d_thrust_d_c_l_delta_c = reference_force * d_c_t_d_c_l_delta_c; // lb*rad/ft
+        * i.reference_force * d_c_t_d_canard_slaving_term_1; // rad
+    let d_thrust_d_c_l_delta_c = i.reference_force * d_c_t_d_c_l_delta_c; // lb*rad/ft
     let d_c_d_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_c_d_d_canard_slaving_term_1; // rad
-    let d_drag_d_c_l_delta_c = reference_force * d_c_d_d_c_l_delta_c; // lb*rad/ft
-    let d_path_force_d_c_l_delta_c = cos_alpha * d_thrust_d_c_l_delta_c
+    let d_drag_d_c_l_delta_c = i.reference_force * d_c_d_d_c_l_delta_c; // lb*rad/ft
+    let d_path_force_d_c_l_delta_c = i.cos_alpha * d_thrust_d_c_l_delta_c
         - d_drag_d_c_l_delta_c; // lb*rad/ft
     let d_velocity_rate_d_c_l_delta_c = d_path_force_d_c_l_delta_c * p.inv_m; // ft*rad/s^2
     let d_c_l_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * reference_force * d_c_l_d_canard_slaving_term_1 + canard_commanded; // rad
-    let d_normal_coefficient_d_c_l_delta_c = sin_alpha * d_c_t_d_c_l_delta_c
+        * i.reference_force * d_c_l_d_canard_slaving_term_1 + i.canard_commanded; // rad
+    let d_normal_coefficient_d_c_l_delta_c = i.sin_alpha * d_c_t_d_c_l_delta_c
         + d_c_l_d_c_l_delta_c; // rad
-    let d_force_turn_d_c_l_delta_c = turn_factor * d_normal_coefficient_d_c_l_delta_c; // rad^2/s
+    let d_force_turn_d_c_l_delta_c = i.turn_factor * d_normal_coefficient_d_c_l_delta_c; // rad^2/s
     let d_c_m_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_c_m_d_canard_slaving_term_1; // rad
-    let d_pitching_moment_d_c_l_delta_c = p.c_bar * reference_force * d_c_m_d_c_l_delta_c
-        + p.z_t * d_thrust_d_c_l_delta_c; // lb*rad
+    let d_pitching_moment_d_c_l_delta_c = p.c_bar * i.reference_force
+        * d_c_m_d_c_l_delta_c + p.z_t * d_thrust_d_c_l_delta_c; // lb*rad
     let d_pitch_acceleration_d_c_l_delta_c = d_pitching_moment_d_c_l_delta_c
         * p.inv_i_yy; // rad^2/s^2
-    let reference_force_2 = reference_force * reference_force;
+    let reference_force_2 = i.reference_force * i.reference_force;
     let d_path_force_d_c_n_1_alpha_2 = reference_force_2 * p.inv_omega_1_2
-        * (cos_alpha * p.c_t_eta_1 * alpha_2 - p.c_d_eta_1 * alpha_2); // lb*slug^0.5*rad^2/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_1 * i.alpha_2 - p.c_d_eta_1 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     let d_velocity_rate_d_c_n_1_alpha_2 = d_path_force_d_c_n_1_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_normal_coefficient_d_c_n_1_alpha_2 = p.inv_omega_1_2 * reference_force
-        * (sin_alpha * p.c_t_eta_1 * alpha_2 + p.c_l_eta_1 * alpha_2); // slug^0.5*rad^2/ft^0.5
-    let d_force_turn_d_c_n_1_alpha_2 = turn_factor
+    let d_normal_coefficient_d_c_n_1_alpha_2 = p.inv_omega_1_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_1 * i.alpha_2 + p.c_l_eta_1 * i.alpha_2); // slug^0.5*rad^2/ft^0.5
+    let d_force_turn_d_c_n_1_alpha_2 = i.turn_factor
         * d_normal_coefficient_d_c_n_1_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_alpha_2 = p.inv_omega_1_2 * reference_force_2
-        * (p.c_bar_c_m_eta_1 * alpha_2 + p.z_t_c_t_eta_1 * alpha_2); // lb*slug^0.5*rad^2/ft^0.5
+        * (p.c_bar_c_m_eta_1 * i.alpha_2 + p.z_t_c_t_eta_1 * i.alpha_2); // lb*slug^0.5*rad^2/ft^0.5
     let d_pitch_acceleration_d_c_n_1_alpha_2 = d_pitching_moment_d_c_n_1_alpha_2
         * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_alpha = reference_force_2 * p.inv_omega_1_2
-        * (cos_alpha * p.c_t_eta_1 * x.alpha - p.c_d_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_1 * x.alpha - p.c_d_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_1_alpha = d_path_force_d_c_n_1_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_1_alpha = p.inv_omega_1_2 * reference_force
-        * (sin_alpha * p.c_t_eta_1 * x.alpha + p.c_l_eta_1 * x.alpha); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_alpha = turn_factor * d_normal_coefficient_d_c_n_1_alpha; // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_1_alpha = p.inv_omega_1_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_1 * x.alpha + p.c_l_eta_1 * x.alpha); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_alpha = i.turn_factor * d_normal_coefficient_d_c_n_1_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_alpha = p.inv_omega_1_2 * reference_force_2
         * (p.c_bar_c_m_eta_1 * x.alpha + p.z_t_c_t_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_1_alpha = d_pitching_moment_d_c_n_1_alpha
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_delta_e = reference_force_2 * p.inv_omega_1_2
-        * (cos_alpha * p.c_t_eta_1 * u.delta_e - p.c_d_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_1 * u.delta_e - p.c_d_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_1_delta_e = d_path_force_d_c_n_1_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_1_delta_e = p.inv_omega_1_2 * reference_force
-        * (sin_alpha * p.c_t_eta_1 * u.delta_e + p.c_l_eta_1 * u.delta_e); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_delta_e = turn_factor
+    let d_normal_coefficient_d_c_n_1_delta_e = p.inv_omega_1_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_1 * u.delta_e + p.c_l_eta_1 * u.delta_e); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_delta_e = i.turn_factor
         * d_normal_coefficient_d_c_n_1_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_delta_e = p.inv_omega_1_2 * reference_force_2
         * (p.c_bar_c_m_eta_1 * u.delta_e + p.z_t_c_t_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_1_delta_e = d_pitching_moment_d_c_n_1_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha_c_t_eta_1 - p.c_d_eta_1;
+    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = s.cos_alpha_c_t_eta_1 - p.c_d_eta_1;
     let d_path_force_d_c_n_1_delta_c = reference_force_2 * p.inv_omega_1_2
-        * canard_deflection * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
+        * i.canard_deflection * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_1_delta_c = d_path_force_d_c_n_1_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let d_normal_coefficient_d_c_n_1_delta_c = p.inv_omega_1_2 * reference_force
-        * canard_deflection * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_delta_c = turn_factor
+    let d_normal_coefficient_d_c_n_1_delta_c = p.inv_omega_1_2 * i.reference_force
+        * i.canard_deflection * s.d_normal_coefficient_d_chi_1; // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_delta_c = i.turn_factor
         * d_normal_coefficient_d_c_n_1_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_delta_c = p
         .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * reference_force_2
-        * canard_deflection; // lb*slug^0.5*rad/ft^0.5
+        * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_1_delta_c = d_pitching_moment_d_c_n_1_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_0 = reference_force_2 * p.inv_omega_1_2
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
-    let d_normal_coefficient_d_c_n_1_0 = p.inv_omega_1_2 * reference_force
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // slug^0.5/ft^0.5
-    let d_force_turn_d_c_n_1_0 = turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_1_0 = p.inv_omega_1_2 * i.reference_force
+        * s.d_normal_coefficient_d_chi_1; // slug^0.5/ft^0.5
+    let d_force_turn_d_c_n_1_0 = i.turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_0 = p
         .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_alpha_2 = reference_force_2 * p.inv_omega_2_2
-        * (cos_alpha * p.c_t_eta_2 * alpha_2 - p.c_d_eta_2 * alpha_2); // lb*slug^0.5*rad^2/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_2 * i.alpha_2 - p.c_d_eta_2 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     let d_velocity_rate_d_c_n_2_alpha_2 = d_path_force_d_c_n_2_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_normal_coefficient_d_c_n_2_alpha_2 = p.inv_omega_2_2 * reference_force
-        * (sin_alpha * p.c_t_eta_2 * alpha_2 + p.c_l_eta_2 * alpha_2); // slug^0.5*rad^2/ft^0.5
-    let d_force_turn_d_c_n_2_alpha_2 = turn_factor
+    let d_normal_coefficient_d_c_n_2_alpha_2 = p.inv_omega_2_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_2 * i.alpha_2 + p.c_l_eta_2 * i.alpha_2); // slug^0.5*rad^2/ft^0.5
+    let d_force_turn_d_c_n_2_alpha_2 = i.turn_factor
         * d_normal_coefficient_d_c_n_2_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_alpha_2 = p.inv_omega_2_2 * reference_force_2
-        * (p.c_bar_c_m_eta_2 * alpha_2 + p.z_t_c_t_eta_2 * alpha_2); // lb*slug^0.5*rad^2/ft^0.5
+        * (p.c_bar_c_m_eta_2 * i.alpha_2 + p.z_t_c_t_eta_2 * i.alpha_2); // lb*slug^0.5*rad^2/ft^0.5
     let d_pitch_acceleration_d_c_n_2_alpha_2 = d_pitching_moment_d_c_n_2_alpha_2
         * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_alpha = reference_force_2 * p.inv_omega_2_2
-        * (cos_alpha * p.c_t_eta_2 * x.alpha - p.c_d_eta_2 * x.alpha); // lb*slug^0.5*rad/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_2 * x.alpha - p.c_d_eta_2 * x.alpha); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_alpha = d_path_force_d_c_n_2_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_2_alpha = p.inv_omega_2_2 * reference_force
-        * (sin_alpha * p.c_t_eta_2 * x.alpha + p.c_l_eta_2 * x.alpha); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_2_alpha = turn_factor * d_normal_coefficient_d_c_n_2_alpha; // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_2_alpha = p.inv_omega_2_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_2 * x.alpha + p.c_l_eta_2 * x.alpha); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_2_alpha = i.turn_factor * d_normal_coefficient_d_c_n_2_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_alpha = p.inv_omega_2_2 * reference_force_2
         * (p.c_bar_c_m_eta_2 * x.alpha + p.z_t_c_t_eta_2 * x.alpha); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_alpha = d_pitching_moment_d_c_n_2_alpha
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_delta_e = reference_force_2 * p.inv_omega_2_2
-        * (cos_alpha * p.c_t_eta_2 * u.delta_e - p.c_d_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_2 * u.delta_e - p.c_d_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_delta_e = d_path_force_d_c_n_2_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_2_delta_e = p.inv_omega_2_2 * reference_force
-        * (sin_alpha * p.c_t_eta_2 * u.delta_e + p.c_l_eta_2 * u.delta_e); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_2_delta_e = turn_factor
+    let d_normal_coefficient_d_c_n_2_delta_e = p.inv_omega_2_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_2 * u.delta_e + p.c_l_eta_2 * u.delta_e); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_2_delta_e = i.turn_factor
         * d_normal_coefficient_d_c_n_2_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_delta_e = p.inv_omega_2_2 * reference_force_2
         * (p.c_bar_c_m_eta_2 * u.delta_e + p.z_t_c_t_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_delta_e = d_pitching_moment_d_c_n_2_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha_c_t_eta_2 - p.c_d_eta_2;
+    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = s.cos_alpha_c_t_eta_2 - p.c_d_eta_2;
     let d_path_force_d_c_n_2_delta_c = reference_force_2 * p.inv_omega_2_2
-        * canard_deflection * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad/ft^1.5
+        * i.canard_deflection * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_delta_c = d_path_force_d_c_n_2_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let d_normal_coefficient_d_c_n_2_delta_c = p.inv_omega_2_2 * reference_force
-        * canard_deflection * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_2_delta_c = turn_factor
+    let d_normal_coefficient_d_c_n_2_delta_c = p.inv_omega_2_2 * i.reference_force
+        * i.canard_deflection * s.d_normal_coefficient_d_chi_2; // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_2_delta_c = i.turn_factor
         * d_normal_coefficient_d_c_n_2_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_delta_c = p
         .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * reference_force_2
-        * canard_deflection; // lb*slug^0.5*rad/ft^0.5
+        * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_delta_c = d_pitching_moment_d_c_n_2_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_0 = reference_force_2 * p.inv_omega_2_2
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_2_0 = d_path_force_d_c_n_2_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
-    let d_normal_coefficient_d_c_n_2_0 = p.inv_omega_2_2 * reference_force
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // slug^0.5/ft^0.5
-    let d_force_turn_d_c_n_2_0 = turn_factor * d_normal_coefficient_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_2_0 = p.inv_omega_2_2 * i.reference_force
+        * s.d_normal_coefficient_d_chi_2; // slug^0.5/ft^0.5
+    let d_force_turn_d_c_n_2_0 = i.turn_factor * d_normal_coefficient_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_0 = p
         .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_2_0 = d_pitching_moment_d_c_n_2_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_alpha_2 = reference_force_2 * p.inv_omega_3_2
-        * (cos_alpha * p.c_t_eta_3 * alpha_2 - p.c_d_eta_3 * alpha_2); // lb*slug^0.5*rad^2/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_3 * i.alpha_2 - p.c_d_eta_3 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     let d_velocity_rate_d_c_n_3_alpha_2 = d_path_force_d_c_n_3_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_normal_coefficient_d_c_n_3_alpha_2 = p.inv_omega_3_2 * reference_force
-        * (sin_alpha * p.c_t_eta_3 * alpha_2 + p.c_l_eta_3 * alpha_2); // slug^0.5*rad^2/ft^0.5
-    let d_force_turn_d_c_n_3_alpha_2 = turn_factor
+    let d_normal_coefficient_d_c_n_3_alpha_2 = p.inv_omega_3_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_3 * i.alpha_2 + p.c_l_eta_3 * i.alpha_2); // slug^0.5*rad^2/ft^0.5
+    let d_force_turn_d_c_n_3_alpha_2 = i.turn_factor
         * d_normal_coefficient_d_c_n_3_alpha_2; // rad^3*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_alpha_2 = p.inv_omega_3_2 * reference_force_2
-        * (p.c_bar_c_m_eta_3 * alpha_2 + p.z_t_c_t_eta_3 * alpha_2); // lb*slug^0.5*rad^2/ft^0.5
+        * (p.c_bar_c_m_eta_3 * i.alpha_2 + p.z_t_c_t_eta_3 * i.alpha_2); // lb*slug^0.5*rad^2/ft^0.5
     let d_pitch_acceleration_d_c_n_3_alpha_2 = d_pitching_moment_d_c_n_3_alpha_2
         * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_alpha = reference_force_2 * p.inv_omega_3_2
-        * (cos_alpha * p.c_t_eta_3 * x.alpha - p.c_d_eta_3 * x.alpha); // lb*slug^0.5*rad/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_3 * x.alpha - p.c_d_eta_3 * x.alpha); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_alpha = d_path_force_d_c_n_3_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_3_alpha = p.inv_omega_3_2 * reference_force
-        * (sin_alpha * p.c_t_eta_3 * x.alpha + p.c_l_eta_3 * x.alpha); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_3_alpha = turn_factor * d_normal_coefficient_d_c_n_3_alpha; // rad^2*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_3_alpha = p.inv_omega_3_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_3 * x.alpha + p.c_l_eta_3 * x.alpha); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_3_alpha = i.turn_factor * d_normal_coefficient_d_c_n_3_alpha; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_alpha = p.inv_omega_3_2 * reference_force_2
         * (p.c_bar_c_m_eta_3 * x.alpha + p.z_t_c_t_eta_3 * x.alpha); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_alpha = d_pitching_moment_d_c_n_3_alpha
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_delta_e = reference_force_2 * p.inv_omega_3_2
-        * (cos_alpha * p.c_t_eta_3 * u.delta_e - p.c_d_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
+        * (i.cos_alpha * p.c_t_eta_3 * u.delta_e - p.c_d_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_delta_e = d_path_force_d_c_n_3_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_3_delta_e = p.inv_omega_3_2 * reference_force
-        * (sin_alpha * p.c_t_eta_3 * u.delta_e + p.c_l_eta_3 * u.delta_e); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_3_delta_e = turn_factor
+    let d_normal_coefficient_d_c_n_3_delta_e = p.inv_omega_3_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_3 * u.delta_e + p.c_l_eta_3 * u.delta_e); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_3_delta_e = i.turn_factor
         * d_normal_coefficient_d_c_n_3_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_delta_e = p.inv_omega_3_2 * reference_force_2
         * (p.c_bar_c_m_eta_3 * u.delta_e + p.z_t_c_t_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_delta_e = d_pitching_moment_d_c_n_3_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha_c_t_eta_3 - p.c_d_eta_3;
+    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = s.cos_alpha_c_t_eta_3 - p.c_d_eta_3;
     let d_path_force_d_c_n_3_delta_c = reference_force_2 * p.inv_omega_3_2
-        * canard_deflection * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad/ft^1.5
+        * i.canard_deflection * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_delta_c = d_path_force_d_c_n_3_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let d_normal_coefficient_d_c_n_3_delta_c = p.inv_omega_3_2 * reference_force
-        * canard_deflection * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_3_delta_c = turn_factor
+    let d_normal_coefficient_d_c_n_3_delta_c = p.inv_omega_3_2 * i.reference_force
+        * i.canard_deflection * s.d_normal_coefficient_d_chi_3; // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_3_delta_c = i.turn_factor
         * d_normal_coefficient_d_c_n_3_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_delta_c = p
         .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * reference_force_2
-        * canard_deflection; // lb*slug^0.5*rad/ft^0.5
+        * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_delta_c = d_pitching_moment_d_c_n_3_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_0 = reference_force_2 * p.inv_omega_3_2
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_3_0 = d_path_force_d_c_n_3_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
-    let d_normal_coefficient_d_c_n_3_0 = p.inv_omega_3_2 * reference_force
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // slug^0.5/ft^0.5
-    let d_force_turn_d_c_n_3_0 = turn_factor * d_normal_coefficient_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5
+    let d_normal_coefficient_d_c_n_3_0 = p.inv_omega_3_2 * i.reference_force
+        * s.d_normal_coefficient_d_chi_3; // slug^0.5/ft^0.5
+    let d_force_turn_d_c_n_3_0 = i.turn_factor * d_normal_coefficient_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_0 = p
         .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_3_0 = d_pitching_moment_d_c_n_3_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
-    let s_density_velocity = p.s * density_velocity;
-    let pitching_moment_over_i_yy = pitching_moment * p.inv_i_yy;
 
     [
-        -path_force * p.inv_m_2,
+        -i.path_force * p.inv_m_2,
         d_velocity_rate_d_s,
         d_velocity_rate_d_rho_0,
         d_velocity_rate_d_h_0,
         d_velocity_rate_d_h_s,
-        -sin_gamma * radius_ratio_2,
-        sin_gamma * p.two_g_earth_curvature_over_r_e * radius_ratio
+        -i.sin_gamma * i.radius_ratio_2,
+        i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
             * slope_of_radius_ratio_in_earth_curvature,
         d_velocity_rate_d_omega_1,
         d_velocity_rate_d_omega_2,
         d_velocity_rate_d_omega_3,
         d_velocity_rate_d_canard_command,
         d_velocity_rate_d_canard_slaving,
-        sin_gamma * p.minus_two_g_over_r_e * radius_ratio
+        i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
             * slope_of_radius_ratio_in_earth_curvature,
-        cos_alpha * reference_force * u.phi * alpha_3 * p.inv_m,
-        cos_alpha * reference_force * u.phi * alpha_2 * p.inv_m,
-        cos_alpha * reference_force * u.phi * x.alpha * p.inv_m,
-        cos_alpha * reference_force * u.phi * p.inv_m,
-        cos_alpha * reference_force * alpha_3 * p.inv_m,
-        cos_alpha * reference_force * alpha_2 * p.inv_m,
-        cos_alpha * reference_force * x.alpha * p.inv_m,
-        cos_alpha * reference_force * p.inv_m,
-        cos_alpha * reference_force * eta_1 * p.inv_m,
-        cos_alpha * reference_force * eta_2 * p.inv_m,
-        cos_alpha * reference_force * eta_3 * p.inv_m,
+        i.cos_alpha * i.reference_force * u.phi * i.alpha_3 * p.inv_m,
+        i.cos_alpha * i.reference_force * u.phi * i.alpha_2 * p.inv_m,
+        i.cos_alpha * i.reference_force * u.phi * x.alpha * p.inv_m,
+        i.cos_alpha * i.reference_force * u.phi * p.inv_m,
+        i.cos_alpha * i.reference_force * i.alpha_3 * p.inv_m,
+        i.cos_alpha * i.reference_force * i.alpha_2 * p.inv_m,
+        i.cos_alpha * i.reference_force * x.alpha * p.inv_m,
+        i.cos_alpha * i.reference_force * p.inv_m,
+        i.cos_alpha * i.reference_force * i.eta_1 * p.inv_m,
+        i.cos_alpha * i.reference_force * i.eta_2 * p.inv_m,
+        i.cos_alpha * i.reference_force * i.eta_3 * p.inv_m,
         d_velocity_rate_d_c_l_delta_e,
         d_velocity_rate_d_c_l_delta_c,
-        -reference_force * alpha_2 * p.inv_m,
-        -reference_force * x.alpha * p.inv_m,
-        -reference_force * delta_e_2 * p.inv_m,
-        -reference_force * u.delta_e * p.inv_m,
-        -reference_force * canard_deflection_2 * p.inv_m,
-        -reference_force * canard_deflection * p.inv_m,
-        -reference_force * p.inv_m,
-        -reference_force * eta_1 * p.inv_m,
-        -reference_force * eta_2 * p.inv_m,
-        -reference_force * eta_3 * p.inv_m,
+        -i.reference_force * i.alpha_2 * p.inv_m,
+        -i.reference_force * x.alpha * p.inv_m,
+        -i.reference_force * i.delta_e_2 * p.inv_m,
+        -i.reference_force * u.delta_e * p.inv_m,
+        -i.reference_force * i.canard_deflection_2 * p.inv_m,
+        -i.reference_force * i.canard_deflection * p.inv_m,
+        -i.reference_force * p.inv_m,
+        -i.reference_force * i.eta_1 * p.inv_m,
+        -i.reference_force * i.eta_2 * p.inv_m,
+        -i.reference_force * i.eta_3 * p.inv_m,
         d_velocity_rate_d_c_n_1_alpha_2,
         d_velocity_rate_d_c_n_1_alpha,
         d_velocity_rate_d_c_n_1_delta_e,
@@ -853,12 +743,12 @@ pub fn parameter_jacobian_values<R: Real>(
         d_velocity_rate_d_c_n_3_delta_e,
         d_velocity_rate_d_c_n_3_delta_c,
         d_velocity_rate_d_c_n_3_0,
-        normal_coefficient * s_density_velocity * p.minus_half_inv_m_2,
+        i.normal_coefficient * s.d_reference_force_d_velocity * p.minus_half_inv_m_2,
         d_force_turn_d_s,
         d_force_turn_d_rho_0,
         d_force_turn_d_h_0,
         d_force_turn_d_h_s,
-        -cos_gamma * radius_ratio_2 * inv_velocity,
+        -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
         d_gamma_rate_d_r_e,
         d_force_turn_d_omega_1,
         d_force_turn_d_omega_2,
@@ -866,24 +756,24 @@ pub fn parameter_jacobian_values<R: Real>(
         d_force_turn_d_canard_command,
         d_force_turn_d_canard_slaving,
         d_gamma_rate_d_spherical_earth,
-        turn_factor * sin_alpha * u.phi * alpha_3,
-        turn_factor * sin_alpha * u.phi * alpha_2,
-        turn_factor * sin_alpha * u.phi * x.alpha,
-        turn_factor * sin_alpha * u.phi,
-        turn_factor * sin_alpha * alpha_3,
-        turn_factor * sin_alpha * alpha_2,
-        turn_factor * sin_alpha * x.alpha,
-        turn_factor * sin_alpha,
-        turn_factor * sin_alpha * eta_1,
-        turn_factor * sin_alpha * eta_2,
-        turn_factor * sin_alpha * eta_3,
-        turn_factor * x.alpha,
+        i.turn_factor * i.sin_alpha * u.phi * i.alpha_3,
+        i.turn_factor * i.sin_alpha * u.phi * i.alpha_2,
+        i.turn_factor * i.sin_alpha * u.phi * x.alpha,
+        i.turn_factor * i.sin_alpha * u.phi,
+        i.turn_factor * i.sin_alpha * i.alpha_3,
+        i.turn_factor * i.sin_alpha * i.alpha_2,
+        i.turn_factor * i.sin_alpha * x.alpha,
+        i.turn_factor * i.sin_alpha,
+        i.turn_factor * i.sin_alpha * i.eta_1,
+        i.turn_factor * i.sin_alpha * i.eta_2,
+        i.turn_factor * i.sin_alpha * i.eta_3,
+        i.turn_factor * x.alpha,
         d_force_turn_d_c_l_delta_e,
         d_force_turn_d_c_l_delta_c,
-        turn_factor,
-        turn_factor * eta_1,
-        turn_factor * eta_2,
-        turn_factor * eta_3,
+        i.turn_factor,
+        i.turn_factor * i.eta_1,
+        i.turn_factor * i.eta_2,
+        i.turn_factor * i.eta_3,
         d_force_turn_d_c_n_1_alpha_2,
         d_force_turn_d_c_n_1_alpha,
         d_force_turn_d_c_n_1_delta_e,
@@ -899,12 +789,12 @@ pub fn parameter_jacobian_values<R: Real>(
         d_force_turn_d_c_n_3_delta_e,
         d_force_turn_d_c_n_3_delta_c,
         d_force_turn_d_c_n_3_0,
-        normal_coefficient * s_density_velocity * p.half_inv_m_2,
+        i.normal_coefficient * s.d_reference_force_d_velocity * p.half_inv_m_2,
         -d_force_turn_d_s,
         -d_force_turn_d_rho_0,
         -d_force_turn_d_h_0,
         -d_force_turn_d_h_s,
-        cos_gamma * radius_ratio_2 * inv_velocity,
+        i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
         -d_gamma_rate_d_r_e,
         -d_force_turn_d_omega_1,
         -d_force_turn_d_omega_2,
@@ -912,24 +802,24 @@ pub fn parameter_jacobian_values<R: Real>(
         -d_force_turn_d_canard_command,
         -d_force_turn_d_canard_slaving,
         -d_gamma_rate_d_spherical_earth,
-        -turn_factor * sin_alpha * u.phi * alpha_3,
-        -turn_factor * sin_alpha * u.phi * alpha_2,
-        -turn_factor * sin_alpha * u.phi * x.alpha,
-        -turn_factor * sin_alpha * u.phi,
-        -turn_factor * sin_alpha * alpha_3,
-        -turn_factor * sin_alpha * alpha_2,
-        -turn_factor * sin_alpha * x.alpha,
-        -turn_factor * sin_alpha,
-        -turn_factor * sin_alpha * eta_1,
-        -turn_factor * sin_alpha * eta_2,
-        -turn_factor * sin_alpha * eta_3,
-        -turn_factor * x.alpha,
+        -i.turn_factor * i.sin_alpha * u.phi * i.alpha_3,
+        -i.turn_factor * i.sin_alpha * u.phi * i.alpha_2,
+        -i.turn_factor * i.sin_alpha * u.phi * x.alpha,
+        -i.turn_factor * i.sin_alpha * u.phi,
+        -i.turn_factor * i.sin_alpha * i.alpha_3,
+        -i.turn_factor * i.sin_alpha * i.alpha_2,
+        -i.turn_factor * i.sin_alpha * x.alpha,
+        -i.turn_factor * i.sin_alpha,
+        -i.turn_factor * i.sin_alpha * i.eta_1,
+        -i.turn_factor * i.sin_alpha * i.eta_2,
+        -i.turn_factor * i.sin_alpha * i.eta_3,
+        -i.turn_factor * x.alpha,
         -d_force_turn_d_c_l_delta_e,
         -d_force_turn_d_c_l_delta_c,
-        -turn_factor,
-        -turn_factor * eta_1,
-        -turn_factor * eta_2,
-        -turn_factor * eta_3,
+        -i.turn_factor,
+        -i.turn_factor * i.eta_1,
+        -i.turn_factor * i.eta_2,
+        -i.turn_factor * i.eta_3,
         -d_force_turn_d_c_n_1_alpha_2,
         -d_force_turn_d_c_n_1_alpha,
         -d_force_turn_d_c_n_1_delta_e,
@@ -945,10 +835,10 @@ pub fn parameter_jacobian_values<R: Real>(
         -d_force_turn_d_c_n_3_delta_e,
         -d_force_turn_d_c_n_3_delta_c,
         -d_force_turn_d_c_n_3_0,
-        -pitching_moment_over_i_yy * p.inv_i_yy,
+        -i.pitch_acceleration * p.inv_i_yy,
         d_pitch_acceleration_d_s,
-        reference_force * c_m * p.inv_i_yy,
-        thrust * p.inv_i_yy,
+        i.reference_force * i.c_m * p.inv_i_yy,
+        i.thrust * p.inv_i_yy,
         d_pitch_acceleration_d_rho_0,
         d_pitch_acceleration_d_h_0,
         d_pitch_acceleration_d_h_s,
@@ -957,27 +847,27 @@ pub fn parameter_jacobian_values<R: Real>(
         d_pitch_acceleration_d_omega_3,
         d_pitch_acceleration_d_canard_command,
         d_pitch_acceleration_d_canard_slaving,
-        p.z_t_over_i_yy * reference_force * u.phi * alpha_3,
-        p.z_t_over_i_yy * reference_force * u.phi * alpha_2,
-        p.z_t_over_i_yy * reference_force * u.phi * x.alpha,
-        p.z_t_over_i_yy * reference_force * u.phi,
-        p.z_t_over_i_yy * reference_force * alpha_3,
-        p.z_t_over_i_yy * reference_force * alpha_2,
-        p.z_t_over_i_yy * reference_force * x.alpha,
-        p.z_t_over_i_yy * reference_force,
-        p.z_t_over_i_yy * reference_force * eta_1,
-        p.z_t_over_i_yy * reference_force * eta_2,
-        p.z_t_over_i_yy * reference_force * eta_3,
+        p.z_t_over_i_yy * i.reference_force * u.phi * i.alpha_3,
+        p.z_t_over_i_yy * i.reference_force * u.phi * i.alpha_2,
+        p.z_t_over_i_yy * i.reference_force * u.phi * x.alpha,
+        p.z_t_over_i_yy * i.reference_force * u.phi,
+        p.z_t_over_i_yy * i.reference_force * i.alpha_3,
+        p.z_t_over_i_yy * i.reference_force * i.alpha_2,
+        p.z_t_over_i_yy * i.reference_force * x.alpha,
+        p.z_t_over_i_yy * i.reference_force,
+        p.z_t_over_i_yy * i.reference_force * i.eta_1,
+        p.z_t_over_i_yy * i.reference_force * i.eta_2,
+        p.z_t_over_i_yy * i.reference_force * i.eta_3,
         d_pitch_acceleration_d_c_l_delta_e,
         d_pitch_acceleration_d_c_l_delta_c,
-        p.c_bar_over_i_yy * reference_force * alpha_2,
-        p.c_bar_over_i_yy * reference_force * x.alpha,
-        p.c_bar_over_i_yy * reference_force * u.delta_e,
-        p.c_bar_over_i_yy * reference_force * canard_deflection,
-        p.c_bar_over_i_yy * reference_force,
-        p.c_bar_over_i_yy * reference_force * eta_1,
-        p.c_bar_over_i_yy * reference_force * eta_2,
-        p.c_bar_over_i_yy * reference_force * eta_3,
+        p.c_bar_over_i_yy * i.reference_force * i.alpha_2,
+        p.c_bar_over_i_yy * i.reference_force * x.alpha,
+        p.c_bar_over_i_yy * i.reference_force * u.delta_e,
+        p.c_bar_over_i_yy * i.reference_force * i.canard_deflection,
+        p.c_bar_over_i_yy * i.reference_force,
+        p.c_bar_over_i_yy * i.reference_force * i.eta_1,
+        p.c_bar_over_i_yy * i.reference_force * i.eta_2,
+        p.c_bar_over_i_yy * i.reference_force * i.eta_3,
         d_pitch_acceleration_d_c_n_1_alpha_2,
         d_pitch_acceleration_d_c_n_1_alpha,
         d_pitch_acceleration_d_c_n_1_delta_e,

@@ -3,7 +3,7 @@
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 #![allow(non_snake_case)]
 
-use super::{Input, Prepared, State};
+use super::{Input, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
 /// Part of the velocity rate that is left to f, eq. (28). Unit: ft/s^2.
@@ -11,80 +11,31 @@ use ahv_core::Real;
 /// 91 operations: 32 additions, 55 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
-    let sin_gamma = x.gamma.sin();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (28)
-    let c_t_of_f_eta_velocity = p.c_t_eta_1 * eta_static_1
-        + p.c_t_eta_2 * eta_static_2
-        + p.c_t_eta_3 * eta_static_3;
-    let c_d_of_f_eta_velocity = p.c_d_eta_1 * eta_static_1
-        + p.c_d_eta_2 * eta_static_2
-        + p.c_d_eta_3 * eta_static_3;
-    let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha * c_t_of_f_eta_velocity - c_d_of_f_eta_velocity); // ft/s^2
-    let alpha_3 = x.alpha * alpha_2;
+    let c_t_of_f_eta_velocity = p.c_t_eta_1 * i.eta_static_1
+        + p.c_t_eta_2 * i.eta_static_2
+        + p.c_t_eta_3 * i.eta_static_3;
+    let c_d_of_f_eta_velocity = p.c_d_eta_1 * i.eta_static_1
+        + p.c_d_eta_2 * i.eta_static_2
+        + p.c_d_eta_3 * i.eta_static_3;
+    let f_velocity_eta = i.reference_force * p.inv_m
+        * (i.cos_alpha * c_t_of_f_eta_velocity - c_d_of_f_eta_velocity); // ft/s^2
     let c_t_of_f_velocity = p.c_t_0
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
+        + p.c_t_alpha_3 * i.alpha_3
+        + p.c_t_alpha_2 * i.alpha_2
         + p.c_t_alpha * x.alpha;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
     let c_d_of_f_velocity = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
+        + p.c_d_alpha_2 * i.alpha_2
         + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
+        + p.c_d_delta_e_2 * i.delta_e_2
         + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection;
+        + p.c_d_delta_c_2 * i.canard_deflection_2
+        + p.c_d_delta_c * i.canard_deflection;
 
-    reference_force * p.inv_m * (cos_alpha * c_t_of_f_velocity - c_d_of_f_velocity)
-        - gravity * sin_gamma
+    i.reference_force * p.inv_m * (i.cos_alpha * c_t_of_f_velocity - c_d_of_f_velocity)
+        - i.gravity * i.sin_gamma
         + f_velocity_eta
 }
 
@@ -92,57 +43,22 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 ///
 /// 20 operations: 4 additions, 14 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
+pub fn g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Strict-feedback form, (28)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_of_g_velocity = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let reference_force_c_t_of_g_velocity = reference_force * c_t_of_g_velocity;
-
-    cos_alpha * reference_force_c_t_of_g_velocity * p.inv_m
+    i.cos_alpha * s.d_thrust_d_phi * p.inv_m
 }
 
 /// Derivatives of the velocity rate with respect to the coloured noises chi, eq. (29).
 ///
 /// 21 operations: 4 additions, 15 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
-    let cos_alpha_c_t_eta_1 = cos_alpha * p.c_t_eta_1;
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1_times_reference_force = reference_force
-        * (cos_alpha_c_t_eta_1 - p.c_d_eta_1);
-    let h_V_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1_times_reference_force * p.inv_m;
-    let cos_alpha_c_t_eta_2 = cos_alpha * p.c_t_eta_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2_times_reference_force = reference_force
-        * (cos_alpha_c_t_eta_2 - p.c_d_eta_2);
-    let h_V_term_2 = cos_alpha_c_t_eta_2_minus_c_d_eta_2_times_reference_force * p.inv_m;
-    let cos_alpha_c_t_eta_3 = cos_alpha * p.c_t_eta_3;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3_times_reference_force = reference_force
-        * (cos_alpha_c_t_eta_3 - p.c_d_eta_3);
-    let h_V_term_3 = cos_alpha_c_t_eta_3_minus_c_d_eta_3_times_reference_force * p.inv_m;
-
-    [h_V_term_1, h_V_term_2, h_V_term_3]
+pub fn h_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    [s.d_velocity_rate_d_chi_1, s.d_velocity_rate_d_chi_2, s.d_velocity_rate_d_chi_3]
 }
 
 /// Derivative of the velocity rate with respect to the angle of attack, at frozen inputs, eq. (28). Unit:
@@ -151,102 +67,9 @@ pub fn h_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 /// 111 operations: 44 additions, 65 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha
-        + p.c_d_alpha
-        + p.c_d_eta_1 * d_eta_static_1_d_alpha
-        + p.c_d_eta_2 * d_eta_static_2_d_alpha
-        + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
-
-    d_path_force_d_alpha * p.inv_m
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    s.d_velocity_rate_d_alpha
 }
 
 /// Part of f_V from the static flexible coordinates, eq. (29). Unit: ft/s^2.
@@ -254,58 +77,18 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (28)
-    let c_t_of_f_eta_velocity = p.c_t_eta_1 * eta_static_1
-        + p.c_t_eta_2 * eta_static_2
-        + p.c_t_eta_3 * eta_static_3;
-    let c_d_of_f_eta_velocity = p.c_d_eta_1 * eta_static_1
-        + p.c_d_eta_2 * eta_static_2
-        + p.c_d_eta_3 * eta_static_3;
+    let c_t_of_f_eta_velocity = p.c_t_eta_1 * i.eta_static_1
+        + p.c_t_eta_2 * i.eta_static_2
+        + p.c_t_eta_3 * i.eta_static_3;
+    let c_d_of_f_eta_velocity = p.c_d_eta_1 * i.eta_static_1
+        + p.c_d_eta_2 * i.eta_static_2
+        + p.c_d_eta_3 * i.eta_static_3;
 
-    reference_force * p.inv_m
-        * (cos_alpha * c_t_of_f_eta_velocity - c_d_of_f_eta_velocity)
+    i.reference_force * p.inv_m
+        * (i.cos_alpha * c_t_of_f_eta_velocity - c_d_of_f_eta_velocity)
 }
 
 /// Part of the gamma rate that is left to f, eq. (30). Unit: rad/s.
@@ -313,82 +96,29 @@ pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 92 operations: 31 additions, 56 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-    let cos_gamma = x.gamma.cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (30)
-    let c_t_of_f_eta_gamma = p.c_t_eta_1 * eta_static_1
-        + p.c_t_eta_2 * eta_static_2
-        + p.c_t_eta_3 * eta_static_3;
-    let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
-        + p.c_l_eta_2 * eta_static_2
-        + p.c_l_eta_3 * eta_static_3;
-    let f_gamma_eta = turn_factor
-        * (sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma); // rad/s
-    let alpha_3 = x.alpha * alpha_2;
+    let c_t_of_f_eta_gamma = p.c_t_eta_1 * i.eta_static_1
+        + p.c_t_eta_2 * i.eta_static_2
+        + p.c_t_eta_3 * i.eta_static_3;
+    let c_l_of_f_eta_gamma = p.c_l_eta_1 * i.eta_static_1
+        + p.c_l_eta_2 * i.eta_static_2
+        + p.c_l_eta_3 * i.eta_static_3;
+    let f_gamma_eta = i.turn_factor
+        * (i.sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma); // rad/s
     let c_t_of_f_gamma = p.c_t_0
-        + p.c_t_phi_alpha_3 * u.phi * alpha_3
-        + p.c_t_phi_alpha_2 * u.phi * alpha_2
+        + p.c_t_phi_alpha_3 * u.phi * i.alpha_3
+        + p.c_t_phi_alpha_2 * u.phi * i.alpha_2
         + p.c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2;
+        + p.c_t_alpha_3 * i.alpha_3
+        + p.c_t_alpha_2 * i.alpha_2;
     let c_l_of_f_gamma = p.c_l_0
         + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded;
+        + p.c_l_delta_c * i.canard_commanded;
 
-    turn_factor * (sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
-        - gravity_turn * cos_gamma
+    i.turn_factor * (i.sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
+        - i.gravity_turn * i.cos_gamma
         + f_gamma_eta
 }
 
@@ -397,51 +127,22 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (30)
     let c_t_of_g_gamma = p.c_t_alpha + p.c_t_phi_alpha * u.phi; // 1/rad
 
-    turn_factor * (sin_alpha * c_t_of_g_gamma + p.c_l_alpha)
+    i.turn_factor * (i.sin_alpha * c_t_of_g_gamma + p.c_l_alpha)
 }
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
 ///
 /// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3;
-
-    [
-        sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor,
-        sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor,
-        sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor,
-    ]
+pub fn h_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    [s.d_force_turn_d_chi_1, s.d_force_turn_d_chi_2, s.d_force_turn_d_chi_3]
 }
 
 /// Derivative of the gamma rate with respect to the angle of attack, at frozen inputs, eq. (30). Unit: 1/s.
@@ -449,98 +150,9 @@ pub fn h_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
 /// 108 operations: 43 additions, 63 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-
-    // Derivatives with respect to alpha
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_c_l_d_alpha = p.c_l_alpha
-        + p.c_l_eta_1 * d_eta_static_1_d_alpha
-        + p.c_l_eta_2 * d_eta_static_2_d_alpha
-        + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
-
-    turn_factor * d_normal_coefficient_d_alpha
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    s.d_force_turn_d_alpha
 }
 
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
@@ -548,60 +160,17 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 58 operations: 19 additions, 37 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (30)
-    let c_t_of_f_eta_gamma = p.c_t_eta_1 * eta_static_1
-        + p.c_t_eta_2 * eta_static_2
-        + p.c_t_eta_3 * eta_static_3;
-    let c_l_of_f_eta_gamma = p.c_l_eta_1 * eta_static_1
-        + p.c_l_eta_2 * eta_static_2
-        + p.c_l_eta_3 * eta_static_3;
+    let c_t_of_f_eta_gamma = p.c_t_eta_1 * i.eta_static_1
+        + p.c_t_eta_2 * i.eta_static_2
+        + p.c_t_eta_3 * i.eta_static_3;
+    let c_l_of_f_eta_gamma = p.c_l_eta_1 * i.eta_static_1
+        + p.c_l_eta_2 * i.eta_static_2
+        + p.c_l_eta_3 * i.eta_static_3;
 
-    turn_factor * (sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma)
+    i.turn_factor * (i.sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma)
 }
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
@@ -609,86 +178,33 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 99 operations: 34 additions, 60 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-    let cos_gamma = x.gamma.cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (32)
-    let c_t_of_f_eta_alpha = p.c_t_eta_1 * eta_static_1
-        + p.c_t_eta_2 * eta_static_2
-        + p.c_t_eta_3 * eta_static_3;
-    let c_l_of_f_eta_alpha = p.c_l_eta_1 * eta_static_1
-        + p.c_l_eta_2 * eta_static_2
-        + p.c_l_eta_3 * eta_static_3;
-    let f_alpha_eta_term_1 = turn_factor
-        * (sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
+    let c_t_of_f_eta_alpha = p.c_t_eta_1 * i.eta_static_1
+        + p.c_t_eta_2 * i.eta_static_2
+        + p.c_t_eta_3 * i.eta_static_3;
+    let c_l_of_f_eta_alpha = p.c_l_eta_1 * i.eta_static_1
+        + p.c_l_eta_2 * i.eta_static_2
+        + p.c_l_eta_3 * i.eta_static_3;
+    let f_alpha_eta_term_1 = i.turn_factor
+        * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
     let f_alpha_eta = -f_alpha_eta_term_1; // rad/s
-    let alpha_3 = x.alpha * alpha_2;
     let c_t_of_f_alpha = p.c_t_0
-        + p.c_t_phi_alpha_3 * u.phi * alpha_3
-        + p.c_t_phi_alpha_2 * u.phi * alpha_2
+        + p.c_t_phi_alpha_3 * u.phi * i.alpha_3
+        + p.c_t_phi_alpha_2 * u.phi * i.alpha_2
         + p.c_t_phi_alpha * u.phi * x.alpha
         + p.c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
+        + p.c_t_alpha_3 * i.alpha_3
+        + p.c_t_alpha_2 * i.alpha_2
         + p.c_t_alpha * x.alpha;
     let c_l_of_f_alpha = p.c_l_0
         + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded;
+        + p.c_l_delta_c * i.canard_commanded;
 
-    gravity_turn * cos_gamma
-        - turn_factor * (sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha)
+    i.gravity_turn * i.cos_gamma
+        - i.turn_factor * (i.sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha)
         + f_alpha_eta
 }
 
@@ -704,31 +220,10 @@ pub fn g_alpha<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 ///
 /// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3;
-
-    [
-        -sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor,
-        -sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor,
-        -sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor,
-    ]
+pub fn h_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    [-s.d_force_turn_d_chi_1, -s.d_force_turn_d_chi_2, -s.d_force_turn_d_chi_3]
 }
 
 /// Derivative of the alpha rate with respect to the angle of attack, at frozen inputs, eq. (32). Unit: 1/s.
@@ -736,99 +231,9 @@ pub fn h_alpha<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] 
 /// 108 operations: 43 additions, 63 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + p.c_t_phi_alpha * x.alpha;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-
-    // Derivatives with respect to alpha
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_c_l_d_alpha = p.c_l_alpha
-        + p.c_l_eta_1 * d_eta_static_1_d_alpha
-        + p.c_l_eta_2 * d_eta_static_2_d_alpha
-        + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
-
-    -d_force_turn_d_alpha
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    -s.d_force_turn_d_alpha
 }
 
 /// Part of f_alpha from the static flexible coordinates, eq. (33). Unit: rad/s.
@@ -836,60 +241,17 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 58 operations: 19 additions, 37 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (32)
-    let c_t_of_f_eta_alpha = p.c_t_eta_1 * eta_static_1
-        + p.c_t_eta_2 * eta_static_2
-        + p.c_t_eta_3 * eta_static_3;
-    let c_l_of_f_eta_alpha = p.c_l_eta_1 * eta_static_1
-        + p.c_l_eta_2 * eta_static_2
-        + p.c_l_eta_3 * eta_static_3;
-    let f_alpha_eta_term_1 = turn_factor
-        * (sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
+    let c_t_of_f_eta_alpha = p.c_t_eta_1 * i.eta_static_1
+        + p.c_t_eta_2 * i.eta_static_2
+        + p.c_t_eta_3 * i.eta_static_3;
+    let c_l_of_f_eta_alpha = p.c_l_eta_1 * i.eta_static_1
+        + p.c_l_eta_2 * i.eta_static_2
+        + p.c_l_eta_3 * i.eta_static_3;
+    let f_alpha_eta_term_1 = i.turn_factor
+        * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
 
     -f_alpha_eta_term_1
 }
@@ -899,69 +261,31 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 87 operations: 31 additions, 55 multiplications, 1 exp.
 #[inline(always)]
 pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (34)
-    let c_t_of_f_eta_pitch_rate = p.c_t_eta_1 * eta_static_1
-        + p.c_t_eta_2 * eta_static_2
-        + p.c_t_eta_3 * eta_static_3;
-    let c_m_of_f_eta_pitch_rate = p.c_m_eta_1 * eta_static_1
-        + p.c_m_eta_2 * eta_static_2
-        + p.c_m_eta_3 * eta_static_3;
-    let f_pitch_rate_eta = p.inv_i_yy * reference_force
+    let c_t_of_f_eta_pitch_rate = p.c_t_eta_1 * i.eta_static_1
+        + p.c_t_eta_2 * i.eta_static_2
+        + p.c_t_eta_3 * i.eta_static_3;
+    let c_m_of_f_eta_pitch_rate = p.c_m_eta_1 * i.eta_static_1
+        + p.c_m_eta_2 * i.eta_static_2
+        + p.c_m_eta_3 * i.eta_static_3;
+    let f_pitch_rate_eta = p.inv_i_yy * i.reference_force
         * (p.z_t * c_t_of_f_eta_pitch_rate + p.c_bar * c_m_of_f_eta_pitch_rate); // rad/s^2
-    let alpha_3 = x.alpha * alpha_2;
     let c_t_of_f_pitch_rate = p.c_t_0
-        + p.c_t_phi_alpha_3 * u.phi * alpha_3
-        + p.c_t_phi_alpha_2 * u.phi * alpha_2
+        + p.c_t_phi_alpha_3 * u.phi * i.alpha_3
+        + p.c_t_phi_alpha_2 * u.phi * i.alpha_2
         + p.c_t_phi_alpha * u.phi * x.alpha
         + p.c_t_phi * u.phi
-        + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
+        + p.c_t_alpha_3 * i.alpha_3
+        + p.c_t_alpha_2 * i.alpha_2
         + p.c_t_alpha * x.alpha;
     let c_m_of_f_pitch_rate = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
+        + p.c_m_alpha_2 * i.alpha_2
         + p.c_m_alpha * x.alpha
-        + p.c_m_delta_c * canard_commanded;
+        + p.c_m_delta_c * i.canard_commanded;
 
-    p.inv_i_yy * reference_force
+    p.inv_i_yy * i.reference_force
         * (p.z_t * c_t_of_f_pitch_rate + p.c_bar * c_m_of_f_pitch_rate)
         + f_pitch_rate_eta
 }
@@ -970,43 +294,25 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 ///
 /// 9 operations: 1 addition, 7 multiplications, 1 exp.
 #[inline(always)]
-pub fn g_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+pub fn g_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (34)
-    p.c_bar_c_m_of_g_pitch_rate_over_i_yy * reference_force
+    p.c_bar_c_m_of_g_pitch_rate_over_i_yy * i.reference_force
 }
 
 /// Derivatives of the pitch_rate rate with respect to the coloured noises chi, eq. (35).
 ///
 /// 14 operations: 1 addition, 12 multiplications, 1 exp.
 #[inline(always)]
-pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-    let c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_reference_force = reference_force
-        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1;
-    let h_Q_term_1 = c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_reference_force
-        * p.inv_i_yy;
-    let c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_reference_force = reference_force
-        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2;
-    let h_Q_term_2 = c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_reference_force
-        * p.inv_i_yy;
-    let c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_reference_force = reference_force
-        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3;
-    let h_Q_term_3 = c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_reference_force
-        * p.inv_i_yy;
-
-    [h_Q_term_1, h_Q_term_2, h_Q_term_3]
+pub fn h_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    [
+        s.d_pitch_acceleration_d_chi_1,
+        s.d_pitch_acceleration_d_chi_2,
+        s.d_pitch_acceleration_d_chi_3,
+    ]
 }
 
 /// Derivative of the pitch_rate rate with respect to the angle of attack, at frozen inputs, eq. (34). Unit:
@@ -1015,44 +321,9 @@ pub fn h_Q<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 /// 51 operations: 17 additions, 33 multiplications, 1 exp.
 #[inline(always)]
 pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Derivatives with respect to alpha
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let alpha_2 = x.alpha * x.alpha;
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
-        + p.two_c_t_phi_alpha_2 * x.alpha
-        + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
-        + p.two_c_t_alpha_2 * x.alpha
-        + p.c_t_alpha
-        + p.c_t_eta_1 * d_eta_static_1_d_alpha
-        + p.c_t_eta_2 * d_eta_static_2_d_alpha
-        + p.c_t_eta_3 * d_eta_static_3_d_alpha
-        + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
-        + p.c_m_alpha
-        + p.c_m_eta_1 * d_eta_static_1_d_alpha
-        + p.c_m_eta_2 * d_eta_static_2_d_alpha
-        + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = p.c_bar * reference_force * d_c_m_d_alpha
-        + p.z_t * d_thrust_d_alpha; // lb/rad
-
-    d_pitching_moment_d_alpha * p.inv_i_yy
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    s.d_pitch_acceleration_d_alpha
 }
 
 /// Part of f_Q from the static flexible coordinates, eq. (35). Unit: rad/s^2.
@@ -1060,54 +331,17 @@ pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 57 operations: 19 additions, 37 multiplications, 1 exp.
 #[inline(always)]
 pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    let i = intermediates(x, u, p);
 
     // Strict-feedback form, (34)
-    let c_t_of_f_eta_pitch_rate = p.c_t_eta_1 * eta_static_1
-        + p.c_t_eta_2 * eta_static_2
-        + p.c_t_eta_3 * eta_static_3;
-    let c_m_of_f_eta_pitch_rate = p.c_m_eta_1 * eta_static_1
-        + p.c_m_eta_2 * eta_static_2
-        + p.c_m_eta_3 * eta_static_3;
+    let c_t_of_f_eta_pitch_rate = p.c_t_eta_1 * i.eta_static_1
+        + p.c_t_eta_2 * i.eta_static_2
+        + p.c_t_eta_3 * i.eta_static_3;
+    let c_m_of_f_eta_pitch_rate = p.c_m_eta_1 * i.eta_static_1
+        + p.c_m_eta_2 * i.eta_static_2
+        + p.c_m_eta_3 * i.eta_static_3;
 
-    p.inv_i_yy * reference_force
+    p.inv_i_yy * i.reference_force
         * (p.z_t * c_t_of_f_eta_pitch_rate + p.c_bar * c_m_of_f_eta_pitch_rate)
 }
 
@@ -1116,31 +350,8 @@ pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 ///
 /// 31 operations: 7 additions, 23 multiplications, 1 exp.
 #[inline(always)]
-pub fn g_Q_total<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Derivatives with respect to delta_e
-    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_delta_e = d_generalized_force_1_d_delta_e * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_2_d_delta_e = d_generalized_force_2_d_delta_e * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_3_d_delta_e = d_generalized_force_3_d_delta_e * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_d_delta_e = p.c_t_eta_1 * d_eta_static_1_d_delta_e
-        + p.c_t_eta_2 * d_eta_static_2_d_delta_e
-        + p.c_t_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
-    let d_thrust_d_delta_e = reference_force * d_c_t_d_delta_e; // lb/ft/rad
-    let d_c_m_d_delta_e = p.c_m_eta_1 * d_eta_static_1_d_delta_e
-        + p.c_m_eta_2 * d_eta_static_2_d_delta_e
-        + p.c_m_eta_3 * d_eta_static_3_d_delta_e
-        + p.c_m_of_g_pitch_rate; // 1/rad
-    let d_pitching_moment_d_delta_e = p.c_bar * reference_force * d_c_m_d_delta_e
-        + p.z_t * d_thrust_d_delta_e; // lb/rad
-
-    d_pitching_moment_d_delta_e * p.inv_i_yy
+pub fn g_Q_total<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    s.d_pitch_acceleration_d_delta_e
 }

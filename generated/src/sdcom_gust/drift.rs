@@ -2,7 +2,7 @@
 
 //! Functions of SDCOM_GUST. Units are foot, slug, second and radian.
 
-use super::{Input, Prepared, State};
+use super::{Input, Intermediates, Prepared, State, intermediates};
 use ahv_core::Real;
 
 /// Time derivative of the state, eq. (27).
@@ -10,122 +10,20 @@ use ahv_core::Real;
 /// 150 operations: 58 additions, 87 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
+    drift_from(x, u, p, &i)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
+/// [`drift`] from what is computed once.
+#[inline(always)]
+pub fn drift_from<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) -> State<R> {
     // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Gust, (3)
-    let incidence = x.alpha + x.alpha_gust; // rad
-
-    // Curve fits, (3)
-    let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * incidence_2
-        + p.c_n_1_alpha * incidence
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * incidence_2
-        + p.c_n_2_alpha * incidence
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * incidence_2
-        + p.c_n_3_alpha * incidence
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let incidence_3 = incidence * incidence_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * incidence_3
-        + p.c_t_phi_alpha_2 * incidence_2
-        + p.c_t_phi_alpha * incidence;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * incidence_3
-        + p.c_t_alpha_2 * incidence_2
-        + p.c_t_alpha * incidence
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * incidence
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * eta_1
-        + p.c_l_eta_2 * eta_2
-        + p.c_l_eta_3 * eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * incidence_2
-        + p.c_d_alpha * incidence
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * eta_1
-        + p.c_d_eta_2 * eta_2
-        + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * incidence_2
-        + p.c_m_alpha * incidence
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * eta_1
-        + p.c_m_eta_2 * eta_2
-        + p.c_m_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-    let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
+    let alpha_rate = x.pitch_rate - i.gamma_rate; // rad/s
 
     // Coloured noise, (27)
     let chi_rate_1 = -p.chi_decay_1 * x.chi_1; // (ft*slug)^0.5/s
@@ -133,11 +31,11 @@ pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let chi_rate_3 = -p.chi_decay_3 * x.chi_3; // (ft*slug)^0.5/s
 
     State {
-        velocity: velocity_rate,
-        altitude: altitude_rate,
-        gamma: gamma_rate,
+        velocity: i.velocity_rate,
+        altitude: i.altitude_rate,
+        gamma: i.gamma_rate,
         alpha: alpha_rate,
-        pitch_rate: pitch_acceleration,
+        pitch_rate: i.pitch_acceleration,
         chi_1: chi_rate_1,
         chi_2: chi_rate_2,
         chi_3: chi_rate_3,

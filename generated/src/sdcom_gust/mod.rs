@@ -13,6 +13,7 @@ mod noise_derivatives;
 mod outputs;
 mod parameter_jacobian;
 mod prepared;
+mod stages;
 
 pub use diffusion::*;
 pub use drift::*;
@@ -23,6 +24,7 @@ pub use lie_derivatives::*;
 pub use noise_derivatives::*;
 pub use outputs::*;
 pub use parameter_jacobian::*;
+pub use stages::*;
 pub use crate::dcom::{
     Canard, Earth, ModalNoise, NOMINAL, PROVENANCE, Parameters, Reduction, SECTION5_3,
     SECTION5_3_PROVENANCE, SETS, TABLE, UNIT_SYSTEM, VALIDITY, Validity,

@@ -3,7 +3,7 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 #![allow(non_snake_case)]
 
-use super::{Input, Prepared, State};
+use super::{Input, Prepared, State, intermediates, noise_terms, slopes};
 use ahv_core::Real;
 
 /// Delta f of (27): the velocity rate of the exact form less that of the printed one, eq. (27). Unit: ft/s^2.
@@ -11,119 +11,49 @@ use ahv_core::Real;
 /// 138 operations: 56 additions, 78 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
-    let sin_gamma = x.gamma.sin();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
+    let i = intermediates(x, u, p);
 
     // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
+    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
+    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
+    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
-    let c_t_phi_alpha_alpha = p.c_t_phi_alpha * x.alpha;
+    let alpha_3 = x.alpha * i.alpha_2;
     let c_t_phi = p.c_t_phi
         + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
-        + c_t_phi_alpha_alpha;
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
+        + p.c_t_phi_alpha_2 * i.alpha_2
+        + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + c_t_alpha_alpha
+        + p.c_t_alpha_2 * i.alpha_2
+        + i.c_t_alpha_alpha
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_d_alpha_times_alpha = p.c_d_alpha * x.alpha;
     let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
+    let canard_deflection_2 = i.canard_deflection * i.canard_deflection;
     let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
-        + c_d_alpha_times_alpha
+        + p.c_d_alpha_2 * i.alpha_2
+        + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * delta_e_2
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
+        + p.c_d_delta_c * i.canard_deflection
         + p.c_d_eta_1 * eta_1
         + p.c_d_eta_2 * eta_2
         + p.c_d_eta_3 * eta_3;
 
     // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
+    let thrust = i.reference_force * c_t; // lb/ft
+    let drag = i.reference_force * c_d; // lb/ft
 
     // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let gravity_sin_gamma = gravity * sin_gamma;
-    let velocity_rate = path_force * p.inv_m - gravity_sin_gamma; // ft/s^2
+    let path_force = thrust * i.cos_alpha - drag; // lb/ft
+    let velocity_rate = path_force * p.inv_m - i.gravity * i.sin_gamma; // ft/s^2
 
-    // Strict-feedback form, (29)
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * eta_static_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * eta_static_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * eta_static_3); // ft/s^2
-    let f_velocity = reference_force * p.inv_m
-        * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - c_d_alpha_times_alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        - gravity_sin_gamma + f_velocity_eta; // ft/s^2
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * (c_t_phi_alpha_alpha + p.c_t_phi); // ft/s^2
-
-    // Printed form, (27)
-    let velocity_rate_printed = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
-        + g_velocity * u.phi; // ft/s^2
-
-    velocity_rate - velocity_rate_printed
+    velocity_rate - i.velocity_rate_printed
 }
 
 /// Delta f of (27): the gamma rate of the exact form less that of the printed one, eq. (27). Unit: rad/s.
@@ -131,119 +61,43 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 131 operations: 53 additions, 73 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-    let cos_gamma = x.gamma.cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
+    let i = intermediates(x, u, p);
 
     // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
+    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
+    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
+    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
+    let alpha_3 = x.alpha * i.alpha_2;
     let c_t_phi = p.c_t_phi
         + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
+        + p.c_t_phi_alpha_2 * i.alpha_2
         + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
+        + p.c_t_alpha_2 * i.alpha_2
+        + i.c_t_alpha_alpha
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
     let c_l = p.c_l_0
         + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
+        + p.c_l_delta_c * i.canard_commanded
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
 
     // Forces and moment, (1)
-    let normal_coefficient = c_l + c_t * sin_alpha;
+    let normal_coefficient = c_l + c_t * i.sin_alpha;
 
     // Motion, (1)
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-    let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let gamma_rate = force_turn - gravity_turn_cos_gamma; // rad/s
+    let force_turn = i.turn_factor * normal_coefficient; // rad/s
+    let gamma_rate = force_turn - i.gravity_turn_cos_gamma; // rad/s
 
-    // Strict-feedback form, (31)
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3;
-    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
-    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
-        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0);
-    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        - gravity_turn_cos_gamma
-        + f_gamma_eta; // rad/s
-    let g_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
-
-    // Printed form, (27)
-    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
-    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
-        + f_gamma
-        + g_gamma * x.alpha; // rad/s
-
-    gamma_rate - gamma_rate_printed
+    gamma_rate - i.gamma_rate_printed
 }
 
 /// Delta f of (27): the alpha rate of the exact form less that of the printed one, eq. (27). Unit: rad/s.
@@ -251,119 +105,44 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 /// 131 operations: 55 additions, 71 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-    let cos_gamma = x.gamma.cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
+    let i = intermediates(x, u, p);
 
     // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
+    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
+    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
+    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
+    let alpha_3 = x.alpha * i.alpha_2;
     let c_t_phi = p.c_t_phi
         + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
+        + p.c_t_phi_alpha_2 * i.alpha_2
         + p.c_t_phi_alpha * x.alpha;
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + c_t_alpha_alpha
+        + p.c_t_alpha_2 * i.alpha_2
+        + i.c_t_alpha_alpha
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_l_alpha_alpha = p.c_l_alpha * x.alpha;
     let c_l = p.c_l_0
-        + c_l_alpha_alpha
+        + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
+        + p.c_l_delta_c * i.canard_commanded
         + p.c_l_eta_1 * eta_1
         + p.c_l_eta_2 * eta_2
         + p.c_l_eta_3 * eta_3;
 
     // Forces and moment, (1)
-    let normal_coefficient = c_l + c_t * sin_alpha;
+    let normal_coefficient = c_l + c_t * i.sin_alpha;
 
     // Motion, (1)
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-    let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let gamma_rate = force_turn - gravity_turn_cos_gamma; // rad/s
+    let force_turn = i.turn_factor * normal_coefficient; // rad/s
+    let gamma_rate = force_turn - i.gravity_turn_cos_gamma; // rad/s
     let alpha_rate = x.pitch_rate - gamma_rate; // rad/s
 
-    // Strict-feedback form, (33)
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_alpha_eta_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * eta_static_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * eta_static_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * eta_static_3;
-    let f_alpha_eta_term_2 = turn_factor * f_alpha_eta_term_1;
-    let f_alpha_eta = -f_alpha_eta_term_2; // rad/s
-    let f_alpha = gravity_turn_cos_gamma
-        - turn_factor
-            * (p.c_l_0 + c_l_alpha_alpha
-                + sin_alpha
-                    * (p.c_t_phi_alpha * u.phi * x.alpha + c_t_alpha_alpha
-                        + p.c_t_phi * u.phi + p.c_t_0)) + f_alpha_eta; // rad/s
-
-    // Printed form, (27)
-    let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3) + f_alpha + x.pitch_rate; // rad/s
-
-    alpha_rate - alpha_rate_printed
+    alpha_rate - i.alpha_rate_printed
 }
 
 /// Delta f of (27): the pitch_rate rate of the exact form less that of the printed one, eq. (27). Unit: rad/s^2.
@@ -371,101 +150,44 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 /// 119 operations: 49 additions, 69 multiplications, 1 exp.
 #[inline(always)]
 pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
+    let i = intermediates(x, u, p);
 
     // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
+    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
+    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
+    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
+    let alpha_3 = x.alpha * i.alpha_2;
     let c_t_phi = p.c_t_phi
         + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
+        + p.c_t_phi_alpha_2 * i.alpha_2
         + p.c_t_phi_alpha * x.alpha;
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + c_t_alpha_alpha
+        + p.c_t_alpha_2 * i.alpha_2
+        + i.c_t_alpha_alpha
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
-    let c_m_alpha_2_alpha_2 = p.c_m_alpha_2 * alpha_2;
-    let c_m_alpha_alpha = p.c_m_alpha * x.alpha;
     let c_m = p.c_m_0
-        + c_m_alpha_2_alpha_2
-        + c_m_alpha_alpha
+        + p.c_m_alpha_2 * i.alpha_2
+        + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
+        + p.c_m_delta_c * i.canard_deflection
         + p.c_m_eta_1 * eta_1
         + p.c_m_eta_2 * eta_2
         + p.c_m_eta_3 * eta_3;
 
     // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
+    let thrust = i.reference_force * c_t; // lb/ft
+    let pitching_moment = p.z_t * thrust + i.reference_force * c_m * p.c_bar; // lb
 
     // Motion, (1)
     let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
 
-    // Strict-feedback form, (35)
-    let f_pitch_rate_eta = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * eta_static_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * eta_static_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * eta_static_3); // rad/s^2
-    let f_pitch_rate = reference_force * p.inv_i_yy
-        * (p.z_t
-            * (p.c_t_phi_alpha * u.phi * x.alpha + c_t_alpha_alpha + p.c_t_phi * u.phi
-                + p.c_t_0) + p.c_bar * (c_m_alpha_2_alpha_2 + c_m_alpha_alpha + p.c_m_0))
-        + f_pitch_rate_eta; // rad/s^2
-    let g_pitch_rate = reference_force * p.g_pitch_rate_constant_1; // 1/s^2
-
-    // Printed form, (27)
-    let pitch_rate_rate_printed = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + f_pitch_rate
-        + g_pitch_rate * u.delta_e; // rad/s^2
-
-    pitch_acceleration - pitch_rate_rate_printed
+    pitch_acceleration - i.pitch_rate_rate_printed
 }
 
 /// H of the velocity row in the exact form less that of the printed one, eq. (28). Unit: ft/s^2/rad.
@@ -473,109 +195,60 @@ pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 118 operations: 47 additions, 69 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
 
     // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
+    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
+    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
+    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
+    let alpha_3 = x.alpha * i.alpha_2;
     let c_t_phi = p.c_t_phi
         + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
+        + p.c_t_phi_alpha_2 * i.alpha_2
         + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
+        + p.c_t_alpha_2 * i.alpha_2
+        + i.c_t_alpha_alpha
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
 
     // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-
-    // Strict-feedback form, (28)
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
-        * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let alpha_slope_velocity = reference_force * p.inv_m
-        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
+    let thrust = i.reference_force * c_t; // lb/ft
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
+    let d_eta_static_1_d_alpha = s.d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_2_d_alpha = s.d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_3_d_alpha = s.d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
+    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * i.alpha_2
         + p.two_c_t_phi_alpha_2 * x.alpha
         + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
+    let d_c_t_d_alpha = p.three_c_t_alpha_3 * i.alpha_2
         + p.two_c_t_alpha_2 * x.alpha
         + p.c_t_alpha
         + p.c_t_eta_1 * d_eta_static_1_d_alpha
         + p.c_t_eta_2 * d_eta_static_2_d_alpha
         + p.c_t_eta_3 * d_eta_static_3_d_alpha
         + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
+    let d_thrust_d_alpha = i.reference_force * d_c_t_d_alpha; // lb/ft/rad
     let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha
         + p.c_d_alpha
         + p.c_d_eta_1 * d_eta_static_1_d_alpha
         + p.c_d_eta_2 * d_eta_static_2_d_alpha
         + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_drag_d_alpha = reference_force * d_c_d_d_alpha; // lb/ft/rad
-    let d_path_force_d_alpha = thrust * d_cos_alpha_d_alpha
-        + cos_alpha * d_thrust_d_alpha
+    let d_drag_d_alpha = i.reference_force * d_c_d_d_alpha; // lb/ft/rad
+    let d_path_force_d_alpha = thrust * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
 
-    d_velocity_rate_d_alpha - alpha_slope_velocity
+    d_velocity_rate_d_alpha - n.alpha_slope_velocity
 }
 
 /// H of the gamma row in the exact form less that of the printed one, eq. (30). Unit: rad/s/rad.
@@ -583,88 +256,37 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 114 operations: 46 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
+    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
+    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
+    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
+    let alpha_3 = x.alpha * i.alpha_2;
     let c_t_phi = p.c_t_phi
         + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
+        + p.c_t_phi_alpha_2 * i.alpha_2
         + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
+        + p.c_t_alpha_2 * i.alpha_2
+        + i.c_t_alpha_alpha
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
 
-    // Strict-feedback form, (30)
-    let alpha_slope_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let alpha_slope_gamma = turn_factor * alpha_slope_gamma_over_turn_factor; // rad/s/rad
-
     // Derivatives with respect to alpha
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
+    let d_eta_static_1_d_alpha = s.d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_2_d_alpha = s.d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_3_d_alpha = s.d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
+    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * i.alpha_2
         + p.two_c_t_phi_alpha_2 * x.alpha
         + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
+    let d_c_t_d_alpha = p.three_c_t_alpha_3 * i.alpha_2
         + p.two_c_t_alpha_2 * x.alpha
         + p.c_t_alpha
         + p.c_t_eta_1 * d_eta_static_1_d_alpha
@@ -675,12 +297,12 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
+    let d_normal_coefficient_d_alpha = c_t * i.cos_alpha
+        + i.sin_alpha * d_c_t_d_alpha
         + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
+    let d_force_turn_d_alpha = i.turn_factor * d_normal_coefficient_d_alpha; // 1/s
 
-    d_force_turn_d_alpha - alpha_slope_gamma
+    d_force_turn_d_alpha - i.g_gamma
 }
 
 /// H of the alpha row in the exact form less that of the printed one, eq. (32). Unit: rad/s/rad.
@@ -688,89 +310,38 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 /// 114 operations: 46 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
 
     // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
+    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
+    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
+    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
 
     // Curve fits, (3)
-    let alpha_3 = x.alpha * alpha_2;
+    let alpha_3 = x.alpha * i.alpha_2;
     let c_t_phi = p.c_t_phi
         + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * alpha_2
+        + p.c_t_phi_alpha_2 * i.alpha_2
         + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
-        + p.c_t_alpha_2 * alpha_2
-        + p.c_t_alpha * x.alpha
+        + p.c_t_alpha_2 * i.alpha_2
+        + i.c_t_alpha_alpha
         + p.c_t_eta_1 * eta_1
         + p.c_t_eta_2 * eta_2
         + p.c_t_eta_3 * eta_3;
 
-    // Strict-feedback form, (32)
-    let alpha_slope_alpha_term_1 = p.c_l_alpha
-        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let alpha_slope_alpha_term_2 = turn_factor * alpha_slope_alpha_term_1;
-    let alpha_slope_alpha = -alpha_slope_alpha_term_2; // rad/s/rad
-
     // Derivatives with respect to alpha
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
+    let d_eta_static_1_d_alpha = s.d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_2_d_alpha = s.d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_3_d_alpha = s.d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
+    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * i.alpha_2
         + p.two_c_t_phi_alpha_2 * x.alpha
         + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
+    let d_c_t_d_alpha = p.three_c_t_alpha_3 * i.alpha_2
         + p.two_c_t_alpha_2 * x.alpha
         + p.c_t_alpha
         + p.c_t_eta_1 * d_eta_static_1_d_alpha
@@ -781,12 +352,12 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_normal_coefficient_d_alpha = c_t * cos_alpha
-        + sin_alpha * d_c_t_d_alpha
+    let d_normal_coefficient_d_alpha = c_t * i.cos_alpha
+        + i.sin_alpha * d_c_t_d_alpha
         + d_c_l_d_alpha; // 1/rad
-    let d_force_turn_d_alpha = turn_factor * d_normal_coefficient_d_alpha; // 1/s
+    let d_force_turn_d_alpha = i.turn_factor * d_normal_coefficient_d_alpha; // 1/s
 
-    -(d_force_turn_d_alpha + alpha_slope_alpha)
+    -(d_force_turn_d_alpha + n.alpha_slope_alpha)
 }
 
 /// H of the pitch_rate row in the exact form less that of the printed one, eq. (34). Unit: rad/s^2/rad.
@@ -794,47 +365,33 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 /// 58 operations: 20 additions, 37 multiplications, 1 exp.
 #[inline(always)]
 pub fn delta_H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Strict-feedback form, (34)
-    let alpha_slope_pitch_rate = reference_force * p.inv_i_yy
-        * (p.c_bar_c_m_alpha + p.z_t * (p.c_t_alpha + p.c_t_phi_alpha * u.phi)); // rad/s^2/rad
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
 
     // Derivatives with respect to alpha
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
-    let alpha_2 = x.alpha * x.alpha;
-    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * alpha_2
+    let d_eta_static_1_d_alpha = s.d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_2_d_alpha = s.d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
+    let d_eta_static_3_d_alpha = s.d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
+    let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * i.alpha_2
         + p.two_c_t_phi_alpha_2 * x.alpha
         + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = p.three_c_t_alpha_3 * alpha_2
+    let d_c_t_d_alpha = p.three_c_t_alpha_3 * i.alpha_2
         + p.two_c_t_alpha_2 * x.alpha
         + p.c_t_alpha
         + p.c_t_eta_1 * d_eta_static_1_d_alpha
         + p.c_t_eta_2 * d_eta_static_2_d_alpha
         + p.c_t_eta_3 * d_eta_static_3_d_alpha
         + u.phi * d_c_t_phi_d_alpha; // 1/rad
-    let d_thrust_d_alpha = reference_force * d_c_t_d_alpha; // lb/ft/rad
+    let d_thrust_d_alpha = i.reference_force * d_c_t_d_alpha; // lb/ft/rad
     let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
         + p.c_m_eta_2 * d_eta_static_2_d_alpha
         + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let d_pitching_moment_d_alpha = reference_force * p.c_bar * d_c_m_d_alpha
+    let d_pitching_moment_d_alpha = i.reference_force * p.c_bar * d_c_m_d_alpha
         + p.z_t * d_thrust_d_alpha; // lb/rad
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
-    d_pitch_acceleration_d_alpha - alpha_slope_pitch_rate
+    d_pitch_acceleration_d_alpha - n.alpha_slope_pitch_rate
 }

@@ -2,7 +2,11 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Diffusion, Input, Noise, Prepared, State};
+use super::{
+    Diffusion, Input, Intermediates, Noise, NoiseTerms, Prepared, Slopes, State,
+    drift_from, intermediates, noise_terms, slopes,
+};
+
 use ahv_core::{Pattern, Real, Vector};
 
 /// Where the entries of the compressed [`Diffusion`] stand.
@@ -78,39 +82,29 @@ pub fn diffusion_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 11] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
+    diffusion_values_from(x, u, p, &i, &s, &n)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Strict-feedback form, (28)
-    let dynamic_pressure_s = dynamic_pressure * p.s;
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_velocity = dynamic_pressure_s * p.inv_m
-        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
-    let alpha_slope_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_gamma = turn_factor * alpha_slope_gamma_over_turn_factor; // rad/s/rad
-    let alpha_slope_alpha = -alpha_slope_gamma; // rad/s/rad
-    let alpha_slope_pitch_rate = dynamic_pressure_s * p.inv_i_yy
-        * (p.c_bar_c_m_alpha + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
-
+/// [`diffusion_values`] from what is computed once.
+#[inline(always)]
+pub fn diffusion_values_from<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    _s: &Slopes<R>,
+    n: &NoiseTerms<R>,
+) -> [R; 11] {
     [
-        alpha_slope_velocity * p.w_alpha,
+        n.alpha_slope_velocity * p.w_alpha,
         x.velocity * p.w_gamma,
-        alpha_slope_gamma * p.w_alpha,
-        alpha_slope_alpha * p.w_alpha,
+        i.g_gamma * p.w_alpha,
+        n.alpha_slope_alpha * p.w_alpha,
         p.w_q,
-        alpha_slope_pitch_rate * p.w_alpha,
+        n.alpha_slope_pitch_rate * p.w_alpha,
         p.chi_diffusion_1,
         p.chi_diffusion_2_shared_noise,
         p.chi_diffusion_2_own_noise,
@@ -135,202 +129,12 @@ pub fn drift_and_diffusion<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (State<R>, Diffusion<R>) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Motion, (1)
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-
-    // Coloured noise, (27)
-    let chi_rate_1 = -p.chi_decay_1 * x.chi_1; // (ft*slug)^0.5/s
-    let chi_rate_2 = -p.chi_decay_2 * x.chi_2; // (ft*slug)^0.5/s
-    let chi_rate_3 = -p.chi_decay_3 * x.chi_3; // (ft*slug)^0.5/s
-
-    // Strict-feedback form, (29)
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let f_velocity = reference_force * p.inv_m
-        * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        - gravity * sin_gamma + f_velocity_eta; // ft/s^2
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_velocity = reference_force * p.inv_m
-        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
-    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
-        + sin_alpha * (c_t_phi_phi + p.c_t_0);
-    let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        - gravity_turn_cos_gamma
-        + f_gamma_eta; // rad/s
-    let g_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
-    let f_alpha_eta = -f_gamma_eta; // rad/s
-    let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
-        + p.c_t_0;
-    let f_alpha = gravity_turn_cos_gamma
-        - turn_factor * (p.c_l_0 + p.c_l_alpha * x.alpha + sin_alpha * f_alpha_term_1)
-        + f_alpha_eta; // rad/s
-    let alpha_slope_alpha = -g_gamma; // rad/s/rad
-    let f_pitch_rate_eta = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2); // rad/s^2
-    let f_pitch_rate = reference_force * p.inv_i_yy
-        * (p.z_t * f_alpha_term_1
-            + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
-        + f_pitch_rate_eta; // rad/s^2
-    let g_pitch_rate = reference_force * p.g_pitch_rate_constant_1; // 1/s^2
-    let alpha_slope_pitch_rate = reference_force * p.inv_i_yy
-        * (p.c_bar_c_m_alpha + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
-
-    // Printed form, (27)
-    let velocity_rate_printed = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
-        + g_velocity * u.phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
-        * x.chi_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
-        * x.chi_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
-        * x.chi_3;
-    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
-    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
-        + f_gamma
-        + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + f_alpha + x.pitch_rate; // rad/s
-    let pitch_rate_rate_printed = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + f_pitch_rate
-        + g_pitch_rate * u.delta_e; // rad/s^2
-
-    // Result
-    let no_noise = Noise::splat(R::ZERO);
-    let drift = State {
-        velocity: velocity_rate_printed,
-        altitude: altitude_rate,
-        gamma: gamma_rate_printed,
-        alpha: alpha_rate_printed,
-        pitch_rate: pitch_rate_rate_printed,
-        chi_1: chi_rate_1,
-        chi_2: chi_rate_2,
-        chi_3: chi_rate_3,
-    };
-    let diffusion = State {
-        velocity: Noise {
-            w_alpha: alpha_slope_velocity * p.w_alpha,
-            ..no_noise
-        },
-        altitude: Noise {
-            w_gamma: x.velocity * p.w_gamma,
-            ..no_noise
-        },
-        gamma: Noise {
-            w_alpha: g_gamma * p.w_alpha,
-            ..no_noise
-        },
-        alpha: Noise {
-            w_alpha: alpha_slope_alpha * p.w_alpha,
-            w_q: p.w_q,
-            ..no_noise
-        },
-        pitch_rate: Noise {
-            w_alpha: alpha_slope_pitch_rate * p.w_alpha,
-            ..no_noise
-        },
-        chi_1: Noise {
-            xi_1: p.chi_diffusion_1,
-            ..no_noise
-        },
-        chi_2: Noise {
-            xi_1: p.chi_diffusion_2_shared_noise,
-            xi_2: p.chi_diffusion_2_own_noise,
-            ..no_noise
-        },
-        chi_3: Noise {
-            xi_1: p.chi_diffusion_3_shared_noise,
-            xi_3: p.chi_diffusion_3_own_noise,
-            ..no_noise
-        },
-    };
-    (drift, diffusion)
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
+    let drift = drift_from(x, u, p, &i);
+    let diffusion = diffusion_values_from(x, u, p, &i, &s, &n);
+    (drift, dense_diffusion(&diffusion))
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
@@ -343,39 +147,31 @@ pub fn noise_increment<R: Real>(
     p: &Prepared<R>,
     dw: &Noise<R>,
 ) -> State<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
+    noise_increment_from(x, u, p, dw, &i, &s, &n)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Strict-feedback form, (28)
-    let dynamic_pressure_s = dynamic_pressure * p.s;
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_velocity = dynamic_pressure_s * p.inv_m
-        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
-    let alpha_slope_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_gamma = turn_factor * alpha_slope_gamma_over_turn_factor; // rad/s/rad
-    let alpha_slope_alpha = -alpha_slope_gamma; // rad/s/rad
-    let alpha_slope_pitch_rate = dynamic_pressure_s * p.inv_i_yy
-        * (p.c_bar_c_m_alpha + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
+/// [`noise_increment`] from what is computed once.
+#[inline(always)]
+pub fn noise_increment_from<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    dw: &Noise<R>,
+    i: &Intermediates<R>,
+    _s: &Slopes<R>,
+    n: &NoiseTerms<R>,
+) -> State<R> {
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {
-        velocity: alpha_slope_velocity * p.w_alpha * dw.w_alpha,
+        velocity: n.alpha_slope_velocity * p.w_alpha * dw.w_alpha,
         altitude: x.velocity * p.w_gamma * dw.w_gamma,
-        gamma: alpha_slope_gamma * p.w_alpha * dw.w_alpha,
-        alpha: alpha_slope_alpha * p.w_alpha * dw.w_alpha + p.w_q * dw.w_q,
-        pitch_rate: alpha_slope_pitch_rate * p.w_alpha * dw.w_alpha,
+        gamma: i.g_gamma * p.w_alpha * dw.w_alpha,
+        alpha: n.alpha_slope_alpha * p.w_alpha * dw.w_alpha + p.w_q * dw.w_q,
+        pitch_rate: n.alpha_slope_pitch_rate * p.w_alpha * dw.w_alpha,
         chi_1: p.chi_diffusion_1 * dw.xi_1,
         chi_2: p.chi_diffusion_2 * (shared_noise_dxi_1 + p.own_noise * dw.xi_2),
         chi_3: p.chi_diffusion_3 * (shared_noise_dxi_1 + p.own_noise * dw.xi_3),
@@ -392,173 +188,10 @@ pub fn drift_and_noise_increment<R: Real>(
     p: &Prepared<R>,
     dw: &Noise<R>,
 ) -> (State<R>, State<R>) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Motion, (1)
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-
-    // Coloured noise, (27)
-    let chi_rate_1 = -p.chi_decay_1 * x.chi_1; // (ft*slug)^0.5/s
-    let chi_rate_2 = -p.chi_decay_2 * x.chi_2; // (ft*slug)^0.5/s
-    let chi_rate_3 = -p.chi_decay_3 * x.chi_3; // (ft*slug)^0.5/s
-
-    // Strict-feedback form, (29)
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let f_velocity = reference_force * p.inv_m
-        * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        - gravity * sin_gamma + f_velocity_eta; // ft/s^2
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_velocity = reference_force * p.inv_m
-        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
-    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
-        + sin_alpha * (c_t_phi_phi + p.c_t_0);
-    let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        - gravity_turn_cos_gamma
-        + f_gamma_eta; // rad/s
-    let g_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
-    let f_alpha_eta = -f_gamma_eta; // rad/s
-    let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
-        + p.c_t_0;
-    let f_alpha = gravity_turn_cos_gamma
-        - turn_factor * (p.c_l_0 + p.c_l_alpha * x.alpha + sin_alpha * f_alpha_term_1)
-        + f_alpha_eta; // rad/s
-    let alpha_slope_alpha = -g_gamma; // rad/s/rad
-    let f_pitch_rate_eta = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2); // rad/s^2
-    let f_pitch_rate = reference_force * p.inv_i_yy
-        * (p.z_t * f_alpha_term_1
-            + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
-        + f_pitch_rate_eta; // rad/s^2
-    let g_pitch_rate = reference_force * p.g_pitch_rate_constant_1; // 1/s^2
-    let alpha_slope_pitch_rate = reference_force * p.inv_i_yy
-        * (p.c_bar_c_m_alpha + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
-
-    // Printed form, (27)
-    let velocity_rate_printed = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
-        + g_velocity * u.phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
-        * x.chi_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
-        * x.chi_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
-        * x.chi_3;
-    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
-    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
-        + f_gamma
-        + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + f_alpha + x.pitch_rate; // rad/s
-    let pitch_rate_rate_printed = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + f_pitch_rate
-        + g_pitch_rate * u.delta_e; // rad/s^2
-    let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
-
-    // Result
-    let drift = State {
-        velocity: velocity_rate_printed,
-        altitude: altitude_rate,
-        gamma: gamma_rate_printed,
-        alpha: alpha_rate_printed,
-        pitch_rate: pitch_rate_rate_printed,
-        chi_1: chi_rate_1,
-        chi_2: chi_rate_2,
-        chi_3: chi_rate_3,
-    };
-    let increment = State {
-        velocity: alpha_slope_velocity * p.w_alpha * dw.w_alpha,
-        altitude: x.velocity * p.w_gamma * dw.w_gamma,
-        gamma: g_gamma * p.w_alpha * dw.w_alpha,
-        alpha: alpha_slope_alpha * p.w_alpha * dw.w_alpha + p.w_q * dw.w_q,
-        pitch_rate: alpha_slope_pitch_rate * p.w_alpha * dw.w_alpha,
-        chi_1: p.chi_diffusion_1 * dw.xi_1,
-        chi_2: p.chi_diffusion_2 * (shared_noise_dxi_1 + p.own_noise * dw.xi_2),
-        chi_3: p.chi_diffusion_3 * (shared_noise_dxi_1 + p.own_noise * dw.xi_3),
-    };
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
+    let drift = drift_from(x, u, p, &i);
+    let increment = noise_increment_from(x, u, p, dw, &i, &s, &n);
     (drift, increment)
 }

@@ -2,7 +2,7 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Hessian, Input, Prepared, State};
+use super::{Hessian, Input, Prepared, State, intermediates, noise_terms, slopes};
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`Hessian`] stand.
@@ -86,254 +86,67 @@ pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
 /// 959 operations: 297 additions, 657 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 67] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
-    let slope_of_f_velocity_in_dynamic_pressure = (cos_alpha * c_t_alpha_alpha_plus_c_t_0
-        - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        * p.s_over_m; // ft^3/s^2/lb
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft^3/s^2/lb
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
-    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
-        * cos_alpha * p.s_over_m; // ft^3/s^2/lb
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 = sin_alpha * p.c_t_eta_1
-        + p.c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 = sin_alpha * p.c_t_eta_2
-        + p.c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 = sin_alpha * p.c_t_eta_3
-        + p.c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let slope_of_gamma_rate_printed_in_turn_factor = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * x.chi_1
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * x.chi_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * x.chi_3; // rad
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0; // rad
-    let slope_of_f_gamma_eta_in_turn_factor =
-        d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * generalized_force_1_inv_omega_1_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * generalized_force_2_inv_omega_2_2
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * generalized_force_3_inv_omega_3_2; // rad
-    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha = sin_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
-        + c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
-    let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
-        * d_turn_factor_d_velocity; // 1/ft
-    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
-    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
-        + p.c_t_0;
-    let slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
-        + sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
-    let slope_of_f_alpha_eta_in_turn_factor = -slope_of_f_gamma_eta_in_turn_factor; // rad
-    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
-    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
-    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
-    let slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
-        * slope_of_f_alpha_in_turn_factor_term_1
-        + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
-        * p.s_over_i_yy; // rad*ft^2/s^2/lb
-
-    // Derivatives with respect to altitude
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
-        * d_turn_factor_d_altitude; // 1/s/ft
-
-    // Derivatives with respect to gamma
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
-        + x.chi_2 * p.c_t_eta_2
-        + x.chi_3 * p.c_t_eta_3;
-    let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
-        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
-    let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
-        * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
-    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-        + generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-        + generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
-    let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let slope_of_g_velocity_in_cos_alpha = c_t_phi_alpha_alpha_plus_c_t_phi
-        * reference_force * p.inv_m; // ft/s^2
-    let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
-        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
-    let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
-    let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
-    let slope_of_g_gamma_in_sin_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
-    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * cos_alpha; // 1/s/rad
-    let slope_of_alpha_rate_printed_in_sin_alpha = -slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
-    let slope_of_f_alpha_in_sin_alpha = -turn_factor
-        * slope_of_f_alpha_in_turn_factor_term_1; // rad/s
-    let slope_of_f_alpha_eta_in_sin_alpha = -slope_of_f_gamma_eta_in_sin_alpha; // rad/s
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
 
     // Derivatives with respect to velocity
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
-        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * d_generalized_force_1_d_velocity
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_velocity
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_velocity); // ft^2/s/lb
-    let d2_generalized_force_1_d_velocity_d_velocity = c_n_1 * p.s * density; // slug^0.5/ft^1.5
-    let d2_generalized_force_2_d_velocity_d_velocity = c_n_2 * p.s * density; // slug^0.5/ft^1.5
-    let d2_generalized_force_3_d_velocity_d_velocity = c_n_3 * p.s * density; // slug^0.5/ft^1.5
-    let d2_f_velocity_eta_d_velocity_d_velocity_term_1 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1;
-    let d2_f_velocity_eta_d_velocity_d_velocity_term_2 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2;
-    let d2_f_velocity_eta_d_velocity_d_velocity_term_3 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3;
-    let d2_f_velocity_eta_d_velocity_d_velocity = R::TWO
-        * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity
-        * d_dynamic_pressure_d_velocity
-        + slope_of_f_velocity_eta_in_dynamic_pressure * density
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_velocity
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_velocity
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_velocity; // 1/ft
-    let d2_f_velocity_d_velocity_d_velocity = slope_of_f_velocity_in_dynamic_pressure
-        * density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
-    let d2_g_velocity_d_velocity_d_velocity = slope_of_g_velocity_in_dynamic_pressure
-        * density; // 1/ft
-    let d2_velocity_rate_printed_d_velocity_d_velocity_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
+        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * s.d_generalized_force_1_d_velocity
+            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * s.d_generalized_force_2_d_velocity
+            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * s.d_generalized_force_3_d_velocity); // ft^2/s/lb
+    let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
+    let d2_generalized_force_2_d_velocity_d_velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
+    let d2_generalized_force_3_d_velocity_d_velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
+    let d2_f_velocity_eta_d_velocity_d_velocity =
+        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * s.d_dynamic_pressure_d_velocity
+        + s.slope_of_f_velocity_eta_in_dynamic_pressure * i.density
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_velocity
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_velocity
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_velocity; // 1/ft
+    let d2_f_velocity_d_velocity_d_velocity = s.slope_of_f_velocity_in_dynamic_pressure
+        * i.density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
+    let d2_g_velocity_d_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure
+        * i.density; // 1/ft
+    let d2_velocity_rate_printed_d_velocity_d_velocity_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
     let d2_velocity_rate_printed_d_velocity_d_velocity =
-        p.s_over_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1 * density
+        p.s_over_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1 * i.density
         + d2_f_velocity_d_velocity_d_velocity
         + u.phi * d2_g_velocity_d_velocity_d_velocity; // 1/ft
 
     // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * d_density_d_altitude; // lb*s/ft^4
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude = p.s_over_m
-        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * d_generalized_force_1_d_altitude
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_altitude
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_altitude); // ft^2/s^2/lb
+        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * s.d_generalized_force_1_d_altitude
+            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * s.d_generalized_force_2_d_altitude
+            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * s.d_generalized_force_3_d_altitude); // ft^2/s^2/lb
     let d2_reference_force_d_velocity_d_altitude = p.s
         * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = c_n_1
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_2_d_velocity_d_altitude = c_n_2
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_3_d_velocity_d_altitude = c_n_3
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_f_velocity_eta_d_velocity_d_altitude = d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity
-        * d_dynamic_pressure_d_altitude
-        + slope_of_f_velocity_eta_in_dynamic_pressure
-            * d2_dynamic_pressure_d_velocity_d_altitude
-        + d_dynamic_pressure_d_velocity
-            * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_altitude
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_altitude
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_altitude; // 1/s/ft
-    let d2_f_velocity_d_velocity_d_altitude = slope_of_f_velocity_in_dynamic_pressure
+    let d2_f_velocity_eta_d_velocity_d_altitude =
+        d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * s.d_dynamic_pressure_d_altitude
+        + s.slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_velocity_d_altitude
+        + s.d_dynamic_pressure_d_velocity * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_altitude
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_altitude
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_altitude; // 1/s/ft
+    let d2_f_velocity_d_velocity_d_altitude = s.slope_of_f_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude
         + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
-    let d2_g_velocity_d_velocity_d_altitude = slope_of_g_velocity_in_dynamic_pressure
+    let d2_g_velocity_d_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft
     let d2_velocity_rate_printed_d_velocity_d_altitude =
         d2_reference_force_d_velocity_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
@@ -342,98 +155,98 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to alpha
     let d_slope_of_f_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
-        * (cos_alpha * p.c_t_alpha - p.c_d_alpha
-            + c_t_alpha_alpha_plus_c_t_0 * d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
+        * (i.cos_alpha * p.c_t_alpha - p.c_d_alpha
+            + s.c_t_alpha_alpha_plus_c_t_0 * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
+    let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha_term_1 =
+        i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+        + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+        + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha = p.s_over_m
-        * (slope_of_f_velocity_eta_in_cos_alpha_term_1 * d_cos_alpha_d_alpha
-            + p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-                * d_generalized_force_1_d_alpha
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_alpha
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_alpha); // ft^3/s^2/lb/rad
-    let d2_generalized_force_1_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_2_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_3_d_velocity_d_alpha = d_reference_force_d_velocity
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_f_velocity_eta_d_velocity_d_alpha = reference_force * p.inv_m
-        * (d_generalized_force_1_d_velocity * p.c_t_eta_1_inv_omega_1_2
-            + d_generalized_force_2_d_velocity * p.c_t_eta_2_inv_omega_2_2
-            + d_generalized_force_3_d_velocity * p.c_t_eta_3_inv_omega_3_2)
-        * d_cos_alpha_d_alpha
-        + d_dynamic_pressure_d_velocity
+        * (d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha_term_1
+            * s.d_cos_alpha_d_alpha
+            + p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
+                * s.d_generalized_force_1_d_alpha
+            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * s.d_generalized_force_2_d_alpha
+            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * s.d_generalized_force_3_d_alpha); // ft^3/s^2/lb/rad
+    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_f_velocity_eta_d_velocity_d_alpha = i.reference_force * p.inv_m
+        * (s.d_generalized_force_1_d_velocity * p.c_t_eta_1_inv_omega_1_2
+            + s.d_generalized_force_2_d_velocity * p.c_t_eta_2_inv_omega_2_2
+            + s.d_generalized_force_3_d_velocity * p.c_t_eta_3_inv_omega_3_2)
+        * s.d_cos_alpha_d_alpha
+        + s.d_dynamic_pressure_d_velocity
             * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/rad
-    let d2_f_velocity_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
+    let d2_f_velocity_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
         * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
         + d2_f_velocity_eta_d_velocity_d_alpha; // 1/s/rad
     let d_slope_of_g_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
-        * (cos_alpha * p.c_t_phi_alpha
-            + c_t_phi_alpha_alpha_plus_c_t_phi * d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
-    let d2_g_velocity_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
+        * (i.cos_alpha * p.c_t_phi_alpha
+            + s.c_t_phi_alpha_alpha_plus_c_t_phi * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
+    let d2_g_velocity_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s/rad
-    let d2_velocity_rate_printed_d_velocity_d_alpha = d_reference_force_d_velocity
-        * p.inv_m * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
-        * d_cos_alpha_d_alpha + d2_f_velocity_d_velocity_d_alpha
+    let d2_velocity_rate_printed_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * p.inv_m * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
+        * s.d_cos_alpha_d_alpha + d2_f_velocity_d_velocity_d_alpha
         + u.phi * d2_g_velocity_d_velocity_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_velocity_d_chi_1 = d_reference_force_d_velocity
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    let d2_velocity_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_velocity_rate_printed_d_velocity_d_chi_2 = d_reference_force_d_velocity
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    let d2_velocity_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_velocity_rate_printed_d_velocity_d_chi_3 = d_reference_force_d_velocity
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    let d2_velocity_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to altitude
-    let density_ratio_over_h_s = density_ratio * p.inv_h_s;
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
     let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
     let d2_density_d_altitude_d_altitude = p.rho_0
         * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * velocity_2
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let radius_ratio_3 = radius_ratio * radius_ratio_2;
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = d_radius_ratio_d_altitude
-        * d_radius_ratio_d_altitude;
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
     let d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     let d2_reference_force_d_altitude_d_altitude = p.s
         * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = c_n_1
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_2_d_altitude_d_altitude = c_n_2
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_3_d_altitude_d_altitude = c_n_3
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_f_velocity_eta_d_altitude_d_altitude = R::TWO
-        * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
-        * d_dynamic_pressure_d_altitude
-        + slope_of_f_velocity_eta_in_dynamic_pressure
-            * d2_dynamic_pressure_d_altitude_d_altitude
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_altitude_d_altitude
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_altitude_d_altitude
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_altitude_d_altitude; // 1/s^2/ft
+    let d2_f_velocity_eta_d_altitude_d_altitude =
+        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude * s.d_dynamic_pressure_d_altitude
+        + s.slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_altitude;
     let d2_f_velocity_d_altitude_d_altitude =
-        slope_of_f_velocity_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
-        - sin_gamma * d2_gravity_d_altitude_d_altitude
+        s.slope_of_f_velocity_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
+        - i.sin_gamma * d2_gravity_d_altitude_d_altitude
         + d2_f_velocity_eta_d_altitude_d_altitude; // 1/s^2/ft
-    let d2_g_velocity_d_altitude_d_altitude = slope_of_g_velocity_in_dynamic_pressure
+    let d2_g_velocity_d_altitude_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
     let d2_velocity_rate_printed_d_altitude_d_altitude =
         d2_reference_force_d_altitude_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
@@ -441,306 +254,320 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + u.phi * d2_g_velocity_d_altitude_d_altitude; // 1/s^2/ft
 
     // Derivatives with respect to gamma
-    let d2_f_velocity_d_altitude_d_gamma = -d_gravity_d_altitude * cos_gamma; // 1/s^2/rad
+    let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_2_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_3_d_altitude_d_alpha = d_reference_force_d_altitude
-        * d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_f_velocity_eta_d_altitude_d_alpha = reference_force * p.inv_m
-        * (d_generalized_force_1_d_altitude * p.c_t_eta_1_inv_omega_1_2
-            + d_generalized_force_2_d_altitude * p.c_t_eta_2_inv_omega_2_2
-            + d_generalized_force_3_d_altitude * p.c_t_eta_3_inv_omega_3_2)
-        * d_cos_alpha_d_alpha
-        + d_dynamic_pressure_d_altitude
+    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_f_velocity_eta_d_altitude_d_alpha = i.reference_force * p.inv_m
+        * (s.d_generalized_force_1_d_altitude * p.c_t_eta_1_inv_omega_1_2
+            + s.d_generalized_force_2_d_altitude * p.c_t_eta_2_inv_omega_2_2
+            + s.d_generalized_force_3_d_altitude * p.c_t_eta_3_inv_omega_3_2)
+        * s.d_cos_alpha_d_alpha
+        + s.d_dynamic_pressure_d_altitude
             * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_altitude_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_altitude_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/rad
-    let d2_f_velocity_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
+    let d2_f_velocity_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
         * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
         + d2_f_velocity_eta_d_altitude_d_alpha; // 1/s^2/rad
-    let d2_g_velocity_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
+    let d2_g_velocity_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s^2/rad
-    let d2_velocity_rate_printed_d_altitude_d_alpha = d_reference_force_d_altitude
-        * p.inv_m * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
-        * d_cos_alpha_d_alpha + d2_f_velocity_d_altitude_d_alpha
+    let d2_velocity_rate_printed_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * p.inv_m * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
+        * s.d_cos_alpha_d_alpha + d2_f_velocity_d_altitude_d_alpha
         + u.phi * d2_g_velocity_d_altitude_d_alpha; // 1/s^2/rad
 
     // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_altitude_d_chi_1 = d_reference_force_d_altitude
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    let d2_velocity_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_velocity_rate_printed_d_altitude_d_chi_2 = d_reference_force_d_altitude
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    let d2_velocity_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_velocity_rate_printed_d_altitude_d_chi_3 = d_reference_force_d_altitude
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    let d2_velocity_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to gamma
-    let d2_f_velocity_d_gamma_d_gamma = -gravity * d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -cos_alpha; // 1/rad^2
-    let d_slope_of_f_velocity_in_cos_alpha_d_alpha = reference_force
+    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
+    let d_slope_of_f_velocity_in_cos_alpha_d_alpha = i.reference_force
         * p.c_t_alpha_over_m; // ft/s^2/rad
     let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1 =
-        p.c_t_eta_1_inv_omega_1_2 * d_generalized_force_1_d_alpha
-        + p.c_t_eta_2_inv_omega_2_2 * d_generalized_force_2_d_alpha
-        + p.c_t_eta_3_inv_omega_3_2 * d_generalized_force_3_d_alpha;
-    let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha = reference_force * p.inv_m
+        p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+        + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+        + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
+    let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha = i.reference_force * p.inv_m
         * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1; // ft/s^2/rad
-    let d2_generalized_force_1_d_alpha_d_alpha = reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_f_velocity_eta_d_alpha_d_alpha =
-        R::TWO * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
-        + slope_of_f_velocity_eta_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_velocity_term_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha;
-    let d2_f_velocity_d_alpha_d_alpha = R::TWO * d_slope_of_f_velocity_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
-        + slope_of_f_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
+        R::TWO * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
+        + s.slope_of_f_velocity_eta_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha; // ft/s^2/rad^2
+    let d2_f_velocity_d_alpha_d_alpha = R::TWO * d_slope_of_f_velocity_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
+        + s.slope_of_f_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d2_f_velocity_eta_d_alpha_d_alpha; // ft/s^2/rad^2
-    let d_slope_of_g_velocity_in_cos_alpha_d_alpha = reference_force
+    let d_slope_of_g_velocity_in_cos_alpha_d_alpha = i.reference_force
         * p.c_t_phi_alpha_over_m; // ft/s^2/rad
     let d2_g_velocity_d_alpha_d_alpha = R::TWO
-        * d_slope_of_g_velocity_in_cos_alpha_d_alpha * d_cos_alpha_d_alpha
-        + slope_of_g_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha; // ft/s^2/rad^2
+        * d_slope_of_g_velocity_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
+        + s.slope_of_g_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha; // ft/s^2/rad^2
     let d2_velocity_rate_printed_d_alpha_d_alpha =
-        slope_of_velocity_rate_printed_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
+        s.slope_of_velocity_rate_printed_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d2_f_velocity_d_alpha_d_alpha
         + u.phi * d2_g_velocity_d_alpha_d_alpha; // ft/s^2/rad^2
 
     // Derivatives with respect to chi_1
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = reference_force
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = i.reference_force
         * p.c_t_eta_1_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_1 = d_cos_alpha_d_alpha
+    let d2_velocity_rate_printed_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha
         * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = reference_force
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = i.reference_force
         * p.c_t_eta_2_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_2 = d_cos_alpha_d_alpha
+    let d2_velocity_rate_printed_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha
         * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3 = reference_force
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3 = i.reference_force
         * p.c_t_eta_3_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_3 = d_cos_alpha_d_alpha
+    let d2_velocity_rate_printed_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha
         * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
 
     // Derivatives with respect to velocity
-    let inv_velocity_3 = inv_velocity * inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * gravity * inv_velocity_3; // s/ft^2
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
     let d_slope_of_f_gamma_eta_in_turn_factor_d_velocity =
-        d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_velocity
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_velocity
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_velocity;
-    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
-        * p.inv_omega_1_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
-        * p.inv_omega_2_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
-        * p.inv_omega_3_2 * d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_velocity
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_velocity
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_velocity; // rad*s/ft
+    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity = i
+        .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
+        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity = i
+        .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
+        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity = i
+        .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
+        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
     let d2_f_gamma_eta_d_velocity_d_velocity =
-        slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
-        + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_velocity
-        + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
-        + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
-        + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity = cos_gamma
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
+        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_velocity
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
+    let cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity = i.cos_gamma
         * d2_gravity_turn_d_velocity_d_velocity;
     let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
         - cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * d_density_d_altitude; // 1/ft^2
+    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * d_radius_ratio_d_altitude + inv_velocity_2 * d_gravity_d_altitude); // 1/ft^2
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
     let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude =
-        d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_altitude
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_altitude
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_altitude;
-    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1
-        * p.inv_omega_1_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2
-        * p.inv_omega_2_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude = d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3
-        * p.inv_omega_3_2 * d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_altitude
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_altitude
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_altitude; // rad/ft
+    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude = i
+        .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
+        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude = i
+        .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
+        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude = i
+        .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
+        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
     let d2_f_gamma_eta_d_velocity_d_altitude =
-        slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
-        + slope_of_f_gamma_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
-        + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
-        + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
-    let cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude = cos_gamma
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
+        + i.f_gamma_eta_over_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+    let cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude = i.cos_gamma
         * d2_gravity_turn_d_velocity_d_altitude;
-    let d2_f_gamma_d_velocity_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+    let d2_f_gamma_d_velocity_d_altitude =
+        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_velocity_d_altitude
         - cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
-    let d2_g_gamma_d_velocity_d_altitude = slope_of_g_gamma_in_turn_factor
+    let d2_g_gamma_d_velocity_d_altitude = i.g_gamma_over_turn_factor
         * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
     let d2_gamma_rate_printed_d_velocity_d_altitude =
-        slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        s.slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
         + d2_f_gamma_d_velocity_d_altitude
         + x.alpha * d2_g_gamma_d_velocity_d_altitude; // rad/ft^2
 
     // Derivatives with respect to gamma
-    let d2_f_gamma_d_velocity_d_gamma = -d_gravity_turn_d_velocity * d_cos_gamma_d_gamma; // 1/ft
+    let d2_f_gamma_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
-        * cos_alpha;
-    let d_slope_of_f_gamma_in_turn_factor_d_alpha = c_t_phi_phi_plus_c_t_0 * cos_alpha;
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = slope_of_f_velocity_eta_in_cos_alpha_term_1 * cos_alpha
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_alpha
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_alpha
-        + d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_alpha;
-    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = turn_factor
-        * p.c_t_eta_1_inv_omega_1_2 * cos_alpha; // s/ft^0.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = turn_factor
-        * p.c_t_eta_2_inv_omega_2_2 * cos_alpha; // s/ft^0.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha = turn_factor
-        * p.c_t_eta_3_inv_omega_3_2 * cos_alpha; // s/ft^0.5/slug^0.5
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s
+        .chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 * i.cos_alpha;
+    let d_slope_of_f_gamma_in_turn_factor_d_alpha = (i.c_t_phi_phi + p.c_t_0)
+        * i.cos_alpha;
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha =
+        d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha_term_1 * i.cos_alpha
+        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
+    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = i.turn_factor
+        * p.c_t_eta_1_inv_omega_1_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = i.turn_factor
+        * p.c_t_eta_2_inv_omega_2_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha = i.turn_factor
+        * p.c_t_eta_3_inv_omega_3_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
     let d2_f_gamma_eta_d_velocity_d_alpha =
-        slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_alpha
-        + d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
-        + d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha; // 1/ft
-    let d2_f_gamma_d_velocity_d_alpha = d_turn_factor_d_velocity
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_alpha
+        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha; // 1/ft
+    let d2_f_gamma_d_velocity_d_alpha = s.d_turn_factor_d_velocity
         * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_velocity_d_alpha; // 1/ft
-    let d_slope_of_g_gamma_in_turn_factor_d_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
-    let d2_g_gamma_d_velocity_d_alpha = d_turn_factor_d_velocity
-        * d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/ft/rad
-    let d2_gamma_rate_printed_d_velocity_d_alpha = d_g_gamma_d_velocity
-        + d_turn_factor_d_velocity * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
+    let d2_g_gamma_d_velocity_d_alpha = s.d_turn_factor_d_velocity
+        * n.c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha; // 1/ft/rad
+    let d2_gamma_rate_printed_d_velocity_d_alpha = s.d_g_gamma_d_velocity
+        + s.d_turn_factor_d_velocity * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
         + d2_f_gamma_d_velocity_d_alpha
         + x.alpha * d2_g_gamma_d_velocity_d_alpha; // 1/ft
 
     // Derivatives with respect to chi_1
-    let d2_gamma_rate_printed_d_velocity_d_chi_1 = d_turn_factor_d_velocity
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
+    let d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_velocity_d_chi_2 = d_turn_factor_d_velocity
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
+    let d2_gamma_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_velocity_d_chi_3 = d_turn_factor_d_velocity
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
+    let d2_gamma_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
     let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * d2_density_d_altitude_d_altitude; // 1/s/ft^2
     let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * inv_velocity
+        * i.inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
     let d2_f_gamma_eta_d_altitude_d_altitude =
-        d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
-        + d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
-        + d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
-        + slope_of_f_gamma_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = cos_gamma
+        s.d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
+        + i.f_gamma_eta_over_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = i.cos_gamma
         * d2_gravity_turn_d_altitude_d_altitude;
-    let d2_f_gamma_d_altitude_d_altitude = slope_of_f_gamma_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+    let d2_f_gamma_d_altitude_d_altitude =
+        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_altitude_d_altitude
         - cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_g_gamma_d_altitude_d_altitude = slope_of_g_gamma_in_turn_factor
+    let d2_g_gamma_d_altitude_d_altitude = i.g_gamma_over_turn_factor
         * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
     let d2_gamma_rate_printed_d_altitude_d_altitude =
-        slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+        s.slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
         + d2_f_gamma_d_altitude_d_altitude
         + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
-    let d2_f_gamma_d_altitude_d_gamma = -d_gravity_turn_d_altitude * d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_f_gamma_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_f_gamma_eta_d_altitude_d_alpha = d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
-        + d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
-    let d2_f_gamma_d_altitude_d_alpha = d_turn_factor_d_altitude
+    let d2_f_gamma_eta_d_altitude_d_alpha = s.d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
+        + s.d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + s.d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + s.d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
+    let d2_f_gamma_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_altitude_d_alpha; // 1/s/ft
-    let d2_g_gamma_d_altitude_d_alpha = d_turn_factor_d_altitude
-        * d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/s/ft/rad
-    let d2_gamma_rate_printed_d_altitude_d_alpha = d_g_gamma_d_altitude
-        + d_turn_factor_d_altitude * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
+    let d2_g_gamma_d_altitude_d_alpha = s.d_turn_factor_d_altitude
+        * n.c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha; // 1/s/ft/rad
+    let d2_gamma_rate_printed_d_altitude_d_alpha = s.d_g_gamma_d_altitude
+        + s.d_turn_factor_d_altitude * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
         + d2_f_gamma_d_altitude_d_alpha
         + x.alpha * d2_g_gamma_d_altitude_d_alpha; // 1/s/ft
 
     // Derivatives with respect to chi_1
-    let d2_gamma_rate_printed_d_altitude_d_chi_1 = d_turn_factor_d_altitude
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
+    let d2_gamma_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_altitude_d_chi_2 = d_turn_factor_d_altitude
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
+    let d2_gamma_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_altitude_d_chi_3 = d_turn_factor_d_altitude
-        * d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
+    let d2_gamma_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to gamma
-    let d2_cos_gamma_d_gamma_d_gamma = -cos_gamma; // 1/rad^2
-    let d2_f_gamma_d_gamma_d_gamma = -gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_f_gamma_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = turn_factor
+    let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = i.turn_factor
         * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1; // 1/s
     let d2_f_gamma_eta_d_alpha_d_alpha =
-        d_generalized_force_1_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_alpha_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
-        + slope_of_f_gamma_eta_in_sin_alpha * d_cos_alpha_d_alpha
-        + cos_alpha * d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s/rad
-    let d2_f_gamma_d_alpha_d_alpha = slope_of_f_gamma_in_sin_alpha * d_cos_alpha_d_alpha
-        + d2_f_gamma_eta_d_alpha_d_alpha; // 1/s/rad
-    let d2_g_gamma_d_alpha_d_alpha = slope_of_g_gamma_in_sin_alpha * d_cos_alpha_d_alpha; // 1/s/rad^2
-    let d2_gamma_rate_printed_d_alpha_d_alpha = R::TWO * d_g_gamma_d_alpha
-        + slope_of_gamma_rate_printed_in_sin_alpha * d_cos_alpha_d_alpha
+        s.d_generalized_force_1_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
+        + s.d_generalized_force_2_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
+        + s.d_generalized_force_3_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_alpha_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
+        + s.slope_of_f_gamma_eta_in_sin_alpha * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s/rad
+    let d2_f_gamma_d_alpha_d_alpha = s.slope_of_f_gamma_in_sin_alpha
+        * s.d_cos_alpha_d_alpha + d2_f_gamma_eta_d_alpha_d_alpha; // 1/s/rad
+    let d2_g_gamma_d_alpha_d_alpha = s.slope_of_g_gamma_in_sin_alpha
+        * s.d_cos_alpha_d_alpha; // 1/s/rad^2
+    let d2_gamma_rate_printed_d_alpha_d_alpha = R::TWO * s.d_g_gamma_d_alpha
+        + s.slope_of_gamma_rate_printed_in_sin_alpha * s.d_cos_alpha_d_alpha
         + d2_f_gamma_d_alpha_d_alpha
         + x.alpha * d2_g_gamma_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
-    let d2_gamma_rate_printed_d_alpha_d_chi_1 = cos_alpha * turn_factor * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
+    let d2_gamma_rate_printed_d_alpha_d_chi_1 = i.cos_alpha * i.turn_factor
+        * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_alpha_d_chi_2 = cos_alpha * turn_factor * p.c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+    let d2_gamma_rate_printed_d_alpha_d_chi_2 = i.cos_alpha * i.turn_factor
+        * p.c_t_eta_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_alpha_d_chi_3 = cos_alpha * turn_factor * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+    let d2_gamma_rate_printed_d_alpha_d_chi_3 = i.cos_alpha * i.turn_factor
+        * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to velocity
     let d_slope_of_f_alpha_eta_in_turn_factor_d_velocity = -d_slope_of_f_gamma_eta_in_turn_factor_d_velocity;
@@ -751,19 +578,19 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_3
         * p.inv_omega_3_2; // rad*s^2/ft^1.5/slug^0.5
     let d2_f_alpha_eta_d_velocity_d_velocity =
-        slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
-        + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_velocity
-        + d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
-        + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
-        + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let velocity_cos_gamma = x.velocity * cos_gamma;
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
+        + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_velocity
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
     let d2_f_alpha_d_velocity_d_velocity = cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity
-        - gravity_turn
-            * (cos_gamma * inv_velocity_2
-                + (cos_gamma * inv_velocity - velocity_cos_gamma * inv_velocity_2)
-                    * inv_velocity - velocity_cos_gamma * inv_velocity_3)
+        - i.gravity_turn
+            * (i.cos_gamma * s.inv_velocity_2
+                + (i.cos_gamma * i.inv_velocity
+                    - s.d_altitude_rate_d_gamma * s.inv_velocity_2) * i.inv_velocity
+                - s.d_altitude_rate_d_gamma * inv_velocity_3)
         + d2_f_alpha_eta_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
@@ -775,28 +602,31 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_3
         * p.inv_omega_3_2; // rad*s/ft^1.5/slug^0.5
     let d2_f_alpha_eta_d_velocity_d_altitude =
-        slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
-        + slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
-        + d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
-        + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
-        + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
-    let d2_f_alpha_d_velocity_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+    let d2_f_alpha_d_velocity_d_altitude = s.slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
         + cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
-    let d2_alpha_rate_printed_d_velocity_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
+    let d2_alpha_rate_printed_d_velocity_d_altitude = s
+        .slope_of_alpha_rate_printed_in_turn_factor
         * d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
 
     // Derivatives with respect to gamma
-    let d2_f_alpha_d_velocity_d_gamma = d_gravity_turn_d_velocity * d_cos_gamma_d_gamma; // 1/ft
+    let d2_f_alpha_d_velocity_d_gamma = s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_in_turn_factor_d_alpha = -(p.c_l_alpha
-        + c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
-        + slope_of_f_alpha_in_turn_factor_term_1 * cos_alpha);
+        + i.sin_alpha * s.c_t_alpha_plus_c_t_phi_alpha_phi
+        + (p.c_t_phi_alpha * u.phi * x.alpha + i.c_t_alpha_alpha + i.c_t_phi_phi
+            + p.c_t_0) * i.cos_alpha);
     let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_1
         * p.inv_omega_1_2; // s/ft^0.5/slug^0.5
@@ -805,190 +635,195 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_3
         * p.inv_omega_3_2; // s/ft^0.5/slug^0.5
     let d2_f_alpha_eta_d_velocity_d_alpha =
-        slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_alpha
-        + d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
-        + d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha; // 1/ft
-    let d2_f_alpha_d_velocity_d_alpha = d_turn_factor_d_velocity
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_alpha
+        + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha; // 1/ft
+    let d2_f_alpha_d_velocity_d_alpha = s.d_turn_factor_d_velocity
         * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_velocity_d_alpha; // 1/ft
-    let d2_alpha_rate_printed_d_velocity_d_alpha = d_turn_factor_d_velocity
+    let d2_alpha_rate_printed_d_velocity_d_alpha = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
         + d2_f_alpha_d_velocity_d_alpha; // 1/ft
 
     // Derivatives with respect to chi_1
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_1;
-    let d2_alpha_rate_printed_d_velocity_d_chi_1 = d_turn_factor_d_velocity
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -i
+        .sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2 = -d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_2;
-    let d2_alpha_rate_printed_d_velocity_d_chi_2 = d_turn_factor_d_velocity
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2 = -i
+        .sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3 = -d_slope_of_gamma_rate_printed_in_turn_factor_d_chi_3;
-    let d2_alpha_rate_printed_d_velocity_d_chi_3 = d_turn_factor_d_velocity
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3 = -i
+        .sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
     let d2_f_alpha_eta_d_altitude_d_altitude =
-        d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
-        + d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
-        + d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
-        + d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
-        + slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_f_alpha_d_altitude_d_altitude = slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+        s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_f_alpha_d_altitude_d_altitude = s.slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
         + cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_alpha_rate_printed_d_altitude_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
+    let d2_alpha_rate_printed_d_altitude_d_altitude = s
+        .slope_of_alpha_rate_printed_in_turn_factor
         * d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
-    let d2_f_alpha_d_altitude_d_gamma = d_gravity_turn_d_altitude * d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_f_alpha_d_altitude_d_gamma = s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_f_alpha_eta_d_altitude_d_alpha = d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
-        + d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
-    let d2_f_alpha_d_altitude_d_alpha = d_turn_factor_d_altitude
+    let d2_f_alpha_eta_d_altitude_d_alpha = s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
+        + s.d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + s.d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + s.d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
+    let d2_f_alpha_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_altitude_d_alpha; // 1/s/ft
-    let d2_alpha_rate_printed_d_altitude_d_alpha = d_turn_factor_d_altitude
+    let d2_alpha_rate_printed_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
         + d2_f_alpha_d_altitude_d_alpha; // 1/s/ft
 
     // Derivatives with respect to chi_1
-    let d2_alpha_rate_printed_d_altitude_d_chi_1 = d_turn_factor_d_altitude
+    let d2_alpha_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_alpha_rate_printed_d_altitude_d_chi_2 = d_turn_factor_d_altitude
+    let d2_alpha_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_alpha_rate_printed_d_altitude_d_chi_3 = d_turn_factor_d_altitude
+    let d2_alpha_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to gamma
-    let d2_f_alpha_d_gamma_d_gamma = gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d_slope_of_f_alpha_in_sin_alpha_d_alpha = -slope_of_g_gamma_in_sin_alpha; // 1/s
+    let d_slope_of_f_alpha_in_sin_alpha_d_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
     let d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha = -d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s
     let d2_f_alpha_eta_d_alpha_d_alpha =
-        d_generalized_force_1_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
-        + d_generalized_force_2_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
-        + d_generalized_force_3_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_alpha_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
-        + slope_of_f_alpha_eta_in_sin_alpha * d_cos_alpha_d_alpha
-        + cos_alpha * d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha; // 1/s/rad
-    let cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = cos_alpha
+        s.d_generalized_force_1_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
+        + s.d_generalized_force_2_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
+        + s.d_generalized_force_3_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_alpha_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
+        + s.slope_of_f_alpha_eta_in_sin_alpha * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha; // 1/s/rad
+    let cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = i.cos_alpha
         * d_slope_of_f_alpha_in_sin_alpha_d_alpha;
-    let d2_f_alpha_d_alpha_d_alpha = slope_of_f_alpha_in_sin_alpha * d_cos_alpha_d_alpha
-        - d_g_gamma_d_alpha
+    let d2_f_alpha_d_alpha_d_alpha = s.slope_of_f_alpha_in_sin_alpha * s.d_cos_alpha_d_alpha
+        - s.d_g_gamma_d_alpha
         + cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
         + d2_f_alpha_eta_d_alpha_d_alpha; // 1/s/rad
-    let d2_alpha_rate_printed_d_alpha_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
-        * d_cos_alpha_d_alpha + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad
+    let d2_alpha_rate_printed_d_alpha_d_alpha = s
+        .slope_of_alpha_rate_printed_in_sin_alpha * s.d_cos_alpha_d_alpha
+        + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -turn_factor * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_1 = cos_alpha
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -i.turn_factor
+        * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_1 = i.cos_alpha
         * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -turn_factor * p.c_t_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_2 = cos_alpha
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -i.turn_factor
+        * p.c_t_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_2 = i.cos_alpha
         * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -turn_factor * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_3 = cos_alpha
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -i.turn_factor
+        * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_3 = i.cos_alpha
         * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to velocity
     let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1 = p
         .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-        * d_generalized_force_1_d_velocity;
+        * s.d_generalized_force_1_d_velocity;
     let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_2 = p
         .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-        * d_generalized_force_2_d_velocity;
+        * s.d_generalized_force_2_d_velocity;
     let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3 = p
         .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-        * d_generalized_force_3_d_velocity;
+        * s.d_generalized_force_3_d_velocity;
     let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4 =
-        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2;
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 = reference_force
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy;
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 = reference_force
-        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy;
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 = reference_force
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy;
+        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
     let d2_f_pitch_rate_eta_d_velocity_d_velocity = p.inv_i_yy
-        * (d_reference_force_d_velocity
+        * (s.d_reference_force_d_velocity
             * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_2
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3)
-            + p.s * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4 * density)
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
+            + p.s * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4 * i.density)
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_velocity
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_velocity
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_velocity; // rad/ft^2
-    let d2_f_pitch_rate_d_velocity_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
-        * density + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
+    let d2_f_pitch_rate_d_velocity_d_velocity = s
+        .slope_of_f_pitch_rate_in_dynamic_pressure * i.density
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
     let d2_g_pitch_rate_d_velocity_d_velocity = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure * density; // 1/ft^2
+        .slope_of_g_pitch_rate_in_dynamic_pressure * i.density; // 1/ft^2
     let d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
     let d2_pitch_rate_rate_printed_d_velocity_d_velocity =
-        p.s_over_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 * density
+        p.s_over_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 * i.density
         + d2_f_pitch_rate_d_velocity_d_velocity
         + u.delta_e * d2_g_pitch_rate_d_velocity_d_velocity; // rad/ft^2
 
     // Derivatives with respect to altitude
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
         .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-        * d_generalized_force_1_d_altitude;
+        * s.d_generalized_force_1_d_altitude;
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p
         .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-        * d_generalized_force_2_d_altitude;
+        * s.d_generalized_force_2_d_altitude;
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3 = p
         .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-        * d_generalized_force_3_d_altitude;
+        * s.d_generalized_force_3_d_altitude;
     let d2_f_pitch_rate_eta_d_velocity_d_altitude = p.inv_i_yy
-        * (d_reference_force_d_velocity
+        * (s.d_reference_force_d_velocity
             * (d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
                 + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
                 + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
-            + d_reference_force_d_altitude
+            + s.d_reference_force_d_altitude
                 * (d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1
                     + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_2
                     + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3)
             + d2_reference_force_d_velocity_d_altitude
                 * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4)
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_altitude
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_velocity_d_altitude
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_f_pitch_rate_d_velocity_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
+    let d2_f_pitch_rate_d_velocity_d_altitude = s
+        .slope_of_f_pitch_rate_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude
         + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
     let d2_g_pitch_rate_d_velocity_d_altitude = p
@@ -1001,51 +836,49 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to alpha
     let d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha = p.s_over_i_yy
-        * (p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi
+        * (p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi
             + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha)); // ft^2/s^2/lb
     let d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1 =
-        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2 * d_generalized_force_1_d_alpha
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2 * d_generalized_force_2_d_alpha
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2 * d_generalized_force_3_d_alpha;
-    let d2_f_pitch_rate_eta_d_velocity_d_alpha = d_reference_force_d_velocity
-        * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_alpha
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_alpha
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
-    let d2_f_pitch_rate_d_velocity_d_alpha = d_dynamic_pressure_d_velocity
+        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
+    let d2_f_pitch_rate_eta_d_velocity_d_alpha =
+        s.d_reference_force_d_velocity * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
+    let d2_f_pitch_rate_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_velocity_d_alpha; // 1/s/ft
 
     // Derivatives with respect to chi_1
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_1 = d_reference_force_d_velocity
+    let d2_pitch_rate_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_2 = d_reference_force_d_velocity
+    let d2_pitch_rate_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_3 = d_reference_force_d_velocity
+    let d2_pitch_rate_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to altitude
     let d2_f_pitch_rate_eta_d_altitude_d_altitude = p.inv_i_yy
-        * (d_reference_force_d_altitude
+        * (s.d_reference_force_d_altitude
             * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
             + d2_reference_force_d_altitude_d_altitude
                 * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4)
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_altitude_d_altitude
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
             * d2_generalized_force_2_d_altitude_d_altitude
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_f_pitch_rate_d_altitude_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
+    let d2_f_pitch_rate_d_altitude_d_altitude = s
+        .slope_of_f_pitch_rate_in_dynamic_pressure
         * d2_dynamic_pressure_d_altitude_d_altitude
         + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
     let d2_g_pitch_rate_d_altitude_d_altitude = p
@@ -1057,38 +890,33 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
 
     // Derivatives with respect to alpha
-    let d2_f_pitch_rate_eta_d_altitude_d_alpha = d_reference_force_d_altitude
-        * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_altitude_d_alpha
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_altitude_d_alpha
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/ft
-    let d2_f_pitch_rate_d_altitude_d_alpha = d_dynamic_pressure_d_altitude
+    let d2_f_pitch_rate_eta_d_altitude_d_alpha =
+        s.d_reference_force_d_altitude * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/ft
+    let d2_f_pitch_rate_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_altitude_d_alpha; // 1/s^2/ft
 
     // Derivatives with respect to chi_1
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_1 = d_reference_force_d_altitude
+    let d2_pitch_rate_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_2 = d_reference_force_d_altitude
+    let d2_pitch_rate_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_3 = d_reference_force_d_altitude
+    let d2_pitch_rate_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to alpha
-    let d2_f_pitch_rate_eta_d_alpha_d_alpha = d2_f_pitch_rate_eta_d_velocity_d_velocity_term_5
-        * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_6 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_alpha_d_alpha
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_7 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
-    let d2_f_pitch_rate_d_alpha_d_alpha = reference_force
+    let d2_f_pitch_rate_eta_d_alpha_d_alpha =
+        s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
+    let d2_f_pitch_rate_d_alpha_d_alpha = i.reference_force
         * p.two_c_bar_c_m_alpha_2_over_i_yy + d2_f_pitch_rate_eta_d_alpha_d_alpha; // 1/s^2/rad
 
     [
@@ -1109,7 +937,7 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         d2_velocity_rate_printed_d_velocity_d_chi_3,
         d2_velocity_rate_printed_d_altitude_d_chi_3,
         d2_velocity_rate_printed_d_alpha_d_chi_3,
-        cos_gamma,
+        i.cos_gamma,
         d2_altitude_rate_d_gamma_d_gamma,
         d2_f_gamma_d_velocity_d_velocity,
         d2_gamma_rate_printed_d_velocity_d_altitude,

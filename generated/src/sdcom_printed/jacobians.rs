@@ -2,7 +2,11 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Input, InputJacobian, Prepared, State, StateJacobian};
+use super::{
+    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian,
+    drift_from, intermediates, slopes,
+};
+
 use ahv_core::{Pattern, Real, Vector};
 
 /// Where the entries of the compressed [`StateJacobian`] stand.
@@ -169,426 +173,232 @@ pub fn jacobians_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ([R; 33], [R; 12]) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    jacobians_values_from(x, u, p, &i, &s)
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Strict-feedback form, (28)
-    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * c_t_phi_alpha_alpha_plus_c_t_phi; // ft/s^2
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
-    let g_pitch_rate = reference_force * p.g_pitch_rate_constant_1; // 1/s^2
-
+/// [`jacobians_values`] from what is computed once.
+#[inline(always)]
+pub fn jacobians_values_from<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> ([R; 33], [R; 12]) {
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
-    let slope_of_f_velocity_in_dynamic_pressure = (cos_alpha * c_t_alpha_alpha_plus_c_t_0
-        - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        * p.s_over_m; // ft^3/s^2/lb
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft^3/s^2/lb
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_f_velocity_eta_d_velocity = reference_force * p.inv_m
-        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * d_generalized_force_1_d_velocity
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_velocity
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_velocity)
-        + slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_velocity; // 1/s
-    let d_f_velocity_d_velocity = slope_of_f_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_velocity + d_f_velocity_eta_d_velocity; // 1/s
-    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
-        * cos_alpha * p.s_over_m; // ft^3/s^2/lb
-    let d_g_velocity_d_velocity = slope_of_g_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_velocity; // 1/s
-    let d_velocity_rate_printed_d_velocity_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
+    let d_f_velocity_eta_d_velocity = i.reference_force * p.inv_m
+        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * s.d_generalized_force_1_d_velocity
+            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * s.d_generalized_force_2_d_velocity
+            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * s.d_generalized_force_3_d_velocity)
+        + s.slope_of_f_velocity_eta_in_dynamic_pressure
+            * s.d_dynamic_pressure_d_velocity; // 1/s
+    let d_f_velocity_d_velocity = s.slope_of_f_velocity_in_dynamic_pressure
+        * s.d_dynamic_pressure_d_velocity + d_f_velocity_eta_d_velocity; // 1/s
+    let d_g_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure
+        * s.d_dynamic_pressure_d_velocity; // 1/s
+    let d_velocity_rate_printed_d_velocity_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
     let d_velocity_rate_printed_d_velocity =
-        d_reference_force_d_velocity * p.inv_m * d_velocity_rate_printed_d_velocity_term_1
+        s.d_reference_force_d_velocity * p.inv_m * d_velocity_rate_printed_d_velocity_term_1
         + d_f_velocity_d_velocity
         + u.phi * d_g_velocity_d_velocity; // 1/s
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let slope_of_gamma_rate_printed_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3; // rad
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0; // rad
-    let slope_of_f_gamma_eta_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2; // rad
-    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
-    let cos_gamma_times_d_gravity_turn_d_velocity = cos_gamma
-        * d_gravity_turn_d_velocity;
-    let d_f_gamma_d_velocity = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_velocity
+    let d_f_gamma_eta_d_velocity = i.f_gamma_eta_over_turn_factor * s.d_turn_factor_d_velocity
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_velocity
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * s.d_generalized_force_2_d_velocity
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_velocity; // rad/ft
+    let cos_gamma_times_d_gravity_turn_d_velocity = i.cos_gamma
+        * s.d_gravity_turn_d_velocity;
+    let d_f_gamma_d_velocity = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_velocity
         - cos_gamma_times_d_gravity_turn_d_velocity
         + d_f_gamma_eta_d_velocity; // rad/ft
-    let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
-        * d_turn_factor_d_velocity; // 1/ft
-    let d_gamma_rate_printed_d_velocity = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_velocity
+    let d_gamma_rate_printed_d_velocity = s.slope_of_gamma_rate_printed_in_turn_factor * s.d_turn_factor_d_velocity
         + d_f_gamma_d_velocity
-        + x.alpha * d_g_gamma_d_velocity; // rad/ft
-    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
-    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
-        + p.c_t_0;
-    let slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
-        + sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
-    let slope_of_f_alpha_eta_in_turn_factor = -slope_of_f_gamma_eta_in_turn_factor; // rad
-    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
-    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
-    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
-    let d_f_alpha_eta_d_velocity = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
+        + x.alpha * s.d_g_gamma_d_velocity; // rad/ft
+    let d_f_alpha_eta_d_velocity = s.slope_of_f_alpha_eta_in_turn_factor * s.d_turn_factor_d_velocity
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * s.d_generalized_force_1_d_velocity
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * s.d_generalized_force_2_d_velocity
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * s.d_generalized_force_3_d_velocity; // rad/ft
     let d_f_alpha_d_velocity = cos_gamma_times_d_gravity_turn_d_velocity
-        + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_velocity
+        + s.slope_of_f_alpha_in_turn_factor * s.d_turn_factor_d_velocity
         + d_f_alpha_eta_d_velocity; // rad/ft
-    let d_alpha_rate_printed_d_velocity = slope_of_alpha_rate_printed_in_turn_factor
-        * d_turn_factor_d_velocity + d_f_alpha_d_velocity; // rad/ft
-    let slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
-        * slope_of_f_alpha_in_turn_factor_term_1
-        + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
-        * p.s_over_i_yy; // rad*ft^2/s^2/lb
-    let d_f_pitch_rate_eta_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2;
+    let d_alpha_rate_printed_d_velocity = s.slope_of_alpha_rate_printed_in_turn_factor
+        * s.d_turn_factor_d_velocity + d_f_alpha_d_velocity; // rad/ft
+    let d_f_pitch_rate_eta_d_velocity_term_1 =
+        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
     let d_f_pitch_rate_eta_d_velocity = p.inv_i_yy
-        * (reference_force
+        * (i.reference_force
             * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-                * d_generalized_force_1_d_velocity
+                * s.d_generalized_force_1_d_velocity
                 + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-                    * d_generalized_force_2_d_velocity
+                    * s.d_generalized_force_2_d_velocity
                 + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-                    * d_generalized_force_3_d_velocity)
-            + d_reference_force_d_velocity * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s/ft
-    let d_f_pitch_rate_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_velocity + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
+                    * s.d_generalized_force_3_d_velocity)
+            + s.d_reference_force_d_velocity * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s/ft
+    let d_f_pitch_rate_d_velocity = s.slope_of_f_pitch_rate_in_dynamic_pressure
+        * s.d_dynamic_pressure_d_velocity + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
     let d_g_pitch_rate_d_velocity = p.slope_of_g_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_velocity; // 1/s/ft
+        * s.d_dynamic_pressure_d_velocity; // 1/s/ft
     let d_pitch_rate_rate_printed_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
     let d_pitch_rate_rate_printed_d_velocity =
-        d_reference_force_d_velocity * p.inv_i_yy * d_pitch_rate_rate_printed_d_velocity_term_1
+        s.d_reference_force_d_velocity * p.inv_i_yy * d_pitch_rate_rate_printed_d_velocity_term_1
         + d_f_pitch_rate_d_velocity
         + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
 
     // Derivatives with respect to altitude
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_altitude = reference_force * p.inv_m
-        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * d_generalized_force_1_d_altitude
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_altitude
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_altitude)
-        + slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_altitude; // 1/s^2
-    let d_f_velocity_d_altitude = slope_of_f_velocity_in_dynamic_pressure * d_dynamic_pressure_d_altitude
-        - sin_gamma * d_gravity_d_altitude
+    let d_f_velocity_eta_d_altitude = i.reference_force * p.inv_m
+        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * s.d_generalized_force_1_d_altitude
+            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * s.d_generalized_force_2_d_altitude
+            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * s.d_generalized_force_3_d_altitude)
+        + s.slope_of_f_velocity_eta_in_dynamic_pressure
+            * s.d_dynamic_pressure_d_altitude; // 1/s^2
+    let d_f_velocity_d_altitude = s.slope_of_f_velocity_in_dynamic_pressure * s.d_dynamic_pressure_d_altitude
+        - i.sin_gamma * s.d_gravity_d_altitude
         + d_f_velocity_eta_d_altitude; // 1/s^2
-    let d_g_velocity_d_altitude = slope_of_g_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_altitude; // 1/s^2
+    let d_g_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
+        * s.d_dynamic_pressure_d_altitude; // 1/s^2
     let d_velocity_rate_printed_d_altitude =
-        d_reference_force_d_altitude * p.inv_m * d_velocity_rate_printed_d_velocity_term_1
+        s.d_reference_force_d_altitude * p.inv_m * d_velocity_rate_printed_d_velocity_term_1
         + d_f_velocity_d_altitude
         + u.phi * d_g_velocity_d_altitude; // 1/s^2
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_f_gamma_eta_d_altitude = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
-    let cos_gamma_times_d_gravity_turn_d_altitude = cos_gamma
-        * d_gravity_turn_d_altitude;
-    let d_f_gamma_d_altitude = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_altitude
+    let d_f_gamma_eta_d_altitude = i.f_gamma_eta_over_turn_factor * s.d_turn_factor_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * s.d_generalized_force_2_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_altitude; // rad/s/ft
+    let cos_gamma_times_d_gravity_turn_d_altitude = i.cos_gamma
+        * s.d_gravity_turn_d_altitude;
+    let d_f_gamma_d_altitude = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_altitude
         - cos_gamma_times_d_gravity_turn_d_altitude
         + d_f_gamma_eta_d_altitude; // rad/s/ft
-    let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
-        * d_turn_factor_d_altitude; // 1/s/ft
-    let d_gamma_rate_printed_d_altitude = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_altitude
+    let d_gamma_rate_printed_d_altitude = s.slope_of_gamma_rate_printed_in_turn_factor * s.d_turn_factor_d_altitude
         + d_f_gamma_d_altitude
-        + x.alpha * d_g_gamma_d_altitude; // rad/s/ft
-    let d_f_alpha_eta_d_altitude = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
+        + x.alpha * s.d_g_gamma_d_altitude; // rad/s/ft
+    let d_f_alpha_eta_d_altitude = s.slope_of_f_alpha_eta_in_turn_factor * s.d_turn_factor_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * s.d_generalized_force_1_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * s.d_generalized_force_2_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * s.d_generalized_force_3_d_altitude; // rad/s/ft
     let d_f_alpha_d_altitude = cos_gamma_times_d_gravity_turn_d_altitude
-        + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_altitude
+        + s.slope_of_f_alpha_in_turn_factor * s.d_turn_factor_d_altitude
         + d_f_alpha_eta_d_altitude; // rad/s/ft
-    let d_alpha_rate_printed_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
-        * d_turn_factor_d_altitude + d_f_alpha_d_altitude; // rad/s/ft
+    let d_alpha_rate_printed_d_altitude = s.slope_of_alpha_rate_printed_in_turn_factor
+        * s.d_turn_factor_d_altitude + d_f_alpha_d_altitude; // rad/s/ft
     let d_f_pitch_rate_eta_d_altitude = p.inv_i_yy
-        * (reference_force
+        * (i.reference_force
             * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-                * d_generalized_force_1_d_altitude
+                * s.d_generalized_force_1_d_altitude
                 + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-                    * d_generalized_force_2_d_altitude
+                    * s.d_generalized_force_2_d_altitude
                 + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-                    * d_generalized_force_3_d_altitude)
-            + d_reference_force_d_altitude * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s^2/ft
-    let d_f_pitch_rate_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
+                    * s.d_generalized_force_3_d_altitude)
+            + s.d_reference_force_d_altitude * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s^2/ft
+    let d_f_pitch_rate_d_altitude = s.slope_of_f_pitch_rate_in_dynamic_pressure
+        * s.d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
     let d_g_pitch_rate_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_altitude; // 1/s^2/ft
+        * s.d_dynamic_pressure_d_altitude; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_altitude =
-        d_reference_force_d_altitude * p.inv_i_yy * d_pitch_rate_rate_printed_d_velocity_term_1
+        s.d_reference_force_d_altitude * p.inv_i_yy * d_pitch_rate_rate_printed_d_velocity_term_1
         + d_f_pitch_rate_d_altitude
         + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
 
     // Derivatives with respect to gamma
-    let d_f_velocity_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_f_gamma_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-    let d_f_alpha_d_gamma = gravity_turn * d_cos_gamma_d_gamma; // 1/s
+    let d_f_velocity_d_gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
+    let d_f_gamma_d_gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
+    let d_f_alpha_d_gamma = i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
-        + x.chi_2 * p.c_t_eta_2
-        + x.chi_3 * p.c_t_eta_3;
-    let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
-        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
-    let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
-        * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
-    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-        + generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-        + generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
-    let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_alpha = reference_force * p.inv_m
-        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * d_generalized_force_1_d_alpha
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_alpha
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_alpha)
-        + slope_of_f_velocity_eta_in_cos_alpha * d_cos_alpha_d_alpha; // ft/s^2/rad
-    let d_f_velocity_d_alpha = reference_force * p.inv_m * (cos_alpha * p.c_t_alpha - p.c_d_alpha)
-        + slope_of_f_velocity_in_cos_alpha * d_cos_alpha_d_alpha
+    let d_f_velocity_eta_d_alpha = i.reference_force * p.inv_m
+        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * s.d_generalized_force_1_d_alpha
+            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * s.d_generalized_force_2_d_alpha
+            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * s.d_generalized_force_3_d_alpha)
+        + s.slope_of_f_velocity_eta_in_cos_alpha * s.d_cos_alpha_d_alpha; // ft/s^2/rad
+    let d_f_velocity_d_alpha = i.reference_force * p.inv_m * (i.cos_alpha * p.c_t_alpha - p.c_d_alpha)
+        + s.slope_of_f_velocity_in_cos_alpha * s.d_cos_alpha_d_alpha
         + d_f_velocity_eta_d_alpha; // ft/s^2/rad
-    let slope_of_g_velocity_in_cos_alpha = c_t_phi_alpha_alpha_plus_c_t_phi
-        * reference_force * p.inv_m; // ft/s^2
-    let d_g_velocity_d_alpha = reference_force * p.c_t_phi_alpha_over_m * cos_alpha
-        + slope_of_g_velocity_in_cos_alpha * d_cos_alpha_d_alpha; // ft/s^2/rad
-    let d_velocity_rate_printed_d_alpha = slope_of_velocity_rate_printed_in_cos_alpha * d_cos_alpha_d_alpha
+    let d_g_velocity_d_alpha = i.reference_force * p.c_t_phi_alpha_over_m * i.cos_alpha
+        + s.slope_of_g_velocity_in_cos_alpha * s.d_cos_alpha_d_alpha; // ft/s^2/rad
+    let d_velocity_rate_printed_d_alpha = s.slope_of_velocity_rate_printed_in_cos_alpha * s.d_cos_alpha_d_alpha
         + d_f_velocity_d_alpha
         + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
-    let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
-        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
-    let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
-    let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
-    let d_f_gamma_eta_d_alpha = slope_of_f_gamma_eta_in_sin_alpha * cos_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_alpha; // 1/s
-    let d_f_gamma_d_alpha = slope_of_f_gamma_in_sin_alpha * cos_alpha
+    let d_f_gamma_eta_d_alpha = s.slope_of_f_gamma_eta_in_sin_alpha * i.cos_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * s.d_generalized_force_2_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_alpha; // 1/s
+    let d_f_gamma_d_alpha = s.slope_of_f_gamma_in_sin_alpha * i.cos_alpha
         + d_f_gamma_eta_d_alpha; // 1/s
-    let slope_of_g_gamma_in_sin_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
-    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * cos_alpha; // 1/s/rad
-    let d_gamma_rate_printed_d_alpha = g_gamma
-        + slope_of_gamma_rate_printed_in_sin_alpha * cos_alpha
+    let d_gamma_rate_printed_d_alpha = i.g_gamma
+        + s.slope_of_gamma_rate_printed_in_sin_alpha * i.cos_alpha
         + d_f_gamma_d_alpha
-        + x.alpha * d_g_gamma_d_alpha; // 1/s
-    let slope_of_alpha_rate_printed_in_sin_alpha = -slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
-    let slope_of_f_alpha_in_sin_alpha = -turn_factor
-        * slope_of_f_alpha_in_turn_factor_term_1; // rad/s
-    let slope_of_f_alpha_eta_in_sin_alpha = -slope_of_f_gamma_eta_in_sin_alpha; // rad/s
-    let d_f_alpha_eta_d_alpha = slope_of_f_alpha_eta_in_sin_alpha * cos_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_alpha; // 1/s
-    let d_f_alpha_d_alpha = slope_of_f_alpha_in_sin_alpha * cos_alpha
-        - g_gamma
+        + x.alpha * s.d_g_gamma_d_alpha; // 1/s
+    let d_f_alpha_eta_d_alpha = s.slope_of_f_alpha_eta_in_sin_alpha * i.cos_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * s.d_generalized_force_1_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * s.d_generalized_force_2_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * s.d_generalized_force_3_d_alpha; // 1/s
+    let d_f_alpha_d_alpha = s.slope_of_f_alpha_in_sin_alpha * i.cos_alpha
+        - i.g_gamma
         + d_f_alpha_eta_d_alpha; // 1/s
-    let d_alpha_rate_printed_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
-        * cos_alpha + d_f_alpha_d_alpha; // 1/s
-    let d_f_pitch_rate_eta_d_alpha = reference_force * p.inv_i_yy
+    let d_alpha_rate_printed_d_alpha = s.slope_of_alpha_rate_printed_in_sin_alpha
+        * i.cos_alpha + d_f_alpha_d_alpha; // 1/s
+    let d_f_pitch_rate_eta_d_alpha = i.reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-            * d_generalized_force_1_d_alpha
+            * s.d_generalized_force_1_d_alpha
             + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-                * d_generalized_force_2_d_alpha
+                * s.d_generalized_force_2_d_alpha
             + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-                * d_generalized_force_3_d_alpha); // 1/s^2
-    let d_f_pitch_rate_d_alpha = reference_force * p.inv_i_yy
-        * (p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi
+                * s.d_generalized_force_3_d_alpha); // 1/s^2
+    let d_f_pitch_rate_d_alpha = i.reference_force * p.inv_i_yy
+        * (p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi
             + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha))
         + d_f_pitch_rate_eta_d_alpha; // 1/s^2
 
-    // Derivatives with respect to chi_1
-    let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_1 = reference_force
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_2 = reference_force
-        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_3 = reference_force
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
     // Derivatives with respect to phi
-    let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
-    let d_g_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi_alpha; // 1/s
-    let d_gamma_rate_printed_d_phi = d_f_gamma_d_phi + x.alpha * d_g_gamma_d_phi; // rad/s
-    let d_f_alpha_d_phi = -turn_factor * sin_alpha * c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s
-    let d_f_pitch_rate_d_phi = reference_force * p.z_t_over_i_yy
-        * c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s^2
+    let d_f_alpha_d_phi = -i.turn_factor * i.sin_alpha
+        * s.c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s
+    let d_f_pitch_rate_d_phi = i.reference_force * p.z_t_over_i_yy
+        * s.c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s^2
 
     // Derivatives with respect to delta_e
-    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
-    let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_alpha_eta_d_delta_e = slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
+    let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_f_alpha_eta_d_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
     let d_f_pitch_rate_eta_d_delta_e =
-        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // 1/s^2
-    let d_pitch_rate_rate_printed_d_delta_e = g_pitch_rate
+        s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // 1/s^2
+    let d_pitch_rate_rate_printed_d_delta_e = i.g_pitch_rate
         + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
 
     // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = reference_force
+    let d_generalized_force_1_d_delta_c = i.reference_force
         * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force
+    let d_generalized_force_2_d_delta_c = i.reference_force
         * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force
+    let d_generalized_force_3_d_delta_c = i.reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_alpha_eta_d_delta_c = slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
+    let d_f_alpha_eta_d_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
     let d_f_pitch_rate_eta_d_delta_c =
-        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
+        s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
 
     // Result
     let state = [
@@ -596,43 +406,43 @@ pub fn jacobians_values<R: Real>(
         d_velocity_rate_printed_d_altitude,
         d_f_velocity_d_gamma,
         d_velocity_rate_printed_d_alpha,
-        d_velocity_rate_printed_d_chi_1,
-        d_velocity_rate_printed_d_chi_2,
-        d_velocity_rate_printed_d_chi_3,
-        sin_gamma,
-        d_altitude_rate_d_gamma,
+        s.d_velocity_rate_printed_d_chi_1,
+        s.d_velocity_rate_printed_d_chi_2,
+        s.d_velocity_rate_printed_d_chi_3,
+        i.sin_gamma,
+        s.d_altitude_rate_d_gamma,
         d_gamma_rate_printed_d_velocity,
         d_gamma_rate_printed_d_altitude,
         d_f_gamma_d_gamma,
         d_gamma_rate_printed_d_alpha,
-        d_gamma_rate_printed_d_chi_1,
-        d_gamma_rate_printed_d_chi_2,
-        d_gamma_rate_printed_d_chi_3,
+        s.d_gamma_rate_printed_d_chi_1,
+        s.d_gamma_rate_printed_d_chi_2,
+        s.d_gamma_rate_printed_d_chi_3,
         d_alpha_rate_printed_d_velocity,
         d_alpha_rate_printed_d_altitude,
         d_f_alpha_d_gamma,
         d_alpha_rate_printed_d_alpha,
         R::ONE,
-        d_alpha_rate_printed_d_chi_1,
-        d_alpha_rate_printed_d_chi_2,
-        d_alpha_rate_printed_d_chi_3,
+        s.d_alpha_rate_printed_d_chi_1,
+        s.d_alpha_rate_printed_d_chi_2,
+        s.d_alpha_rate_printed_d_chi_3,
         d_pitch_rate_rate_printed_d_velocity,
         d_pitch_rate_rate_printed_d_altitude,
         d_f_pitch_rate_d_alpha,
-        d_pitch_rate_rate_printed_d_chi_1,
-        d_pitch_rate_rate_printed_d_chi_2,
-        d_pitch_rate_rate_printed_d_chi_3,
+        s.d_pitch_rate_rate_printed_d_chi_1,
+        s.d_pitch_rate_rate_printed_d_chi_2,
+        s.d_pitch_rate_rate_printed_d_chi_3,
         p.minus_chi_decay_1,
         p.minus_chi_decay_2,
         p.minus_chi_decay_3,
     ];
     let input = [
-        g_velocity,
-        d_f_velocity_d_delta_e,
-        d_f_velocity_eta_d_delta_c,
-        d_gamma_rate_printed_d_phi,
-        d_f_gamma_eta_d_delta_e,
-        d_f_gamma_eta_d_delta_c,
+        i.g_velocity,
+        s.d_f_velocity_d_delta_e,
+        s.d_f_velocity_eta_d_delta_c,
+        s.d_gamma_rate_printed_d_phi,
+        s.d_f_gamma_eta_d_delta_e,
+        s.d_f_gamma_eta_d_delta_c,
         d_f_alpha_d_phi,
         d_f_alpha_eta_d_delta_e,
         d_f_alpha_eta_d_delta_c,
@@ -666,531 +476,10 @@ pub fn drift_and_jacobians_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> (State<R>, [R; 33], [R; 12]) {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Motion, (1)
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-
-    // Coloured noise, (27)
-    let chi_rate_1 = -p.chi_decay_1 * x.chi_1; // (ft*slug)^0.5/s
-    let chi_rate_2 = -p.chi_decay_2 * x.chi_2; // (ft*slug)^0.5/s
-    let chi_rate_3 = -p.chi_decay_3 * x.chi_3; // (ft*slug)^0.5/s
-
-    // Strict-feedback form, (29)
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let f_velocity_eta_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2;
-    let f_velocity_eta = reference_force * p.inv_m * f_velocity_eta_term_1; // ft/s^2
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let c_t_alpha_alpha_plus_c_t_0 = c_t_alpha_alpha + p.c_t_0;
-    let f_velocity_term_1 = cos_alpha * c_t_alpha_alpha_plus_c_t_0
-        - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e
-        - p.c_d_0;
-    let f_velocity = reference_force * p.inv_m * f_velocity_term_1
-        - gravity * sin_gamma
-        + f_velocity_eta; // ft/s^2
-    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * c_t_phi_alpha_alpha_plus_c_t_phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let slope_of_f_gamma_eta_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2; // rad
-    let f_gamma_eta = turn_factor * slope_of_f_gamma_eta_in_turn_factor; // rad/s
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let c_t_phi_phi_plus_c_t_0 = c_t_phi_phi + p.c_t_0;
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * c_t_phi_phi_plus_c_t_0; // rad
-    let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * slope_of_f_gamma_in_turn_factor
-        - gravity_turn_cos_gamma
-        + f_gamma_eta; // rad/s
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let g_gamma = turn_factor * slope_of_g_gamma_in_turn_factor; // 1/s
-    let f_alpha_eta = -f_gamma_eta; // rad/s
-    let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
-        + p.c_t_0;
-    let f_alpha_term_2 = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + sin_alpha * f_alpha_term_1;
-    let f_alpha = gravity_turn_cos_gamma
-        - turn_factor * f_alpha_term_2
-        + f_alpha_eta; // rad/s
-    let f_pitch_rate_eta_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2;
-    let f_pitch_rate_eta = reference_force * p.inv_i_yy * f_pitch_rate_eta_term_1; // rad/s^2
-    let f_pitch_rate_term_1 = p.z_t * f_alpha_term_1
-        + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0);
-    let f_pitch_rate = reference_force * p.inv_i_yy * f_pitch_rate_term_1
-        + f_pitch_rate_eta; // rad/s^2
-    let g_pitch_rate = reference_force * p.g_pitch_rate_constant_1; // 1/s^2
-
-    // Printed form, (27)
-    let velocity_rate_printed_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
-    let velocity_rate_printed = reference_force * p.inv_m * velocity_rate_printed_term_1
-        + f_velocity
-        + g_velocity * u.phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
-        * x.chi_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
-        * x.chi_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
-        * x.chi_3;
-    let slope_of_gamma_rate_printed_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3; // rad
-    let gamma_rate_printed = turn_factor * slope_of_gamma_rate_printed_in_turn_factor
-        + f_gamma
-        + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + f_alpha + x.pitch_rate; // rad/s
-    let pitch_rate_rate_printed_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
-    let pitch_rate_rate_printed = reference_force * p.inv_i_yy * pitch_rate_rate_printed_term_1
-        + f_pitch_rate
-        + g_pitch_rate * u.delta_e; // rad/s^2
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let slope_of_f_velocity_in_dynamic_pressure = f_velocity_term_1 * p.s_over_m; // ft^3/s^2/lb
-    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m * f_velocity_eta_term_1; // ft^3/s^2/lb
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_generalized_force_1_d_velocity = c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_2_d_velocity = c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_3_d_velocity = c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_f_velocity_eta_d_velocity = reference_force * p.inv_m
-        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * d_generalized_force_1_d_velocity
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_velocity
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_velocity)
-        + slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_velocity; // 1/s
-    let d_f_velocity_d_velocity = slope_of_f_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_velocity + d_f_velocity_eta_d_velocity; // 1/s
-    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
-        * cos_alpha * p.s_over_m; // ft^3/s^2/lb
-    let d_g_velocity_d_velocity = slope_of_g_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_velocity; // 1/s
-    let d_velocity_rate_printed_d_velocity = d_reference_force_d_velocity * p.inv_m * velocity_rate_printed_term_1
-        + d_f_velocity_d_velocity
-        + u.phi * d_g_velocity_d_velocity; // 1/s
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
-    let inv_velocity_2 = inv_velocity * inv_velocity;
-    let d_gravity_turn_d_velocity = -(gravity * inv_velocity_2
-        + p.earth_curvature * radius_ratio); // 1/ft
-    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    let d_f_gamma_eta_d_velocity = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
-    let cos_gamma_times_d_gravity_turn_d_velocity = cos_gamma
-        * d_gravity_turn_d_velocity;
-    let d_f_gamma_d_velocity = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_velocity
-        - cos_gamma_times_d_gravity_turn_d_velocity
-        + d_f_gamma_eta_d_velocity; // rad/ft
-    let d_g_gamma_d_velocity = slope_of_g_gamma_in_turn_factor
-        * d_turn_factor_d_velocity; // 1/ft
-    let d_gamma_rate_printed_d_velocity = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_velocity
-        + d_f_gamma_d_velocity
-        + x.alpha * d_g_gamma_d_velocity; // rad/ft
-    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
-    let slope_of_f_alpha_in_turn_factor = -f_alpha_term_2; // rad
-    let slope_of_f_alpha_eta_in_turn_factor = -slope_of_f_gamma_eta_in_turn_factor; // rad
-    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
-    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
-    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
-    let d_f_alpha_eta_d_velocity = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_velocity
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_velocity; // rad/ft
-    let d_f_alpha_d_velocity = cos_gamma_times_d_gravity_turn_d_velocity
-        + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_velocity
-        + d_f_alpha_eta_d_velocity; // rad/ft
-    let d_alpha_rate_printed_d_velocity = slope_of_alpha_rate_printed_in_turn_factor
-        * d_turn_factor_d_velocity + d_f_alpha_d_velocity; // rad/ft
-    let slope_of_f_pitch_rate_in_dynamic_pressure = f_pitch_rate_term_1 * p.s_over_i_yy; // rad*ft^2/s^2/lb
-    let d_f_pitch_rate_eta_d_velocity = p.inv_i_yy
-        * (reference_force
-            * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-                * d_generalized_force_1_d_velocity
-                + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-                    * d_generalized_force_2_d_velocity
-                + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-                    * d_generalized_force_3_d_velocity)
-            + d_reference_force_d_velocity * f_pitch_rate_eta_term_1); // rad/s/ft
-    let d_f_pitch_rate_d_velocity = slope_of_f_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_velocity + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
-    let d_g_pitch_rate_d_velocity = p.slope_of_g_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_velocity; // 1/s/ft
-    let d_pitch_rate_rate_printed_d_velocity =
-        d_reference_force_d_velocity * p.inv_i_yy * pitch_rate_rate_printed_term_1
-        + d_f_pitch_rate_d_velocity
-        + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
-
-    // Derivatives with respect to altitude
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_radius_ratio_d_altitude = -radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_generalized_force_1_d_altitude = c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_altitude = c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_altitude = c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_altitude = reference_force * p.inv_m
-        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * d_generalized_force_1_d_altitude
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_altitude
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_altitude)
-        + slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_altitude; // 1/s^2
-    let d_f_velocity_d_altitude = slope_of_f_velocity_in_dynamic_pressure * d_dynamic_pressure_d_altitude
-        - sin_gamma * d_gravity_d_altitude
-        + d_f_velocity_eta_d_altitude; // 1/s^2
-    let d_g_velocity_d_altitude = slope_of_g_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_altitude; // 1/s^2
-    let d_velocity_rate_printed_d_altitude = d_reference_force_d_altitude * p.inv_m * velocity_rate_printed_term_1
-        + d_f_velocity_d_altitude
-        + u.phi * d_g_velocity_d_altitude; // 1/s^2
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_f_gamma_eta_d_altitude = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
-    let cos_gamma_times_d_gravity_turn_d_altitude = cos_gamma
-        * d_gravity_turn_d_altitude;
-    let d_f_gamma_d_altitude = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_altitude
-        - cos_gamma_times_d_gravity_turn_d_altitude
-        + d_f_gamma_eta_d_altitude; // rad/s/ft
-    let d_g_gamma_d_altitude = slope_of_g_gamma_in_turn_factor
-        * d_turn_factor_d_altitude; // 1/s/ft
-    let d_gamma_rate_printed_d_altitude = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_altitude
-        + d_f_gamma_d_altitude
-        + x.alpha * d_g_gamma_d_altitude; // rad/s/ft
-    let d_f_alpha_eta_d_altitude = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_altitude
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_altitude; // rad/s/ft
-    let d_f_alpha_d_altitude = cos_gamma_times_d_gravity_turn_d_altitude
-        + slope_of_f_alpha_in_turn_factor * d_turn_factor_d_altitude
-        + d_f_alpha_eta_d_altitude; // rad/s/ft
-    let d_alpha_rate_printed_d_altitude = slope_of_alpha_rate_printed_in_turn_factor
-        * d_turn_factor_d_altitude + d_f_alpha_d_altitude; // rad/s/ft
-    let d_f_pitch_rate_eta_d_altitude = p.inv_i_yy
-        * (reference_force
-            * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-                * d_generalized_force_1_d_altitude
-                + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-                    * d_generalized_force_2_d_altitude
-                + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-                    * d_generalized_force_3_d_altitude)
-            + d_reference_force_d_altitude * f_pitch_rate_eta_term_1); // rad/s^2/ft
-    let d_f_pitch_rate_d_altitude = slope_of_f_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
-    let d_g_pitch_rate_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_altitude; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_altitude =
-        d_reference_force_d_altitude * p.inv_i_yy * pitch_rate_rate_printed_term_1
-        + d_f_pitch_rate_d_altitude
-        + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
-
-    // Derivatives with respect to gamma
-    let d_f_velocity_d_gamma = -gravity * cos_gamma; // ft/s^2/rad
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -sin_gamma; // 1/rad
-    let d_f_gamma_d_gamma = -gravity_turn * d_cos_gamma_d_gamma; // 1/s
-    let d_f_alpha_d_gamma = gravity_turn * d_cos_gamma_d_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-    let chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
-        + x.chi_2 * p.c_t_eta_2
-        + x.chi_3 * p.c_t_eta_3;
-    let slope_of_velocity_rate_printed_in_cos_alpha = reference_force * p.inv_m
-        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
-    let slope_of_f_velocity_in_cos_alpha = reference_force * p.inv_m
-        * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
-    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-        + generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-        + generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
-    let slope_of_f_velocity_eta_in_cos_alpha = reference_force * p.inv_m
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_alpha = reference_force * p.inv_m
-        * (p.inv_omega_1_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * d_generalized_force_1_d_alpha
-            + p.inv_omega_2_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * d_generalized_force_2_d_alpha
-            + p.inv_omega_3_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * d_generalized_force_3_d_alpha)
-        + slope_of_f_velocity_eta_in_cos_alpha * d_cos_alpha_d_alpha; // ft/s^2/rad
-    let d_f_velocity_d_alpha = reference_force * p.inv_m * (cos_alpha * p.c_t_alpha - p.c_d_alpha)
-        + slope_of_f_velocity_in_cos_alpha * d_cos_alpha_d_alpha
-        + d_f_velocity_eta_d_alpha; // ft/s^2/rad
-    let slope_of_g_velocity_in_cos_alpha = c_t_phi_alpha_alpha_plus_c_t_phi
-        * reference_force * p.inv_m; // ft/s^2
-    let d_g_velocity_d_alpha = reference_force * p.c_t_phi_alpha_over_m * cos_alpha
-        + slope_of_g_velocity_in_cos_alpha * d_cos_alpha_d_alpha; // ft/s^2/rad
-    let d_velocity_rate_printed_d_alpha = slope_of_velocity_rate_printed_in_cos_alpha * d_cos_alpha_d_alpha
-        + d_f_velocity_d_alpha
-        + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
-    let slope_of_gamma_rate_printed_in_sin_alpha = turn_factor
-        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
-    let slope_of_f_gamma_in_sin_alpha = turn_factor * c_t_phi_phi_plus_c_t_0; // rad/s
-    let slope_of_f_gamma_eta_in_sin_alpha = turn_factor
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
-    let d_f_gamma_eta_d_alpha = slope_of_f_gamma_eta_in_sin_alpha * cos_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_alpha
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_alpha; // 1/s
-    let d_f_gamma_d_alpha = slope_of_f_gamma_in_sin_alpha * cos_alpha
-        + d_f_gamma_eta_d_alpha; // 1/s
-    let slope_of_g_gamma_in_sin_alpha = turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
-    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * cos_alpha; // 1/s/rad
-    let d_gamma_rate_printed_d_alpha = g_gamma
-        + slope_of_gamma_rate_printed_in_sin_alpha * cos_alpha
-        + d_f_gamma_d_alpha
-        + x.alpha * d_g_gamma_d_alpha; // 1/s
-    let slope_of_alpha_rate_printed_in_sin_alpha = -slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
-    let slope_of_f_alpha_in_sin_alpha = -turn_factor * f_alpha_term_1; // rad/s
-    let slope_of_f_alpha_eta_in_sin_alpha = -slope_of_f_gamma_eta_in_sin_alpha; // rad/s
-    let d_f_alpha_eta_d_alpha = slope_of_f_alpha_eta_in_sin_alpha * cos_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_alpha
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_alpha; // 1/s
-    let d_f_alpha_d_alpha = slope_of_f_alpha_in_sin_alpha * cos_alpha
-        - g_gamma
-        + d_f_alpha_eta_d_alpha; // 1/s
-    let d_alpha_rate_printed_d_alpha = slope_of_alpha_rate_printed_in_sin_alpha
-        * cos_alpha + d_f_alpha_d_alpha; // 1/s
-    let d_f_pitch_rate_eta_d_alpha = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-            * d_generalized_force_1_d_alpha
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-                * d_generalized_force_2_d_alpha
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-                * d_generalized_force_3_d_alpha); // 1/s^2
-    let d_f_pitch_rate_d_alpha = reference_force * p.inv_i_yy
-        * (p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi
-            + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha))
-        + d_f_pitch_rate_eta_d_alpha; // 1/s^2
-
-    // Derivatives with respect to chi_1
-    let d_velocity_rate_printed_d_chi_1 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = turn_factor * sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_1 = reference_force
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_velocity_rate_printed_d_chi_2 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = turn_factor * sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_2 = reference_force
-        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_velocity_rate_printed_d_chi_3 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = turn_factor * sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_3 = reference_force
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to phi
-    let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
-    let d_g_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi_alpha; // 1/s
-    let d_gamma_rate_printed_d_phi = d_f_gamma_d_phi + x.alpha * d_g_gamma_d_phi; // rad/s
-    let d_f_alpha_d_phi = -turn_factor * sin_alpha * c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s
-    let d_f_pitch_rate_d_phi = reference_force * p.z_t_over_i_yy
-        * c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s^2
-
-    // Derivatives with respect to delta_e
-    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
-    let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_alpha_eta_d_delta_e = slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-    let d_f_pitch_rate_eta_d_delta_e =
-        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // 1/s^2
-    let d_pitch_rate_rate_printed_d_delta_e = g_pitch_rate
-        + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
-
-    // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_alpha_eta_d_delta_c = slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_pitch_rate_eta_d_delta_c =
-        d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
-
-    // Result
-    let drift = State {
-        velocity: velocity_rate_printed,
-        altitude: altitude_rate,
-        gamma: gamma_rate_printed,
-        alpha: alpha_rate_printed,
-        pitch_rate: pitch_rate_rate_printed,
-        chi_1: chi_rate_1,
-        chi_2: chi_rate_2,
-        chi_3: chi_rate_3,
-    };
-    let state = [
-        d_velocity_rate_printed_d_velocity,
-        d_velocity_rate_printed_d_altitude,
-        d_f_velocity_d_gamma,
-        d_velocity_rate_printed_d_alpha,
-        d_velocity_rate_printed_d_chi_1,
-        d_velocity_rate_printed_d_chi_2,
-        d_velocity_rate_printed_d_chi_3,
-        sin_gamma,
-        d_altitude_rate_d_gamma,
-        d_gamma_rate_printed_d_velocity,
-        d_gamma_rate_printed_d_altitude,
-        d_f_gamma_d_gamma,
-        d_gamma_rate_printed_d_alpha,
-        d_gamma_rate_printed_d_chi_1,
-        d_gamma_rate_printed_d_chi_2,
-        d_gamma_rate_printed_d_chi_3,
-        d_alpha_rate_printed_d_velocity,
-        d_alpha_rate_printed_d_altitude,
-        d_f_alpha_d_gamma,
-        d_alpha_rate_printed_d_alpha,
-        R::ONE,
-        d_alpha_rate_printed_d_chi_1,
-        d_alpha_rate_printed_d_chi_2,
-        d_alpha_rate_printed_d_chi_3,
-        d_pitch_rate_rate_printed_d_velocity,
-        d_pitch_rate_rate_printed_d_altitude,
-        d_f_pitch_rate_d_alpha,
-        d_pitch_rate_rate_printed_d_chi_1,
-        d_pitch_rate_rate_printed_d_chi_2,
-        d_pitch_rate_rate_printed_d_chi_3,
-        p.minus_chi_decay_1,
-        p.minus_chi_decay_2,
-        p.minus_chi_decay_3,
-    ];
-    let input = [
-        g_velocity,
-        d_f_velocity_d_delta_e,
-        d_f_velocity_eta_d_delta_c,
-        d_gamma_rate_printed_d_phi,
-        d_f_gamma_eta_d_delta_e,
-        d_f_gamma_eta_d_delta_c,
-        d_f_alpha_d_phi,
-        d_f_alpha_eta_d_delta_e,
-        d_f_alpha_eta_d_delta_c,
-        d_f_pitch_rate_d_phi,
-        d_pitch_rate_rate_printed_d_delta_e,
-        d_f_pitch_rate_eta_d_delta_c,
-    ];
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let drift = drift_from(x, u, p, &i);
+    let (state, input) = jacobians_values_from(x, u, p, &i, &s);
     (drift, state, input)
 }
 

@@ -3,7 +3,7 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 #![allow(non_snake_case)]
 
-use super::{Input, Prepared, State};
+use super::{Input, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
 /// Lie derivative of the velocity along the drift at the held input, eq. (27). Unit: ft/s/s.
@@ -11,127 +11,21 @@ use ahv_core::Real;
 /// 90 operations: 31 additions, 55 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
-    let sin_gamma = x.gamma.sin();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Strict-feedback form, (29)
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
-    let f_velocity = reference_force * p.inv_m
-        * (cos_alpha * (p.c_t_alpha * x.alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        - gravity * sin_gamma + f_velocity_eta; // ft/s^2
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-
-    // Printed form, (27)
-    reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
-        + g_velocity * u.phi
+    let i = intermediates(x, u, p);
+    i.velocity_rate_printed
 }
 
 /// Lie derivatives of the velocity along the input columns: its relative degree is 1, eq. (27).
 ///
 /// 50 operations: 10 additions, 38 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let cos_alpha = x.alpha.cos();
-
-    // Strict-feedback form, (28)
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-
-    // Derivatives with respect to delta_e
-    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e_term_1 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1);
-    let d_f_velocity_eta_d_delta_e_term_2 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2);
-    let d_f_velocity_eta_d_delta_e_term_3 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3);
-    let d_f_velocity_eta_d_delta_e =
-        d_f_velocity_eta_d_delta_e_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
-    let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
-
-    // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c =
-        d_f_velocity_eta_d_delta_e_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-
+pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
     Input {
-        phi: g_velocity,
-        delta_e: d_f_velocity_d_delta_e,
-        delta_c: d_f_velocity_eta_d_delta_c,
+        phi: i.g_velocity,
+        delta_e: s.d_f_velocity_d_delta_e,
+        delta_c: s.d_f_velocity_eta_d_delta_c,
     }
 }
 
@@ -140,142 +34,21 @@ pub fn L_g_V<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> 
 /// 90 operations: 31 additions, 54 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-    let cos_gamma = x.gamma.cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Strict-feedback form, (31)
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
-    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
-    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
-        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0);
-    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        - gravity_turn * cos_gamma
-        + f_gamma_eta; // rad/s
-    let g_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
-
-    // Printed form, (27)
-    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
-
-    turn_factor * gamma_rate_printed_term_1
-        + f_gamma
-        + g_gamma * x.alpha
+    let i = intermediates(x, u, p);
+    i.gamma_rate_printed
 }
 
 /// Lie derivatives of the gamma along the input columns: its relative degree is 1, eq. (27).
 ///
 /// 45 operations: 9 additions, 34 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let sin_alpha = x.alpha.sin();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Derivatives with respect to velocity
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to phi
-    let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
-    let d_g_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi_alpha; // 1/s
-    let d_gamma_rate_printed_d_phi = d_f_gamma_d_phi + x.alpha * d_g_gamma_d_phi; // rad/s
-
-    // Derivatives with respect to delta_e
-    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-
-    // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-
+pub fn L_g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
     Input {
-        phi: d_gamma_rate_printed_d_phi,
-        delta_e: d_f_gamma_eta_d_delta_e,
-        delta_c: d_f_gamma_eta_d_delta_c,
+        phi: s.d_gamma_rate_printed_d_phi,
+        delta_e: s.d_f_gamma_eta_d_delta_e,
+        delta_c: s.d_f_gamma_eta_d_delta_c,
     }
 }
 
@@ -283,12 +56,9 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input
 ///
 /// 2 operations: 1 multiplication, 1 sin_cos.
 #[inline(always)]
-pub fn L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
-    // Angles, (1)
-    let sin_gamma = x.gamma.sin();
-
-    // Motion, (1)
-    x.velocity * sin_gamma
+pub fn L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
+    let i = intermediates(x, u, p);
+    i.altitude_rate
 }
 
 /// Second Lie derivative of the altitude along the drift at the held input, eq. (27). Unit: ft/s^2.
@@ -296,196 +66,33 @@ pub fn L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
 /// 135 operations: 48 additions, 82 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Strict-feedback form, (29)
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
-    let f_velocity = reference_force * p.inv_m
-        * (cos_alpha * (p.c_t_alpha * x.alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        - gravity * sin_gamma + f_velocity_eta; // ft/s^2
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
-    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
-    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
-        + sin_alpha * (p.c_t_phi * u.phi + p.c_t_0);
-    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        - gravity_turn * cos_gamma
-        + f_gamma_eta; // rad/s
-    let g_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
-
-    // Printed form, (27)
-    let velocity_rate_printed = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
-        + g_velocity * u.phi; // ft/s^2
-    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
-    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
-        + f_gamma
-        + g_gamma * x.alpha; // rad/s
-
-    // Derivatives with respect to gamma
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Lie derivatives, (27)
-    sin_gamma * velocity_rate_printed + d_altitude_rate_d_gamma * gamma_rate_printed
+    i.sin_gamma * i.velocity_rate_printed
+        + s.d_altitude_rate_d_gamma * i.gamma_rate_printed
 }
 
 /// Lie derivatives of L_f h along the input columns: the relative degree of the altitude is 2, eq. (27).
 ///
 /// 91 operations: 21 additions, 67 multiplications, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn L_g_L_f_h<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> Input<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Strict-feedback form, (28)
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-
-    // Derivatives with respect to velocity
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d_altitude_rate_d_gamma = x.velocity * cos_gamma; // ft/s/rad
+pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
     // Derivatives with respect to phi
-    let d_f_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi; // rad/s
-    let d_g_gamma_d_phi = turn_factor * sin_alpha * p.c_t_phi_alpha; // 1/s
-    let d_gamma_rate_printed_d_phi = d_f_gamma_d_phi + x.alpha * d_g_gamma_d_phi; // rad/s
+    let d_altitude_acceleration_d_phi = i.sin_gamma * i.g_velocity
+        + s.d_altitude_rate_d_gamma * s.d_gamma_rate_printed_d_phi; // ft/s^2
 
     // Derivatives with respect to delta_e
-    let d_generalized_force_1_d_delta_e = reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e_term_1 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_1 - p.c_d_eta_1);
-    let d_f_velocity_eta_d_delta_e_term_2 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_2 - p.c_d_eta_2);
-    let d_f_velocity_eta_d_delta_e_term_3 = reference_force * p.inv_m
-        * (cos_alpha * p.c_t_eta_3 - p.c_d_eta_3);
-    let d_f_velocity_eta_d_delta_e =
-        d_f_velocity_eta_d_delta_e_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
-    let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
+    let d_altitude_acceleration_d_delta_e = i.sin_gamma * s.d_f_velocity_d_delta_e
+        + s.d_altitude_rate_d_gamma * s.d_f_gamma_eta_d_delta_e; // ft/s^2/rad
 
     // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c =
-        d_f_velocity_eta_d_delta_e_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_f_velocity_eta_d_delta_e_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_f_velocity_eta_d_delta_e_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-
-    // Derivatives with respect to phi
-    let d_altitude_acceleration_d_phi = sin_gamma * g_velocity
-        + d_altitude_rate_d_gamma * d_gamma_rate_printed_d_phi; // ft/s^2
-
-    // Derivatives with respect to delta_e
-    let d_altitude_acceleration_d_delta_e = sin_gamma * d_f_velocity_d_delta_e
-        + d_altitude_rate_d_gamma * d_f_gamma_eta_d_delta_e; // ft/s^2/rad
-
-    // Derivatives with respect to delta_c
-    let d_altitude_acceleration_d_delta_c = sin_gamma * d_f_velocity_eta_d_delta_c
-        + d_altitude_rate_d_gamma * d_f_gamma_eta_d_delta_c; // ft/s^2/rad
+    let d_altitude_acceleration_d_delta_c = i.sin_gamma * s.d_f_velocity_eta_d_delta_c
+        + s.d_altitude_rate_d_gamma * s.d_f_gamma_eta_d_delta_c; // ft/s^2/rad
 
     Input {
         phi: d_altitude_acceleration_d_phi,

@@ -2,7 +2,10 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Input, Noise, NoiseDerivatives, Prepared, State};
+use super::{
+    Input, Noise, NoiseDerivatives, Prepared, State, intermediates, noise_terms, slopes,
+};
+
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`NoiseDerivatives`] stand.
@@ -35,119 +38,69 @@ pub fn noise_derivatives_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 12] {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Strict-feedback form, (28)
-    let dynamic_pressure_s = dynamic_pressure * p.s;
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_velocity_term_1 = c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha
-        - p.c_d_alpha;
-    let alpha_slope_velocity = dynamic_pressure_s * p.inv_m
-        * alpha_slope_velocity_term_1; // ft/s^2/rad
-    let slope_of_alpha_slope_gamma_in_turn_factor = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let turn_factor_slope_of_alpha_slope_gamma_in_turn_factor = turn_factor
-        * slope_of_alpha_slope_gamma_in_turn_factor;
-    let alpha_slope_alpha = -turn_factor_slope_of_alpha_slope_gamma_in_turn_factor; // rad/s/rad
-
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
 
     // Derivatives with respect to altitude
-    let d_density_ratio_d_altitude = -density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-
-    // Derivatives with respect to altitude
-    let s_times_d_dynamic_pressure_d_altitude = p.s * d_dynamic_pressure_d_altitude;
-    let d_alpha_slope_velocity_d_altitude = alpha_slope_velocity_term_1
-        * s_times_d_dynamic_pressure_d_altitude * p.inv_m; // 1/s^2/rad
+    let d_alpha_slope_velocity_d_altitude_term_1 = n
+        .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha;
+    let d_alpha_slope_velocity_d_altitude = d_alpha_slope_velocity_d_altitude_term_1
+        * s.d_reference_force_d_altitude * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to velocity
-    let s_times_d_dynamic_pressure_d_velocity = p.s * d_dynamic_pressure_d_velocity;
-    let d_alpha_slope_velocity_d_velocity = alpha_slope_velocity_term_1
-        * s_times_d_dynamic_pressure_d_velocity * p.inv_m; // 1/s/rad
+    let d_alpha_slope_velocity_d_velocity = d_alpha_slope_velocity_d_altitude_term_1
+        * s.d_reference_force_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let slope_of_alpha_slope_velocity_in_cos_alpha = dynamic_pressure_s * p.inv_m
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
+    let slope_of_alpha_slope_velocity_in_cos_alpha = i.reference_force * p.inv_m
+        * s.c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
     let d_alpha_slope_velocity_d_alpha = slope_of_alpha_slope_velocity_in_cos_alpha
-        * d_cos_alpha_d_alpha; // ft/s^2/rad^2
+        * s.d_cos_alpha_d_alpha; // ft/s^2/rad^2
 
     // Derivatives with respect to altitude
-    let d_alpha_slope_gamma_d_altitude = slope_of_alpha_slope_gamma_in_turn_factor
-        * d_turn_factor_d_altitude; // 1/s/ft
-
-    // Derivatives with respect to velocity
-    let d_alpha_slope_gamma_d_velocity = slope_of_alpha_slope_gamma_in_turn_factor
-        * d_turn_factor_d_velocity; // 1/ft
-
-    // Derivatives with respect to alpha
-    let slope_of_alpha_slope_gamma_in_sin_alpha = turn_factor
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
-    let d_alpha_slope_gamma_d_alpha = slope_of_alpha_slope_gamma_in_sin_alpha
-        * cos_alpha; // 1/s/rad
-
-    // Derivatives with respect to altitude
-    let slope_of_alpha_slope_alpha_in_turn_factor = -slope_of_alpha_slope_gamma_in_turn_factor;
+    let slope_of_alpha_slope_alpha_in_turn_factor = -i.g_gamma_over_turn_factor;
     let d_alpha_slope_alpha_d_altitude = slope_of_alpha_slope_alpha_in_turn_factor
-        * d_turn_factor_d_altitude; // 1/s/ft
+        * s.d_turn_factor_d_altitude; // 1/s/ft
 
     // Derivatives with respect to velocity
     let d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
-        * d_turn_factor_d_velocity; // 1/ft
+        * s.d_turn_factor_d_velocity; // 1/ft
 
     // Derivatives with respect to alpha
-    let slope_of_alpha_slope_alpha_in_sin_alpha = -slope_of_alpha_slope_gamma_in_sin_alpha; // 1/s
-    let d_alpha_slope_alpha_d_alpha = cos_alpha
+    let slope_of_alpha_slope_alpha_in_sin_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
+    let d_alpha_slope_alpha_d_alpha = i.cos_alpha
         * slope_of_alpha_slope_alpha_in_sin_alpha; // 1/s/rad
 
     // Derivatives with respect to altitude
     let d_alpha_slope_pitch_rate_d_altitude_term_1 = p.c_bar_c_m_alpha
-        + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi;
+        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi;
     let d_alpha_slope_pitch_rate_d_altitude = d_alpha_slope_pitch_rate_d_altitude_term_1
-        * s_times_d_dynamic_pressure_d_altitude * p.inv_i_yy; // 1/s^2/ft
+        * s.d_reference_force_d_altitude * p.inv_i_yy; // 1/s^2/ft
 
     // Derivatives with respect to velocity
     let d_alpha_slope_pitch_rate_d_velocity = d_alpha_slope_pitch_rate_d_altitude_term_1
-        * s_times_d_dynamic_pressure_d_velocity * p.inv_i_yy; // 1/s/ft
+        * s.d_reference_force_d_velocity * p.inv_i_yy; // 1/s/ft
 
     [
         p.w_alpha_w_gamma * d_alpha_slope_velocity_d_altitude * x.velocity,
         p.w_alpha_2
-            * (d_alpha_slope_velocity_d_velocity * alpha_slope_velocity
-                + d_alpha_slope_velocity_d_alpha * alpha_slope_alpha),
+            * (d_alpha_slope_velocity_d_velocity * n.alpha_slope_velocity
+                + d_alpha_slope_velocity_d_alpha * n.alpha_slope_alpha),
         p.w_alpha_w_q * d_alpha_slope_velocity_d_alpha,
-        p.w_alpha_w_gamma * alpha_slope_velocity,
-        p.w_alpha_w_gamma * d_alpha_slope_gamma_d_altitude * x.velocity,
+        p.w_alpha_w_gamma * n.alpha_slope_velocity,
+        p.w_alpha_w_gamma * s.d_g_gamma_d_altitude * x.velocity,
         p.w_alpha_2
-            * (d_alpha_slope_gamma_d_velocity * alpha_slope_velocity
-                + d_alpha_slope_gamma_d_alpha * alpha_slope_alpha),
-        p.w_alpha_w_q * d_alpha_slope_gamma_d_alpha,
+            * (s.d_g_gamma_d_velocity * n.alpha_slope_velocity
+                + s.d_g_gamma_d_alpha * n.alpha_slope_alpha),
+        p.w_alpha_w_q * s.d_g_gamma_d_alpha,
         p.w_alpha_w_gamma * d_alpha_slope_alpha_d_altitude * x.velocity,
         p.w_alpha_2
-            * (d_alpha_slope_alpha_d_velocity * alpha_slope_velocity
-                + d_alpha_slope_alpha_d_alpha * alpha_slope_alpha),
+            * (d_alpha_slope_alpha_d_velocity * n.alpha_slope_velocity
+                + d_alpha_slope_alpha_d_alpha * n.alpha_slope_alpha),
         p.w_alpha_w_q * d_alpha_slope_alpha_d_alpha,
         p.w_alpha_w_gamma * d_alpha_slope_pitch_rate_d_altitude * x.velocity,
-        p.w_alpha_2 * d_alpha_slope_pitch_rate_d_velocity * alpha_slope_velocity,
+        p.w_alpha_2 * d_alpha_slope_pitch_rate_d_velocity * n.alpha_slope_velocity,
     ]
 }
 
@@ -166,91 +119,51 @@ pub fn noise_derivatives<R: Real>(
 /// 51 operations: 8 additions, 41 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Strict-feedback form, (28)
-    let dynamic_pressure_s = dynamic_pressure * p.s;
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = cos_alpha
-        * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_velocity_term_1 = c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha
-        - p.c_d_alpha;
-    let alpha_slope_velocity = dynamic_pressure_s * p.inv_m
-        * alpha_slope_velocity_term_1; // ft/s^2/rad
-    let slope_of_alpha_slope_gamma_in_turn_factor = p.c_l_alpha
-        + sin_alpha * c_t_alpha_plus_c_t_phi_alpha_phi;
-    let turn_factor_slope_of_alpha_slope_gamma_in_turn_factor = turn_factor
-        * slope_of_alpha_slope_gamma_in_turn_factor;
-    let alpha_slope_alpha = -turn_factor_slope_of_alpha_slope_gamma_in_turn_factor; // rad/s/rad
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
 
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = density * x.velocity; // lb*s/ft^3
-    let d_turn_factor_d_velocity = p.half_s_over_m * density; // 1/ft
+    let d_alpha_slope_velocity_d_velocity = (n
+        .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha)
+        * s.d_reference_force_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -sin_alpha; // 1/rad
-
-    // Derivatives with respect to velocity
-    let s_times_d_dynamic_pressure_d_velocity = p.s * d_dynamic_pressure_d_velocity;
-    let d_alpha_slope_velocity_d_velocity = alpha_slope_velocity_term_1
-        * s_times_d_dynamic_pressure_d_velocity * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    let slope_of_alpha_slope_velocity_in_cos_alpha = dynamic_pressure_s * p.inv_m
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
+    let slope_of_alpha_slope_velocity_in_cos_alpha = i.reference_force * p.inv_m
+        * s.c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
     let d_alpha_slope_velocity_d_alpha = slope_of_alpha_slope_velocity_in_cos_alpha
-        * d_cos_alpha_d_alpha; // ft/s^2/rad^2
-
-    // Derivatives with respect to velocity
-    let d_alpha_slope_gamma_d_velocity = slope_of_alpha_slope_gamma_in_turn_factor
-        * d_turn_factor_d_velocity; // 1/ft
-
-    // Derivatives with respect to alpha
-    let slope_of_alpha_slope_gamma_in_sin_alpha = turn_factor
-        * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
-    let d_alpha_slope_gamma_d_alpha = slope_of_alpha_slope_gamma_in_sin_alpha
-        * cos_alpha; // 1/s/rad
+        * s.d_cos_alpha_d_alpha; // ft/s^2/rad^2
 
     // Derivatives with respect to altitude
-    let slope_of_alpha_slope_alpha_in_turn_factor = -slope_of_alpha_slope_gamma_in_turn_factor;
+    let slope_of_alpha_slope_alpha_in_turn_factor = -i.g_gamma_over_turn_factor;
 
     // Derivatives with respect to velocity
     let d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
-        * d_turn_factor_d_velocity; // 1/ft
+        * s.d_turn_factor_d_velocity; // 1/ft
 
     // Derivatives with respect to alpha
-    let slope_of_alpha_slope_alpha_in_sin_alpha = -slope_of_alpha_slope_gamma_in_sin_alpha; // 1/s
-    let d_alpha_slope_alpha_d_alpha = cos_alpha
+    let slope_of_alpha_slope_alpha_in_sin_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
+    let d_alpha_slope_alpha_d_alpha = i.cos_alpha
         * slope_of_alpha_slope_alpha_in_sin_alpha; // 1/s/rad
 
     // Derivatives with respect to velocity
     let d_alpha_slope_pitch_rate_d_velocity = (p.c_bar_c_m_alpha
-        + p.z_t * c_t_alpha_plus_c_t_phi_alpha_phi)
-        * s_times_d_dynamic_pressure_d_velocity * p.inv_i_yy; // 1/s/ft
+        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi) * s.d_reference_force_d_velocity
+        * p.inv_i_yy; // 1/s/ft
 
     State {
         velocity: p.half_w_alpha_2
-            * (d_alpha_slope_velocity_d_velocity * alpha_slope_velocity
-                + d_alpha_slope_velocity_d_alpha * alpha_slope_alpha),
+            * (d_alpha_slope_velocity_d_velocity * n.alpha_slope_velocity
+                + d_alpha_slope_velocity_d_alpha * n.alpha_slope_alpha),
         altitude: R::ZERO,
         gamma: p.half_w_alpha_2
-            * (d_alpha_slope_gamma_d_velocity * alpha_slope_velocity
-                + d_alpha_slope_gamma_d_alpha * alpha_slope_alpha),
+            * (s.d_g_gamma_d_velocity * n.alpha_slope_velocity
+                + s.d_g_gamma_d_alpha * n.alpha_slope_alpha),
         alpha: p.half_w_alpha_2
-            * (d_alpha_slope_alpha_d_velocity * alpha_slope_velocity
-                + d_alpha_slope_alpha_d_alpha * alpha_slope_alpha),
+            * (d_alpha_slope_alpha_d_velocity * n.alpha_slope_velocity
+                + d_alpha_slope_alpha_d_alpha * n.alpha_slope_alpha),
         pitch_rate: p.half_w_alpha_2 * d_alpha_slope_pitch_rate_d_velocity
-            * alpha_slope_velocity,
+            * n.alpha_slope_velocity,
         chi_1: R::ZERO,
         chi_2: R::ZERO,
         chi_3: R::ZERO,

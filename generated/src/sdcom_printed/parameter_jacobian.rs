@@ -2,7 +2,10 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Input, ParameterJacobian, Parameters, Prepared, State};
+use super::{
+    Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes,
+};
+
 use ahv_core::{Pattern, Real};
 
 /// Where the entries of the compressed [`ParameterJacobian`] stand.
@@ -204,321 +207,228 @@ pub fn parameter_jacobian_values<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> [R; 181] {
-    // Air, (2)
-    let h_0_minus_altitude = p.h_0 - x.altitude;
-    let density_ratio = (h_0_minus_altitude * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Derivatives with respect to velocity
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let slope_of_f_velocity_in_dynamic_pressure_term_1 = cos_alpha * (c_t_alpha_alpha + p.c_t_0)
+    // Derivatives with respect to parameters
+    let d_f_velocity_eta_d_m_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * i.generalized_force_1_inv_omega_1_2
+        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * i.generalized_force_2_inv_omega_2_2
+        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * i.generalized_force_3_inv_omega_3_2;
+    let d_f_velocity_eta_d_m = -i.reference_force * p.inv_m_2
+        * d_f_velocity_eta_d_m_term_1; // ft^2/s^2/slug
+    let d_f_velocity_d_m_term_1 = i.cos_alpha * s.c_t_alpha_alpha_plus_c_t_0
         - p.c_d_alpha * x.alpha
         - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e
         - p.c_d_0;
-    let slope_of_f_velocity_in_dynamic_pressure = slope_of_f_velocity_in_dynamic_pressure_term_1
-        * p.s_over_m; // ft^3/s^2/lb
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let slope_of_f_velocity_eta_in_dynamic_pressure_term_1 =
-        cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2;
-    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
-        * slope_of_f_velocity_eta_in_dynamic_pressure_term_1; // ft^3/s^2/lb
-    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
-    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
-        * cos_alpha * p.s_over_m; // ft^3/s^2/lb
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let slope_of_gamma_rate_printed_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3; // rad
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let slope_of_f_gamma_in_turn_factor = p.c_l_0 + sin_alpha * (c_t_phi_phi + p.c_t_0); // rad
-    let slope_of_f_gamma_eta_in_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2; // rad
-    let slope_of_f_gamma_eta_in_generalized_force_1 = turn_factor
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_2 = turn_factor
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_3 = turn_factor
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_g_gamma_in_turn_factor = p.c_l_alpha
-        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
-    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
+    let d_f_velocity_d_m = d_f_velocity_eta_d_m
+        - d_f_velocity_d_m_term_1 * i.reference_force * p.inv_m_2; // ft^2/s^2/slug
+    let d_g_velocity_d_m = -s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha
+        * i.reference_force * p.inv_m_2; // ft^2/s^2/slug
+    let d_velocity_rate_printed_d_m_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
+    let d_velocity_rate_printed_d_m = d_f_velocity_d_m
+        - i.reference_force * p.inv_m_2 * d_velocity_rate_printed_d_m_term_1
+        + u.phi * d_g_velocity_d_m; // ft^2/s^2/slug
+    let d_f_gamma_d_m = -s.d_reference_force_d_velocity * p.inv_m_2
+        * (R::HALF * i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+            + R::HALF * i.f_gamma_eta_over_turn_factor); // rad*ft/s/slug
+    let alpha_slope_of_g_gamma_in_turn_factor = x.alpha * i.g_gamma_over_turn_factor;
+    let d_gamma_rate_printed_d_m = s.d_reference_force_d_velocity * p.inv_m_2
+        * (-R::HALF * s.slope_of_gamma_rate_printed_in_turn_factor
+            - R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_m; // rad*ft/s/slug
+    let d_f_alpha_d_m = -s.d_reference_force_d_velocity * p.inv_m_2
+        * (R::HALF * s.slope_of_f_alpha_in_turn_factor
+            + R::HALF * s.slope_of_f_alpha_eta_in_turn_factor); // rad*ft/s/slug
+    let d_alpha_rate_printed_d_m = d_f_alpha_d_m
+        - s.slope_of_alpha_rate_printed_in_turn_factor * s.d_reference_force_d_velocity
+            * p.half_inv_m_2; // rad*ft/s/slug
+    let d_f_pitch_rate_eta_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
+    let d_f_pitch_rate_eta_d_i_yy = -p.inv_i_yy_2 * i.reference_force
+        * d_f_pitch_rate_eta_d_i_yy_term_1; // rad/s^2/slug/ft
+    let d_f_pitch_rate_d_i_yy_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
+        + i.c_t_alpha_alpha
+        + i.c_t_phi_phi
         + p.c_t_0;
-    let slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
-        + sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
-    let slope_of_f_alpha_eta_in_turn_factor = -slope_of_f_gamma_eta_in_turn_factor; // rad
-    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
-    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
-    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
-    let c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0 = p.c_m_alpha_2 * alpha_2
+    let c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0 = p.c_m_alpha_2 * i.alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_0;
-    let slope_of_f_pitch_rate_in_dynamic_pressure_term_1 = p.z_t
-        * slope_of_f_alpha_in_turn_factor_term_1
+    let d_f_pitch_rate_d_i_yy_term_2 = p.z_t * d_f_pitch_rate_d_i_yy_term_1
         + p.c_bar * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0;
-    let slope_of_f_pitch_rate_in_dynamic_pressure = slope_of_f_pitch_rate_in_dynamic_pressure_term_1
-        * p.s_over_i_yy; // rad*ft^2/s^2/lb
-
-    // Derivatives with respect to parameters
-    let d_f_velocity_eta_d_m = -reference_force * p.inv_m_2
-        * slope_of_f_velocity_eta_in_dynamic_pressure_term_1; // ft^2/s^2/slug
-    let d_f_velocity_d_m = d_f_velocity_eta_d_m
-        - slope_of_f_velocity_in_dynamic_pressure_term_1 * reference_force * p.inv_m_2; // ft^2/s^2/slug
-    let d_g_velocity_d_m = -c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * reference_force * p.inv_m_2; // ft^2/s^2/slug
-    let d_velocity_rate_printed_d_m_term_1 = cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
-    let d_velocity_rate_printed_d_m = d_f_velocity_d_m
-        - reference_force * p.inv_m_2 * d_velocity_rate_printed_d_m_term_1
-        + u.phi * d_g_velocity_d_m; // ft^2/s^2/slug
-    let density_velocity = density * x.velocity;
-    let s_density_velocity = p.s * density_velocity;
-    let d_f_gamma_d_m = -s_density_velocity * p.inv_m_2
-        * (R::HALF * slope_of_f_gamma_in_turn_factor
-            + R::HALF * slope_of_f_gamma_eta_in_turn_factor); // rad*ft/s/slug
-    let alpha_slope_of_g_gamma_in_turn_factor = x.alpha
-        * slope_of_g_gamma_in_turn_factor;
-    let d_gamma_rate_printed_d_m = s_density_velocity * p.inv_m_2
-        * (-R::HALF * slope_of_gamma_rate_printed_in_turn_factor
-            - R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_m; // rad*ft/s/slug
-    let d_f_alpha_d_m = -s_density_velocity * p.inv_m_2
-        * (R::HALF * slope_of_f_alpha_in_turn_factor
-            + R::HALF * slope_of_f_alpha_eta_in_turn_factor); // rad*ft/s/slug
-    let d_alpha_rate_printed_d_m = d_f_alpha_d_m
-        - slope_of_alpha_rate_printed_in_turn_factor * s_density_velocity
-            * p.half_inv_m_2; // rad*ft/s/slug
-    let d_f_pitch_rate_eta_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2;
-    let d_f_pitch_rate_eta_d_i_yy = -p.inv_i_yy_2 * reference_force
-        * d_f_pitch_rate_eta_d_i_yy_term_1; // rad/s^2/slug/ft
     let d_f_pitch_rate_d_i_yy = d_f_pitch_rate_eta_d_i_yy
-        - slope_of_f_pitch_rate_in_dynamic_pressure_term_1 * reference_force
-            * p.inv_i_yy_2; // rad/s^2/slug/ft
-    let d_g_pitch_rate_d_i_yy = -p.d_g_pitch_rate_d_i_yy_constant_1 * reference_force; // 1/s^2/slug/ft
+        - d_f_pitch_rate_d_i_yy_term_2 * i.reference_force * p.inv_i_yy_2; // rad/s^2/slug/ft
+    let d_g_pitch_rate_d_i_yy = -p.d_g_pitch_rate_d_i_yy_constant_1 * i.reference_force; // 1/s^2/slug/ft
     let d_pitch_rate_rate_printed_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
         + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
     let d_pitch_rate_rate_printed_d_i_yy = d_f_pitch_rate_d_i_yy
-        - p.inv_i_yy_2 * reference_force * d_pitch_rate_rate_printed_d_i_yy_term_1
+        - p.inv_i_yy_2 * i.reference_force * d_pitch_rate_rate_printed_d_i_yy_term_1
         + u.delta_e * d_g_pitch_rate_d_i_yy; // rad/s^2/slug/ft
-    let d_f_velocity_eta_d_s_term_1 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1;
-    let d_f_velocity_eta_d_s_term_2 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_2_minus_c_d_eta_2;
-    let d_f_velocity_eta_d_s_term_3 = reference_force * p.inv_m
-        * cos_alpha_c_t_eta_3_minus_c_d_eta_3;
-    let d_f_velocity_eta_d_s = dynamic_pressure
-        * (p.inv_m * slope_of_f_velocity_eta_in_dynamic_pressure_term_1
-            + d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2 * c_n_1
-            + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2 * c_n_2
-            + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2 * c_n_3); // 1/s^2
-    let d_f_velocity_d_s = slope_of_f_velocity_in_dynamic_pressure_term_1
-        * dynamic_pressure * p.inv_m + d_f_velocity_eta_d_s; // 1/s^2
-    let d_g_velocity_d_s = c_t_phi_alpha_alpha_plus_c_t_phi * cos_alpha
-        * dynamic_pressure * p.inv_m; // 1/s^2
-    let d_velocity_rate_printed_d_s = dynamic_pressure * p.inv_m * d_velocity_rate_printed_d_m_term_1
+    let d_f_velocity_eta_d_s = i.dynamic_pressure
+        * (p.inv_m * d_f_velocity_eta_d_m_term_1
+            + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * i.c_n_1
+            + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * i.c_n_2
+            + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * i.c_n_3); // 1/s^2
+    let d_f_velocity_d_s = d_f_velocity_d_m_term_1 * i.dynamic_pressure * p.inv_m
+        + d_f_velocity_eta_d_s; // 1/s^2
+    let d_g_velocity_d_s = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha
+        * i.dynamic_pressure * p.inv_m; // 1/s^2
+    let d_velocity_rate_printed_d_s = i.dynamic_pressure * p.inv_m * d_velocity_rate_printed_d_m_term_1
         + d_f_velocity_d_s
         + u.phi * d_g_velocity_d_s; // 1/s^2
-    let d_f_gamma_eta_d_s = dynamic_pressure
-        * (slope_of_f_gamma_eta_in_generalized_force_1 * c_n_1
-            + slope_of_f_gamma_eta_in_generalized_force_2 * c_n_2
-            + slope_of_f_gamma_eta_in_generalized_force_3 * c_n_3)
-        + slope_of_f_gamma_eta_in_turn_factor * density_velocity * p.half_over_m; // rad/s/ft
-    let d_f_gamma_d_s = slope_of_f_gamma_in_turn_factor * density_velocity
-        * p.half_over_m + d_f_gamma_eta_d_s; // rad/s/ft
-    let d_gamma_rate_printed_d_s = density_velocity * p.inv_m
-        * (R::HALF * slope_of_gamma_rate_printed_in_turn_factor
+    let d_f_gamma_eta_d_s = i.dynamic_pressure
+        * (s.slope_of_f_gamma_eta_in_generalized_force_1 * i.c_n_1
+            + s.slope_of_f_gamma_eta_in_generalized_force_2 * i.c_n_2
+            + s.slope_of_f_gamma_eta_in_generalized_force_3 * i.c_n_3)
+        + i.f_gamma_eta_over_turn_factor * s.d_dynamic_pressure_d_velocity
+            * p.half_over_m; // rad/s/ft
+    let d_f_gamma_d_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+        * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_gamma_eta_d_s; // rad/s/ft
+    let d_gamma_rate_printed_d_s = s.d_dynamic_pressure_d_velocity * p.inv_m
+        * (R::HALF * s.slope_of_gamma_rate_printed_in_turn_factor
             + R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_s; // rad/s/ft
-    let d_f_alpha_eta_d_s = dynamic_pressure
-        * (slope_of_f_alpha_eta_in_generalized_force_1 * c_n_1
-            + slope_of_f_alpha_eta_in_generalized_force_2 * c_n_2
-            + slope_of_f_alpha_eta_in_generalized_force_3 * c_n_3)
-        + slope_of_f_alpha_eta_in_turn_factor * density_velocity * p.half_over_m; // rad/s/ft
-    let d_f_alpha_d_s = slope_of_f_alpha_in_turn_factor * density_velocity
-        * p.half_over_m + d_f_alpha_eta_d_s; // rad/s/ft
-    let d_alpha_rate_printed_d_s = slope_of_alpha_rate_printed_in_turn_factor
-        * density_velocity * p.half_over_m + d_f_alpha_d_s; // rad/s/ft
-    let d_f_pitch_rate_eta_d_s_term_1 = reference_force
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy;
-    let d_f_pitch_rate_eta_d_s_term_2 = reference_force
-        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy;
-    let d_f_pitch_rate_eta_d_s_term_3 = reference_force
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy;
-    let d_f_pitch_rate_eta_d_s = dynamic_pressure
+    let d_f_alpha_eta_d_s = i.dynamic_pressure
+        * (s.slope_of_f_alpha_eta_in_generalized_force_1 * i.c_n_1
+            + s.slope_of_f_alpha_eta_in_generalized_force_2 * i.c_n_2
+            + s.slope_of_f_alpha_eta_in_generalized_force_3 * i.c_n_3)
+        + s.slope_of_f_alpha_eta_in_turn_factor * s.d_dynamic_pressure_d_velocity
+            * p.half_over_m; // rad/s/ft
+    let d_f_alpha_d_s = s.slope_of_f_alpha_in_turn_factor
+        * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_alpha_eta_d_s; // rad/s/ft
+    let d_alpha_rate_printed_d_s = s.slope_of_alpha_rate_printed_in_turn_factor
+        * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_alpha_d_s; // rad/s/ft
+    let d_f_pitch_rate_eta_d_s = i.dynamic_pressure
         * (p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
-            + d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2 * c_n_1
-            + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2 * c_n_2
-            + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2 * c_n_3); // rad/s^2/ft
-    let d_f_pitch_rate_d_s = slope_of_f_pitch_rate_in_dynamic_pressure_term_1
-        * dynamic_pressure * p.inv_i_yy + d_f_pitch_rate_eta_d_s; // rad/s^2/ft
-    let d_g_pitch_rate_d_s = p.g_pitch_rate_constant_1 * dynamic_pressure; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_s = p.inv_i_yy * dynamic_pressure * d_pitch_rate_rate_printed_d_i_yy_term_1
+            + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * i.c_n_1
+            + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * i.c_n_2
+            + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * i.c_n_3); // rad/s^2/ft
+    let d_f_pitch_rate_d_s = d_f_pitch_rate_d_i_yy_term_2 * i.dynamic_pressure
+        * p.inv_i_yy + d_f_pitch_rate_eta_d_s; // rad/s^2/ft
+    let d_g_pitch_rate_d_s = p.g_pitch_rate_constant_1 * i.dynamic_pressure; // 1/s^2/ft
+    let d_pitch_rate_rate_printed_d_s = p.inv_i_yy * i.dynamic_pressure * d_pitch_rate_rate_printed_d_i_yy_term_1
         + d_f_pitch_rate_d_s
         + u.delta_e * d_g_pitch_rate_d_s; // rad/s^2/ft
-    let d_f_pitch_rate_eta_d_c_bar = reference_force * p.inv_i_yy
-        * (generalized_force_1_inv_omega_1_2 * p.c_m_eta_1
-            + generalized_force_2_inv_omega_2_2 * p.c_m_eta_2
-            + generalized_force_3_inv_omega_3_2 * p.c_m_eta_3); // rad/s^2/ft
-    let d_f_pitch_rate_d_c_bar = reference_force * p.inv_i_yy
+    let d_f_pitch_rate_eta_d_c_bar = i.reference_force * p.inv_i_yy
+        * (i.generalized_force_1_inv_omega_1_2 * p.c_m_eta_1
+            + i.generalized_force_2_inv_omega_2_2 * p.c_m_eta_2
+            + i.generalized_force_3_inv_omega_3_2 * p.c_m_eta_3); // rad/s^2/ft
+    let d_f_pitch_rate_d_c_bar = i.reference_force * p.inv_i_yy
         * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0
         + d_f_pitch_rate_eta_d_c_bar; // rad/s^2/ft
     let d_g_pitch_rate_d_c_bar = p
-        .c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy * reference_force; // 1/s^2/ft
+        .c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy * i.reference_force; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_c_bar =
-        reference_force * p.inv_i_yy * (x.chi_1 * p.c_m_eta_1 + x.chi_2 * p.c_m_eta_2 + x.chi_3 * p.c_m_eta_3)
+        i.reference_force * p.inv_i_yy * (x.chi_1 * p.c_m_eta_1 + x.chi_2 * p.c_m_eta_2 + x.chi_3 * p.c_m_eta_3)
         + d_f_pitch_rate_d_c_bar
         + u.delta_e * d_g_pitch_rate_d_c_bar; // rad/s^2/ft
-    let d_f_pitch_rate_eta_d_z_t = reference_force * p.inv_i_yy
-        * (generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-            + generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-            + generalized_force_3_inv_omega_3_2 * p.c_t_eta_3); // rad/s^2/ft
-    let d_f_pitch_rate_d_z_t = reference_force * p.inv_i_yy
-        * slope_of_f_alpha_in_turn_factor_term_1 + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
-    let d_pitch_rate_rate_printed_d_z_t = reference_force * p.inv_i_yy
-        * (x.chi_1 * p.c_t_eta_1 + x.chi_2 * p.c_t_eta_2 + x.chi_3 * p.c_t_eta_3)
+    let d_f_pitch_rate_eta_d_z_t = i.reference_force * p.inv_i_yy
+        * (i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+            + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+            + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3); // rad/s^2/ft
+    let d_f_pitch_rate_d_z_t = i.reference_force * p.inv_i_yy
+        * d_f_pitch_rate_d_i_yy_term_1 + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
+    let d_pitch_rate_rate_printed_d_z_t = i.reference_force * p.inv_i_yy
+        * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
         + d_f_pitch_rate_d_z_t; // rad/s^2/ft
-    let d_f_velocity_eta_d_rho_0 = density_ratio
+    let d_f_velocity_eta_d_rho_0 = i.density_ratio
         * (p.s
-            * (d_f_velocity_eta_d_s_term_1 * p.half_inv_omega_1_2 * c_n_1 * velocity_2
-                + d_f_velocity_eta_d_s_term_2 * p.half_inv_omega_2_2 * c_n_2 * velocity_2
-                + d_f_velocity_eta_d_s_term_3 * p.half_inv_omega_3_2 * c_n_3
-                    * velocity_2)
-            + R::HALF * slope_of_f_velocity_eta_in_dynamic_pressure * velocity_2); // ft^4/s^2/slug
-    let d_f_velocity_d_rho_0 = R::HALF * slope_of_f_velocity_in_dynamic_pressure
-        * velocity_2 * density_ratio + d_f_velocity_eta_d_rho_0; // ft^4/s^2/slug
-    let d_velocity_rate_printed_d_rho_0 = density_ratio
-        * (p.half_s_over_m * d_velocity_rate_printed_d_m_term_1 * velocity_2
-            + R::HALF * u.phi * slope_of_g_velocity_in_dynamic_pressure * velocity_2)
+            * (s.d_velocity_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * i.c_n_1
+                * i.velocity_2
+                + s.d_velocity_rate_printed_d_chi_2 * p.half_inv_omega_2_2 * i.c_n_2
+                    * i.velocity_2
+                + s.d_velocity_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * i.c_n_3
+                    * i.velocity_2)
+            + R::HALF * s.slope_of_f_velocity_eta_in_dynamic_pressure * i.velocity_2); // ft^4/s^2/slug
+    let d_f_velocity_d_rho_0 = R::HALF * s.slope_of_f_velocity_in_dynamic_pressure
+        * i.velocity_2 * i.density_ratio + d_f_velocity_eta_d_rho_0; // ft^4/s^2/slug
+    let d_velocity_rate_printed_d_rho_0 = i.density_ratio
+        * (p.half_s_over_m * d_velocity_rate_printed_d_m_term_1 * i.velocity_2
+            + R::HALF * u.phi * s.slope_of_g_velocity_in_dynamic_pressure * i.velocity_2)
         + d_f_velocity_d_rho_0; // ft^4/s^2/slug
-    let d_f_gamma_eta_d_rho_0 = p.s * density_ratio
-        * (slope_of_f_gamma_eta_in_turn_factor * p.half_over_m * x.velocity
-            + R::HALF * slope_of_f_gamma_eta_in_generalized_force_1 * c_n_1 * velocity_2
-            + R::HALF * slope_of_f_gamma_eta_in_generalized_force_2 * c_n_2 * velocity_2
-            + R::HALF * slope_of_f_gamma_eta_in_generalized_force_3 * c_n_3
-                * velocity_2); // rad*ft^3/s/slug
-    let d_f_gamma_d_rho_0 = slope_of_f_gamma_in_turn_factor * p.half_s_over_m
-        * x.velocity * density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
-    let d_gamma_rate_printed_d_rho_0 = p.s_over_m * density_ratio
-        * (R::HALF * slope_of_gamma_rate_printed_in_turn_factor * x.velocity
-            + R::HALF * x.alpha * slope_of_g_gamma_in_turn_factor * x.velocity)
+    let d_f_gamma_eta_d_rho_0 = p.s * i.density_ratio
+        * (i.f_gamma_eta_over_turn_factor * p.half_over_m * x.velocity
+            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_1 * i.c_n_1
+                * i.velocity_2
+            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_2 * i.c_n_2
+                * i.velocity_2
+            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_3 * i.c_n_3
+                * i.velocity_2); // rad*ft^3/s/slug
+    let d_f_gamma_d_rho_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+        * p.half_s_over_m * x.velocity * i.density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
+    let d_gamma_rate_printed_d_rho_0 = p.s_over_m * i.density_ratio
+        * (R::HALF * s.slope_of_gamma_rate_printed_in_turn_factor * x.velocity
+            + R::HALF * x.alpha * i.g_gamma_over_turn_factor * x.velocity)
         + d_f_gamma_d_rho_0; // rad*ft^3/s/slug
-    let d_f_alpha_eta_d_rho_0 = p.s * density_ratio
-        * (slope_of_f_alpha_eta_in_turn_factor * p.half_over_m * x.velocity
-            + R::HALF * slope_of_f_alpha_eta_in_generalized_force_1 * c_n_1 * velocity_2
-            + R::HALF * slope_of_f_alpha_eta_in_generalized_force_2 * c_n_2 * velocity_2
-            + R::HALF * slope_of_f_alpha_eta_in_generalized_force_3 * c_n_3
-                * velocity_2); // rad*ft^3/s/slug
-    let d_f_alpha_d_rho_0 = slope_of_f_alpha_in_turn_factor * p.half_s_over_m
-        * x.velocity * density_ratio + d_f_alpha_eta_d_rho_0; // rad*ft^3/s/slug
-    let d_alpha_rate_printed_d_rho_0 = slope_of_alpha_rate_printed_in_turn_factor
-        * p.half_s_over_m * x.velocity * density_ratio + d_f_alpha_d_rho_0; // rad*ft^3/s/slug
-    let d_f_pitch_rate_eta_d_rho_0 = p.s * density_ratio
-        * (p.half_over_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1 * velocity_2
-            + d_f_pitch_rate_eta_d_s_term_1 * p.half_inv_omega_1_2 * c_n_1 * velocity_2
-            + d_f_pitch_rate_eta_d_s_term_2 * p.half_inv_omega_2_2 * c_n_2 * velocity_2
-            + d_f_pitch_rate_eta_d_s_term_3 * p.half_inv_omega_3_2 * c_n_3 * velocity_2); // rad*ft^3/s^2/slug
-    let d_f_pitch_rate_d_rho_0 = R::HALF * slope_of_f_pitch_rate_in_dynamic_pressure
-        * velocity_2 * density_ratio + d_f_pitch_rate_eta_d_rho_0; // rad*ft^3/s^2/slug
-    let d_pitch_rate_rate_printed_d_rho_0 = density_ratio
-        * (p.half_s_over_i_yy * d_pitch_rate_rate_printed_d_i_yy_term_1 * velocity_2
-            + u.delta_e * p.half_slope_of_g_pitch_rate_in_dynamic_pressure * velocity_2)
-        + d_f_pitch_rate_d_rho_0; // rad*ft^3/s^2/slug
-    let d_density_ratio_d_h_0 = density_ratio * p.inv_h_s; // 1/ft
+    let d_f_alpha_eta_d_rho_0 = p.s * i.density_ratio
+        * (s.slope_of_f_alpha_eta_in_turn_factor * p.half_over_m * x.velocity
+            + R::HALF * s.slope_of_f_alpha_eta_in_generalized_force_1 * i.c_n_1
+                * i.velocity_2
+            + R::HALF * s.slope_of_f_alpha_eta_in_generalized_force_2 * i.c_n_2
+                * i.velocity_2
+            + R::HALF * s.slope_of_f_alpha_eta_in_generalized_force_3 * i.c_n_3
+                * i.velocity_2); // rad*ft^3/s/slug
+    let d_f_alpha_d_rho_0 = s.slope_of_f_alpha_in_turn_factor * p.half_s_over_m
+        * x.velocity * i.density_ratio + d_f_alpha_eta_d_rho_0; // rad*ft^3/s/slug
+    let d_alpha_rate_printed_d_rho_0 = s.slope_of_alpha_rate_printed_in_turn_factor
+        * p.half_s_over_m * x.velocity * i.density_ratio + d_f_alpha_d_rho_0; // rad*ft^3/s/slug
+    let d_f_pitch_rate_eta_d_rho_0 = p.s * i.density_ratio
+        * (p.half_over_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1 * i.velocity_2
+            + s.d_pitch_rate_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * i.c_n_1
+                * i.velocity_2
+            + s.d_pitch_rate_rate_printed_d_chi_2 * p.half_inv_omega_2_2 * i.c_n_2
+                * i.velocity_2
+            + s.d_pitch_rate_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * i.c_n_3
+                * i.velocity_2); // rad*ft^3/s^2/slug
+    let d_f_pitch_rate_d_rho_0 = R::HALF * s.slope_of_f_pitch_rate_in_dynamic_pressure
+        * i.velocity_2 * i.density_ratio + d_f_pitch_rate_eta_d_rho_0; // rad*ft^3/s^2/slug
+    let d_pitch_rate_rate_printed_d_rho_0 = i.density_ratio
+        * (p.half_s_over_i_yy * d_pitch_rate_rate_printed_d_i_yy_term_1 * i.velocity_2
+            + u.delta_e * p.half_slope_of_g_pitch_rate_in_dynamic_pressure
+                * i.velocity_2) + d_f_pitch_rate_d_rho_0; // rad*ft^3/s^2/slug
+    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * velocity_2 * d_density_d_h_0; // lb/ft^3
+    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_0 = c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_0 = c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_h_0 = slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_0
-        + d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
-        + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
-        + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // 1/s^2
-    let d_f_velocity_d_h_0 = slope_of_f_velocity_in_dynamic_pressure
+    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_f_velocity_eta_d_h_0 = s.slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_0
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // 1/s^2
+    let d_f_velocity_d_h_0 = s.slope_of_f_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0 + d_f_velocity_eta_d_h_0; // 1/s^2
-    let d_g_velocity_d_h_0 = slope_of_g_velocity_in_dynamic_pressure
+    let d_g_velocity_d_h_0 = s.slope_of_g_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0; // 1/s^2
     let d_velocity_rate_printed_d_h_0 = d_reference_force_d_h_0 * p.inv_m * d_velocity_rate_printed_d_m_term_1
         + d_f_velocity_d_h_0
         + u.phi * d_g_velocity_d_h_0; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_f_gamma_eta_d_h_0 = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_h_0
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
-    let d_f_gamma_d_h_0 = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_h_0
-        + d_f_gamma_eta_d_h_0; // rad/s/ft
-    let d_g_gamma_d_h_0 = slope_of_g_gamma_in_turn_factor * d_turn_factor_d_h_0; // 1/s/ft
-    let d_gamma_rate_printed_d_h_0 = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_h_0
+    let d_f_gamma_eta_d_h_0 = i.f_gamma_eta_over_turn_factor * d_turn_factor_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
+    let d_f_gamma_d_h_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+        * d_turn_factor_d_h_0 + d_f_gamma_eta_d_h_0; // rad/s/ft
+    let d_g_gamma_d_h_0 = i.g_gamma_over_turn_factor * d_turn_factor_d_h_0; // 1/s/ft
+    let d_gamma_rate_printed_d_h_0 = s.slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_h_0
         + d_f_gamma_d_h_0
         + x.alpha * d_g_gamma_d_h_0; // rad/s/ft
-    let d_f_alpha_eta_d_h_0 = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_h_0
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
-    let d_f_alpha_d_h_0 = slope_of_f_alpha_in_turn_factor * d_turn_factor_d_h_0
+    let d_f_alpha_eta_d_h_0 = s.slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
+    let d_f_alpha_d_h_0 = s.slope_of_f_alpha_in_turn_factor * d_turn_factor_d_h_0
         + d_f_alpha_eta_d_h_0; // rad/s/ft
-    let d_alpha_rate_printed_d_h_0 = slope_of_alpha_rate_printed_in_turn_factor
+    let d_alpha_rate_printed_d_h_0 = s.slope_of_alpha_rate_printed_in_turn_factor
         * d_turn_factor_d_h_0 + d_f_alpha_d_h_0; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
-        + d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
-        + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
-        + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // rad/s^2/ft
-    let d_f_pitch_rate_d_h_0 = slope_of_f_pitch_rate_in_dynamic_pressure
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // rad/s^2/ft
+    let d_f_pitch_rate_d_h_0 = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0 + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
     let d_g_pitch_rate_d_h_0 = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0; // 1/s^2/ft
@@ -526,48 +436,48 @@ pub fn parameter_jacobian_values<R: Real>(
         d_reference_force_d_h_0 * p.inv_i_yy * d_pitch_rate_rate_printed_d_i_yy_term_1
         + d_f_pitch_rate_d_h_0
         + u.delta_e * d_g_pitch_rate_d_h_0; // rad/s^2/ft
-    let d_density_ratio_d_h_s = -density_ratio * h_0_minus_altitude * p.inv_h_s_2; // 1/ft
+    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * velocity_2 * d_density_d_h_s; // lb/ft^3
+    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
     let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_s = c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_s = c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_h_s = slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_s
-        + d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
-        + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
-        + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // 1/s^2
-    let d_f_velocity_d_h_s = slope_of_f_velocity_in_dynamic_pressure
+    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_f_velocity_eta_d_h_s = s.slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_s
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // 1/s^2
+    let d_f_velocity_d_h_s = s.slope_of_f_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s + d_f_velocity_eta_d_h_s; // 1/s^2
-    let d_g_velocity_d_h_s = slope_of_g_velocity_in_dynamic_pressure
+    let d_g_velocity_d_h_s = s.slope_of_g_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s; // 1/s^2
     let d_velocity_rate_printed_d_h_s = d_reference_force_d_h_s * p.inv_m * d_velocity_rate_printed_d_m_term_1
         + d_f_velocity_d_h_s
         + u.phi * d_g_velocity_d_h_s; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_f_gamma_eta_d_h_s = slope_of_f_gamma_eta_in_turn_factor * d_turn_factor_d_h_s
-        + slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
-    let d_f_gamma_d_h_s = slope_of_f_gamma_in_turn_factor * d_turn_factor_d_h_s
-        + d_f_gamma_eta_d_h_s; // rad/s/ft
-    let d_g_gamma_d_h_s = slope_of_g_gamma_in_turn_factor * d_turn_factor_d_h_s; // 1/s/ft
-    let d_gamma_rate_printed_d_h_s = slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_h_s
+    let d_f_gamma_eta_d_h_s = i.f_gamma_eta_over_turn_factor * d_turn_factor_d_h_s
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
+    let d_f_gamma_d_h_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+        * d_turn_factor_d_h_s + d_f_gamma_eta_d_h_s; // rad/s/ft
+    let d_g_gamma_d_h_s = i.g_gamma_over_turn_factor * d_turn_factor_d_h_s; // 1/s/ft
+    let d_gamma_rate_printed_d_h_s = s.slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_h_s
         + d_f_gamma_d_h_s
         + x.alpha * d_g_gamma_d_h_s; // rad/s/ft
-    let d_f_alpha_eta_d_h_s = slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_h_s
-        + slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
-        + slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
-        + slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
-    let d_f_alpha_d_h_s = slope_of_f_alpha_in_turn_factor * d_turn_factor_d_h_s
+    let d_f_alpha_eta_d_h_s = s.slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
+    let d_f_alpha_d_h_s = s.slope_of_f_alpha_in_turn_factor * d_turn_factor_d_h_s
         + d_f_alpha_eta_d_h_s; // rad/s/ft
-    let d_alpha_rate_printed_d_h_s = slope_of_alpha_rate_printed_in_turn_factor
+    let d_alpha_rate_printed_d_h_s = s.slope_of_alpha_rate_printed_in_turn_factor
         * d_turn_factor_d_h_s + d_f_alpha_d_h_s; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_s = d_reference_force_d_h_s * p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
-        + d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
-        + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
-        + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // rad/s^2/ft
-    let d_f_pitch_rate_d_h_s = slope_of_f_pitch_rate_in_dynamic_pressure
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // rad/s^2/ft
+    let d_f_pitch_rate_d_h_s = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
     let d_g_pitch_rate_d_h_s = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s; // 1/s^2/ft
@@ -575,246 +485,245 @@ pub fn parameter_jacobian_values<R: Real>(
         d_reference_force_d_h_s * p.inv_i_yy * d_pitch_rate_rate_printed_d_i_yy_term_1
         + d_f_pitch_rate_d_h_s
         + u.delta_e * d_g_pitch_rate_d_h_s; // rad/s^2/ft
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let slope_of_radius_ratio_in_earth_curvature = -radius_ratio_2 * x.altitude; // ft
-    let inv_velocity = x.velocity.recip();
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
-        * slope_of_radius_ratio_in_earth_curvature * inv_velocity;
+        * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * radius_ratio
+        * (p.earth_curvature * i.radius_ratio
             * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_f_gamma_d_r_e = -cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-    let d_f_alpha_d_r_e = cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-    let d_f_velocity_eta_d_omega_1 = d_f_velocity_eta_d_s_term_1
-        * generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1; // ft/s/rad
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_1_plus_c_l_eta_1;
-    let d_f_gamma_eta_d_omega_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor
-        * generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1;
-    let d_f_alpha_eta_d_omega_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_turn_factor
-        * generalized_force_1_inv_omega_1_2 * p.two_over_omega_1;
-    let d_f_pitch_rate_eta_d_omega_1 = d_f_pitch_rate_eta_d_s_term_1
-        * p.minus_two_over_omega_1 * generalized_force_1_inv_omega_1_2; // 1/s
+    let d_f_gamma_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    let d_f_alpha_d_r_e = i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    let d_f_velocity_eta_d_omega_1 = s.d_velocity_rate_printed_d_chi_1
+        * i.generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1; // ft/s/rad
+    let d_f_gamma_eta_d_omega_1 = s.d_gamma_rate_printed_d_chi_1
+        * i.generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1;
+    let d_f_alpha_eta_d_omega_1 = s.d_gamma_rate_printed_d_chi_1
+        * i.generalized_force_1_inv_omega_1_2 * p.two_over_omega_1;
+    let d_f_pitch_rate_eta_d_omega_1 = s.d_pitch_rate_rate_printed_d_chi_1
+        * p.minus_two_over_omega_1 * i.generalized_force_1_inv_omega_1_2; // 1/s
     let d_chi_rate_1_d_omega_1 = -x.chi_1 * p.d_chi_decay_1_d_omega_1; // ft^0.5*slug^0.5/rad
-    let d_f_velocity_eta_d_omega_2 = d_f_velocity_eta_d_s_term_2
-        * generalized_force_2_inv_omega_2_2 * p.minus_two_over_omega_2; // ft/s/rad
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_2_plus_c_l_eta_2;
-    let d_f_gamma_eta_d_omega_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor
-        * generalized_force_2_inv_omega_2_2 * p.minus_two_over_omega_2;
-    let d_f_alpha_eta_d_omega_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_turn_factor
-        * generalized_force_2_inv_omega_2_2 * p.two_over_omega_2;
-    let d_f_pitch_rate_eta_d_omega_2 = d_f_pitch_rate_eta_d_s_term_2
-        * p.minus_two_over_omega_2 * generalized_force_2_inv_omega_2_2; // 1/s
+    let d_f_velocity_eta_d_omega_2 = s.d_velocity_rate_printed_d_chi_2
+        * i.generalized_force_2_inv_omega_2_2 * p.minus_two_over_omega_2; // ft/s/rad
+    let d_f_gamma_eta_d_omega_2 = s.d_gamma_rate_printed_d_chi_2
+        * i.generalized_force_2_inv_omega_2_2 * p.minus_two_over_omega_2;
+    let d_f_alpha_eta_d_omega_2 = s.d_gamma_rate_printed_d_chi_2
+        * i.generalized_force_2_inv_omega_2_2 * p.two_over_omega_2;
+    let d_f_pitch_rate_eta_d_omega_2 = s.d_pitch_rate_rate_printed_d_chi_2
+        * p.minus_two_over_omega_2 * i.generalized_force_2_inv_omega_2_2; // 1/s
     let d_chi_rate_2_d_omega_2 = -x.chi_2 * p.d_chi_decay_2_d_omega_2; // ft^0.5*slug^0.5/rad
-    let d_f_velocity_eta_d_omega_3 = d_f_velocity_eta_d_s_term_3
-        * generalized_force_3_inv_omega_3_2 * p.minus_two_over_omega_3; // ft/s/rad
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor = turn_factor
-        * sin_alpha_c_t_eta_3_plus_c_l_eta_3;
-    let d_f_gamma_eta_d_omega_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor
-        * generalized_force_3_inv_omega_3_2 * p.minus_two_over_omega_3;
-    let d_f_alpha_eta_d_omega_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_turn_factor
-        * generalized_force_3_inv_omega_3_2 * p.two_over_omega_3;
-    let d_f_pitch_rate_eta_d_omega_3 = d_f_pitch_rate_eta_d_s_term_3
-        * p.minus_two_over_omega_3 * generalized_force_3_inv_omega_3_2; // 1/s
+    let d_f_velocity_eta_d_omega_3 = s.d_velocity_rate_printed_d_chi_3
+        * i.generalized_force_3_inv_omega_3_2 * p.minus_two_over_omega_3; // ft/s/rad
+    let d_f_gamma_eta_d_omega_3 = s.d_gamma_rate_printed_d_chi_3
+        * i.generalized_force_3_inv_omega_3_2 * p.minus_two_over_omega_3;
+    let d_f_alpha_eta_d_omega_3 = s.d_gamma_rate_printed_d_chi_3
+        * i.generalized_force_3_inv_omega_3_2 * p.two_over_omega_3;
+    let d_f_pitch_rate_eta_d_omega_3 = s.d_pitch_rate_rate_printed_d_chi_3
+        * p.minus_two_over_omega_3 * i.generalized_force_3_inv_omega_3_2; // 1/s
     let d_chi_rate_3_d_omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
     let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // ft^0.5*slug^0.5/s
     let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // ft^0.5*slug^0.5/s
     let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // ft^0.5*slug^0.5/s
-    let d_f_velocity_eta_d_canard_command = reference_force
-        * (d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
-            + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_c
-            + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_c); // ft/s^2
-    let d_f_gamma_eta_d_canard_command = reference_force
-        * (slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
-            + slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
-            + slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_c); // rad/s
-    let d_f_alpha_eta_d_canard_command = reference_force
-        * (slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
-            + slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
-            + slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_c); // rad/s
-    let d_f_pitch_rate_eta_d_canard_command = reference_force
-        * (d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
-            + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_c
-            + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_c); // rad/s^2
+    let d_f_velocity_eta_d_canard_command = i.reference_force
+        * (s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
+            + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c
+                * u.delta_c
+            + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
+                * u.delta_c); // ft/s^2
+    let d_f_gamma_eta_d_canard_command = i.reference_force
+        * (s.slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
+            + s.slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
+            + s.slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c
+                * u.delta_c); // rad/s
+    let d_f_alpha_eta_d_canard_command = i.reference_force
+        * (s.slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
+            + s.slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
+            + s.slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c
+                * u.delta_c); // rad/s
+    let d_f_pitch_rate_eta_d_canard_command = i.reference_force
+        * (s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c
+            * u.delta_c
+            + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c
+                * u.delta_c
+            + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
+                * u.delta_c); // rad/s^2
     let d_f_velocity_eta_d_canard_slaving_term_1 =
-        d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
-        + d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
-        + d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
+        s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
     let d_f_velocity_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
-        * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft/s^2
-    let d_f_velocity_d_canard_slaving = reference_force
+        * i.reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft/s^2
+    let d_f_velocity_d_canard_slaving = i.reference_force
         * p.c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_canard_slaving; // ft/s^2
     let d_f_gamma_eta_d_canard_slaving_term_1 =
-        slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
-    let d_f_gamma_eta_d_canard_slaving = -reference_force
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
+    let d_f_gamma_eta_d_canard_slaving = -i.reference_force
         * p.c_l_delta_e_over_c_l_delta_c * d_f_gamma_eta_d_canard_slaving_term_1; // rad/s
     let d_f_alpha_eta_d_canard_slaving_term_1 =
-        slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
-        + slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
-        + slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
-    let d_f_alpha_eta_d_canard_slaving = -reference_force
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
+    let d_f_alpha_eta_d_canard_slaving = -i.reference_force
         * p.c_l_delta_e_over_c_l_delta_c * d_f_alpha_eta_d_canard_slaving_term_1; // rad/s
     let d_f_pitch_rate_eta_d_canard_slaving_term_1 =
-        d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
-        + d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
-        + d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
+        s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
     let d_f_pitch_rate_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
-        * reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad/s^2
+        * i.reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad/s^2
     let d_pitch_rate_rate_printed_d_canard_slaving = d_f_pitch_rate_eta_d_canard_slaving
-        - u.delta_e * reference_force
+        - u.delta_e * i.reference_force
             * p.c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c; // rad/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (radius_ratio
+        * (i.radius_ratio
             * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_f_gamma_d_spherical_earth = -cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-    let d_f_alpha_d_spherical_earth = cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    let d_f_gamma_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    let d_f_alpha_d_spherical_earth = i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // ft^0.5*slug^0.5/s
     let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // ft^0.5*slug^0.5/s
     let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // ft^0.5*slug^0.5/s
-    let generalized_force_1_inv_omega_1_2_plus_chi_1 = generalized_force_1_inv_omega_1_2
-        + x.chi_1;
-    let d_velocity_rate_printed_d_c_t_eta_1 = reference_force * p.inv_m * cos_alpha
+    let generalized_force_1_inv_omega_1_2_plus_chi_1 = i
+        .generalized_force_1_inv_omega_1_2 + x.chi_1;
+    let d_velocity_rate_printed_d_c_t_eta_1 = i.reference_force * p.inv_m * i.cos_alpha
         * generalized_force_1_inv_omega_1_2_plus_chi_1; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_1 = turn_factor * sin_alpha
+    let d_gamma_rate_printed_d_c_t_eta_1 = i.turn_factor * i.sin_alpha
         * generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_t_eta_1 = -d_gamma_rate_printed_d_c_t_eta_1; // rad*ft^0.5*slug^0.5/s
-    let d_pitch_rate_rate_printed_d_c_t_eta_1 = reference_force * p.z_t_over_i_yy
+    let d_pitch_rate_rate_printed_d_c_t_eta_1 = i.reference_force * p.z_t_over_i_yy
         * generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s^2
-    let generalized_force_2_inv_omega_2_2_plus_chi_2 = generalized_force_2_inv_omega_2_2
-        + x.chi_2;
-    let d_velocity_rate_printed_d_c_t_eta_2 = reference_force * p.inv_m * cos_alpha
+    let generalized_force_2_inv_omega_2_2_plus_chi_2 = i
+        .generalized_force_2_inv_omega_2_2 + x.chi_2;
+    let d_velocity_rate_printed_d_c_t_eta_2 = i.reference_force * p.inv_m * i.cos_alpha
         * generalized_force_2_inv_omega_2_2_plus_chi_2; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_2 = turn_factor * sin_alpha
+    let d_gamma_rate_printed_d_c_t_eta_2 = i.turn_factor * i.sin_alpha
         * generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_t_eta_2 = -d_gamma_rate_printed_d_c_t_eta_2; // rad*ft^0.5*slug^0.5/s
-    let d_pitch_rate_rate_printed_d_c_t_eta_2 = reference_force * p.z_t_over_i_yy
+    let d_pitch_rate_rate_printed_d_c_t_eta_2 = i.reference_force * p.z_t_over_i_yy
         * generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
-    let generalized_force_3_inv_omega_3_2_plus_chi_3 = generalized_force_3_inv_omega_3_2
-        + x.chi_3;
-    let d_velocity_rate_printed_d_c_t_eta_3 = reference_force * p.inv_m * cos_alpha
+    let generalized_force_3_inv_omega_3_2_plus_chi_3 = i
+        .generalized_force_3_inv_omega_3_2 + x.chi_3;
+    let d_velocity_rate_printed_d_c_t_eta_3 = i.reference_force * p.inv_m * i.cos_alpha
         * generalized_force_3_inv_omega_3_2_plus_chi_3; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_3 = turn_factor * sin_alpha
+    let d_gamma_rate_printed_d_c_t_eta_3 = i.turn_factor * i.sin_alpha
         * generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_t_eta_3 = -d_gamma_rate_printed_d_c_t_eta_3; // rad*ft^0.5*slug^0.5/s
-    let d_pitch_rate_rate_printed_d_c_t_eta_3 = reference_force * p.z_t_over_i_yy
+    let d_pitch_rate_rate_printed_d_c_t_eta_3 = i.reference_force * p.z_t_over_i_yy
         * generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
     let d_f_velocity_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
-        * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft*rad/s^2
-    let d_f_velocity_d_c_l_delta_e = reference_force
+        * i.reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft*rad/s^2
+    let d_f_velocity_d_c_l_delta_e = i.reference_force
         * p.c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_c_l_delta_e; // ft*rad/s^2
-    let d_f_gamma_eta_d_c_l_delta_e = -reference_force
+    let d_f_gamma_eta_d_c_l_delta_e = -i.reference_force
         * p.canard_slaving_over_c_l_delta_c * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
-    let d_f_alpha_eta_d_c_l_delta_e = -reference_force
+    let d_f_alpha_eta_d_c_l_delta_e = -i.reference_force
         * p.canard_slaving_over_c_l_delta_c * d_f_alpha_eta_d_canard_slaving_term_1; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
-        * reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad^2/s^2
+        * i.reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad^2/s^2
     let d_pitch_rate_rate_printed_d_c_l_delta_e = d_f_pitch_rate_eta_d_c_l_delta_e
-        - u.delta_e * reference_force
+        - u.delta_e * i.reference_force
             * p.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c; // rad^2/s^2
     let d_f_velocity_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft*rad/s^2
+        * i.reference_force * d_f_velocity_eta_d_canard_slaving_term_1; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_c = d_f_velocity_eta_d_c_l_delta_c
-        - reference_force * p.d_f_velocity_d_c_l_delta_c_constant_1 * u.delta_e; // ft*rad/s^2
-    let d_f_gamma_eta_d_c_l_delta_c = reference_force
+        - i.reference_force * p.d_f_velocity_d_c_l_delta_c_constant_1 * u.delta_e; // ft*rad/s^2
+    let d_f_gamma_eta_d_c_l_delta_c = i.reference_force
         * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_f_gamma_eta_d_canard_slaving_term_1; // rad^2/s
-    let d_f_alpha_eta_d_c_l_delta_c = reference_force
+    let d_f_alpha_eta_d_c_l_delta_c = i.reference_force
         * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_f_alpha_eta_d_canard_slaving_term_1; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad^2/s^2
+        * i.reference_force * d_f_pitch_rate_eta_d_canard_slaving_term_1; // rad^2/s^2
     let d_pitch_rate_rate_printed_d_c_l_delta_c = d_f_pitch_rate_eta_d_c_l_delta_c
-        + u.delta_e * reference_force
+        + u.delta_e * i.reference_force
             * p.d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1; // rad^2/s^2
-    let d_gamma_rate_printed_d_c_l_eta_1 = turn_factor
+    let d_gamma_rate_printed_d_c_l_eta_1 = i.turn_factor
         * generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_l_eta_1 = -d_gamma_rate_printed_d_c_l_eta_1; // rad*ft^0.5*slug^0.5/s
-    let d_gamma_rate_printed_d_c_l_eta_2 = turn_factor
+    let d_gamma_rate_printed_d_c_l_eta_2 = i.turn_factor
         * generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_l_eta_2 = -d_gamma_rate_printed_d_c_l_eta_2; // rad*ft^0.5*slug^0.5/s
-    let d_gamma_rate_printed_d_c_l_eta_3 = turn_factor
+    let d_gamma_rate_printed_d_c_l_eta_3 = i.turn_factor
         * generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_l_eta_3 = -d_gamma_rate_printed_d_c_l_eta_3; // rad*ft^0.5*slug^0.5/s
-    let d_velocity_rate_printed_d_c_d_eta_1 = -reference_force * p.inv_m
+    let d_velocity_rate_printed_d_c_d_eta_1 = -i.reference_force * p.inv_m
         * generalized_force_1_inv_omega_1_2_plus_chi_1; // ft^1.5*slug^0.5/s^2
-    let d_velocity_rate_printed_d_c_d_eta_2 = -reference_force * p.inv_m
+    let d_velocity_rate_printed_d_c_d_eta_2 = -i.reference_force * p.inv_m
         * generalized_force_2_inv_omega_2_2_plus_chi_2; // ft^1.5*slug^0.5/s^2
-    let d_velocity_rate_printed_d_c_d_eta_3 = -reference_force * p.inv_m
+    let d_velocity_rate_printed_d_c_d_eta_3 = -i.reference_force * p.inv_m
         * generalized_force_3_inv_omega_3_2_plus_chi_3; // ft^1.5*slug^0.5/s^2
-    let d_pitch_rate_rate_printed_d_c_m_eta_1 = reference_force * p.c_bar_over_i_yy
+    let d_pitch_rate_rate_printed_d_c_m_eta_1 = i.reference_force * p.c_bar_over_i_yy
         * generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s^2
-    let d_pitch_rate_rate_printed_d_c_m_eta_2 = reference_force * p.c_bar_over_i_yy
+    let d_pitch_rate_rate_printed_d_c_m_eta_2 = i.reference_force * p.c_bar_over_i_yy
         * generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
-    let d_pitch_rate_rate_printed_d_c_m_eta_3 = reference_force * p.c_bar_over_i_yy
+    let d_pitch_rate_rate_printed_d_c_m_eta_3 = i.reference_force * p.c_bar_over_i_yy
         * generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_velocity_eta_d_c_n_1_alpha_2 = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
-        * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_alpha_2 = d_f_pitch_rate_eta_d_s_term_1
-        * p.inv_omega_1_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_alpha = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
-        * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_alpha = d_f_pitch_rate_eta_d_s_term_1
-        * p.inv_omega_1_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_delta_e = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
-        * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_delta_e = d_f_pitch_rate_eta_d_s_term_1
-        * p.inv_omega_1_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_delta_c = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
-        * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_delta_c = d_f_pitch_rate_eta_d_s_term_1
-        * p.inv_omega_1_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_0 = d_f_velocity_eta_d_s_term_1 * p.inv_omega_1_2
-        * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_0 = d_f_pitch_rate_eta_d_s_term_1 * p.inv_omega_1_2
-        * reference_force; // rad*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_alpha_2 = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
-        * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_alpha_2 = d_f_pitch_rate_eta_d_s_term_2
-        * p.inv_omega_2_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_alpha = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
-        * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_alpha = d_f_pitch_rate_eta_d_s_term_2
-        * p.inv_omega_2_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_delta_e = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
-        * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_delta_e = d_f_pitch_rate_eta_d_s_term_2
-        * p.inv_omega_2_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_delta_c = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
-        * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_delta_c = d_f_pitch_rate_eta_d_s_term_2
-        * p.inv_omega_2_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_0 = d_f_velocity_eta_d_s_term_2 * p.inv_omega_2_2
-        * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_0 = d_f_pitch_rate_eta_d_s_term_2 * p.inv_omega_2_2
-        * reference_force; // rad*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_alpha_2 = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
-        * reference_force * alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_alpha_2 = d_f_pitch_rate_eta_d_s_term_3
-        * p.inv_omega_3_2 * reference_force * alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_alpha = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
-        * reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_alpha = d_f_pitch_rate_eta_d_s_term_3
-        * p.inv_omega_3_2 * reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_delta_e = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
-        * reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_delta_e = d_f_pitch_rate_eta_d_s_term_3
-        * p.inv_omega_3_2 * reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_delta_c = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
-        * reference_force * canard_deflection; // ft^0.5*slug^0.5*rad/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_delta_c = d_f_pitch_rate_eta_d_s_term_3
-        * p.inv_omega_3_2 * reference_force * canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_0 = d_f_velocity_eta_d_s_term_3 * p.inv_omega_3_2
-        * reference_force; // ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_0 = d_f_pitch_rate_eta_d_s_term_3 * p.inv_omega_3_2
-        * reference_force; // rad*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_1_alpha_2 = s.d_velocity_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_1_alpha = s.d_velocity_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_alpha = s.d_pitch_rate_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_1_delta_e = s.d_velocity_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_delta_e = s.d_pitch_rate_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_1_delta_c = s.d_velocity_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force * i.canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_delta_c = s.d_pitch_rate_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_1_0 = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force; // ft^0.5*slug^0.5/s^2
+    let d_f_pitch_rate_eta_d_c_n_1_0 = s.d_pitch_rate_rate_printed_d_chi_1
+        * p.inv_omega_1_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_2_alpha_2 = s.d_velocity_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_2_alpha = s.d_velocity_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_alpha = s.d_pitch_rate_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_2_delta_e = s.d_velocity_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_delta_e = s.d_pitch_rate_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_2_delta_c = s.d_velocity_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force * i.canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_delta_c = s.d_pitch_rate_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_2_0 = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force; // ft^0.5*slug^0.5/s^2
+    let d_f_pitch_rate_eta_d_c_n_2_0 = s.d_pitch_rate_rate_printed_d_chi_2
+        * p.inv_omega_2_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_3_alpha_2 = s.d_velocity_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_3_alpha = s.d_velocity_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_alpha = s.d_pitch_rate_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_3_delta_e = s.d_velocity_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_delta_e = s.d_pitch_rate_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_3_delta_c = s.d_velocity_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force * i.canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_delta_c = s.d_pitch_rate_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_f_velocity_eta_d_c_n_3_0 = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force; // ft^0.5*slug^0.5/s^2
+    let d_f_pitch_rate_eta_d_c_n_3_0 = s.d_pitch_rate_rate_printed_d_chi_3
+        * p.inv_omega_3_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
 
     [
         d_velocity_rate_printed_d_m,
@@ -822,29 +731,29 @@ pub fn parameter_jacobian_values<R: Real>(
         d_velocity_rate_printed_d_rho_0,
         d_velocity_rate_printed_d_h_0,
         d_velocity_rate_printed_d_h_s,
-        -sin_gamma * radius_ratio_2,
-        sin_gamma * p.two_g_earth_curvature_over_r_e * radius_ratio
+        -i.sin_gamma * i.radius_ratio_2,
+        i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
             * slope_of_radius_ratio_in_earth_curvature,
         d_f_velocity_eta_d_omega_1,
         d_f_velocity_eta_d_omega_2,
         d_f_velocity_eta_d_omega_3,
         d_f_velocity_eta_d_canard_command,
         d_f_velocity_d_canard_slaving,
-        sin_gamma * p.minus_two_g_over_r_e * radius_ratio
+        i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
             * slope_of_radius_ratio_in_earth_curvature,
-        u.phi * reference_force * p.inv_m * cos_alpha * x.alpha,
-        u.phi * reference_force * p.inv_m * cos_alpha,
-        reference_force * p.inv_m * cos_alpha * x.alpha,
-        reference_force * p.inv_m * cos_alpha,
+        u.phi * i.reference_force * p.inv_m * i.cos_alpha * x.alpha,
+        u.phi * i.reference_force * p.inv_m * i.cos_alpha,
+        i.reference_force * p.inv_m * i.cos_alpha * x.alpha,
+        i.reference_force * p.inv_m * i.cos_alpha,
         d_velocity_rate_printed_d_c_t_eta_1,
         d_velocity_rate_printed_d_c_t_eta_2,
         d_velocity_rate_printed_d_c_t_eta_3,
         d_f_velocity_d_c_l_delta_e,
         d_f_velocity_d_c_l_delta_c,
-        -reference_force * p.inv_m * x.alpha,
-        -reference_force * p.inv_m * u.delta_e,
-        -reference_force * p.canard_gain_over_m * u.delta_e,
-        -reference_force * p.inv_m,
+        -i.reference_force * p.inv_m * x.alpha,
+        -i.reference_force * p.inv_m * u.delta_e,
+        -i.reference_force * p.canard_gain_over_m * u.delta_e,
+        -i.reference_force * p.inv_m,
         d_velocity_rate_printed_d_c_d_eta_1,
         d_velocity_rate_printed_d_c_d_eta_2,
         d_velocity_rate_printed_d_c_d_eta_3,
@@ -868,7 +777,7 @@ pub fn parameter_jacobian_values<R: Real>(
         d_gamma_rate_printed_d_rho_0,
         d_gamma_rate_printed_d_h_0,
         d_gamma_rate_printed_d_h_s,
-        -cos_gamma * radius_ratio_2 * inv_velocity,
+        -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
         d_f_gamma_d_r_e,
         d_f_gamma_eta_d_omega_1,
         d_f_gamma_eta_d_omega_2,
@@ -876,44 +785,44 @@ pub fn parameter_jacobian_values<R: Real>(
         d_f_gamma_eta_d_canard_command,
         d_f_gamma_eta_d_canard_slaving,
         d_f_gamma_d_spherical_earth,
-        x.alpha * turn_factor * sin_alpha * u.phi,
-        turn_factor * sin_alpha * u.phi,
-        x.alpha * turn_factor * sin_alpha,
-        turn_factor * sin_alpha,
+        x.alpha * i.turn_factor * i.sin_alpha * u.phi,
+        i.turn_factor * i.sin_alpha * u.phi,
+        x.alpha * i.turn_factor * i.sin_alpha,
+        i.turn_factor * i.sin_alpha,
         d_gamma_rate_printed_d_c_t_eta_1,
         d_gamma_rate_printed_d_c_t_eta_2,
         d_gamma_rate_printed_d_c_t_eta_3,
-        x.alpha * turn_factor,
+        x.alpha * i.turn_factor,
         d_f_gamma_eta_d_c_l_delta_e,
         d_f_gamma_eta_d_c_l_delta_c,
-        turn_factor,
+        i.turn_factor,
         d_gamma_rate_printed_d_c_l_eta_1,
         d_gamma_rate_printed_d_c_l_eta_2,
         d_gamma_rate_printed_d_c_l_eta_3,
-        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force * alpha_2,
-        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force * x.alpha,
-        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force * u.delta_e,
-        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force
-            * canard_deflection,
-        slope_of_f_gamma_eta_in_generalized_force_1 * reference_force,
-        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force * alpha_2,
-        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force * x.alpha,
-        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force * u.delta_e,
-        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force
-            * canard_deflection,
-        slope_of_f_gamma_eta_in_generalized_force_2 * reference_force,
-        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force * alpha_2,
-        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force * x.alpha,
-        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force * u.delta_e,
-        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force
-            * canard_deflection,
-        slope_of_f_gamma_eta_in_generalized_force_3 * reference_force,
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * i.alpha_2,
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * x.alpha,
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * u.delta_e,
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force
+            * i.canard_deflection,
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force,
+        s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * i.alpha_2,
+        s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * x.alpha,
+        s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * u.delta_e,
+        s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force
+            * i.canard_deflection,
+        s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force,
+        s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * i.alpha_2,
+        s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * x.alpha,
+        s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * u.delta_e,
+        s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force
+            * i.canard_deflection,
+        s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force,
         d_alpha_rate_printed_d_m,
         d_alpha_rate_printed_d_s,
         d_alpha_rate_printed_d_rho_0,
         d_alpha_rate_printed_d_h_0,
         d_alpha_rate_printed_d_h_s,
-        cos_gamma * radius_ratio_2 * inv_velocity,
+        i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
         d_f_alpha_d_r_e,
         d_f_alpha_eta_d_omega_1,
         d_f_alpha_eta_d_omega_2,
@@ -921,38 +830,38 @@ pub fn parameter_jacobian_values<R: Real>(
         d_f_alpha_eta_d_canard_command,
         d_f_alpha_eta_d_canard_slaving,
         d_f_alpha_d_spherical_earth,
-        -x.alpha * turn_factor * sin_alpha * u.phi,
-        -turn_factor * sin_alpha * u.phi,
-        -x.alpha * turn_factor * sin_alpha,
-        -turn_factor * sin_alpha,
+        -x.alpha * i.turn_factor * i.sin_alpha * u.phi,
+        -i.turn_factor * i.sin_alpha * u.phi,
+        -x.alpha * i.turn_factor * i.sin_alpha,
+        -i.turn_factor * i.sin_alpha,
         d_alpha_rate_printed_d_c_t_eta_1,
         d_alpha_rate_printed_d_c_t_eta_2,
         d_alpha_rate_printed_d_c_t_eta_3,
-        -x.alpha * turn_factor,
+        -x.alpha * i.turn_factor,
         d_f_alpha_eta_d_c_l_delta_e,
         d_f_alpha_eta_d_c_l_delta_c,
-        -turn_factor,
+        -i.turn_factor,
         d_alpha_rate_printed_d_c_l_eta_1,
         d_alpha_rate_printed_d_c_l_eta_2,
         d_alpha_rate_printed_d_c_l_eta_3,
-        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force * alpha_2,
-        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force * x.alpha,
-        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force * u.delta_e,
-        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force
-            * canard_deflection,
-        slope_of_f_alpha_eta_in_generalized_force_1 * reference_force,
-        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force * alpha_2,
-        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force * x.alpha,
-        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force * u.delta_e,
-        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force
-            * canard_deflection,
-        slope_of_f_alpha_eta_in_generalized_force_2 * reference_force,
-        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force * alpha_2,
-        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force * x.alpha,
-        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force * u.delta_e,
-        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force
-            * canard_deflection,
-        slope_of_f_alpha_eta_in_generalized_force_3 * reference_force,
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * i.alpha_2,
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * x.alpha,
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * u.delta_e,
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force
+            * i.canard_deflection,
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force,
+        s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force * i.alpha_2,
+        s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force * x.alpha,
+        s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force * u.delta_e,
+        s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force
+            * i.canard_deflection,
+        s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force,
+        s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force * i.alpha_2,
+        s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force * x.alpha,
+        s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force * u.delta_e,
+        s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force
+            * i.canard_deflection,
+        s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force,
         d_pitch_rate_rate_printed_d_i_yy,
         d_pitch_rate_rate_printed_d_s,
         d_pitch_rate_rate_printed_d_c_bar,
@@ -965,20 +874,20 @@ pub fn parameter_jacobian_values<R: Real>(
         d_f_pitch_rate_eta_d_omega_3,
         d_f_pitch_rate_eta_d_canard_command,
         d_pitch_rate_rate_printed_d_canard_slaving,
-        reference_force * p.z_t_over_i_yy * x.alpha * u.phi,
-        reference_force * p.z_t_over_i_yy * u.phi,
-        reference_force * p.z_t_over_i_yy * x.alpha,
-        reference_force * p.z_t_over_i_yy,
+        i.reference_force * p.z_t_over_i_yy * x.alpha * u.phi,
+        i.reference_force * p.z_t_over_i_yy * u.phi,
+        i.reference_force * p.z_t_over_i_yy * x.alpha,
+        i.reference_force * p.z_t_over_i_yy,
         d_pitch_rate_rate_printed_d_c_t_eta_1,
         d_pitch_rate_rate_printed_d_c_t_eta_2,
         d_pitch_rate_rate_printed_d_c_t_eta_3,
         d_pitch_rate_rate_printed_d_c_l_delta_e,
         d_pitch_rate_rate_printed_d_c_l_delta_c,
-        reference_force * p.c_bar_over_i_yy * alpha_2,
-        reference_force * p.c_bar_over_i_yy * x.alpha,
-        u.delta_e * reference_force * p.c_bar_over_i_yy,
-        u.delta_e * reference_force * p.c_bar_canard_gain_over_i_yy,
-        reference_force * p.c_bar_over_i_yy,
+        i.reference_force * p.c_bar_over_i_yy * i.alpha_2,
+        i.reference_force * p.c_bar_over_i_yy * x.alpha,
+        u.delta_e * i.reference_force * p.c_bar_over_i_yy,
+        u.delta_e * i.reference_force * p.c_bar_canard_gain_over_i_yy,
+        i.reference_force * p.c_bar_over_i_yy,
         d_pitch_rate_rate_printed_d_c_m_eta_1,
         d_pitch_rate_rate_printed_d_c_m_eta_2,
         d_pitch_rate_rate_printed_d_c_m_eta_3,

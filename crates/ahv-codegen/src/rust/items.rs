@@ -7,8 +7,9 @@ use super::print::{expression, statement, value_of};
 use super::wording::{arguments, tuple, values_name};
 use crate::graph::Kind;
 use crate::ir::capitalised;
-use crate::schedule::program::Function;
-use crate::schedule::tree::{Expr, Statement};
+use crate::schedule::program::{Function, Program};
+use crate::schedule::stages;
+use crate::schedule::tree::{Expr, Source, Statement};
 use crate::shape::Shape;
 use crate::wording::summary;
 
@@ -24,8 +25,6 @@ pub(super) struct FunctionText {
     pub(super) docs: Vec<String>,
     pub(super) arguments: Vec<String>,
     pub(super) result: String,
-    /// What the dense form takes from the compressed one.
-    pub(super) source: Option<String>,
     pub(super) statements: Vec<String>,
     /// Whether a blank line sets the result off from what it is made of.
     pub(super) sets_result_off: bool,
@@ -49,7 +48,6 @@ pub(super) fn scatter(shape: &Shape<'_>) -> Option<FunctionText> {
         )],
         arguments: vec![format!("values: &[R; {count}]")],
         result: shape.result(),
-        source: None,
         statements: Vec::new(),
         sets_result_off: false,
         zeros,
@@ -57,9 +55,143 @@ pub(super) fn scatter(shape: &Shape<'_>) -> Option<FunctionText> {
     })
 }
 
-/// The function itself, or its compressed form.
-pub(super) fn function(function: &Function<'_>) -> FunctionText {
-    let Function { ir, shapes, body } = function;
+/// A function, or its compressed form: one item, or two where another function takes what it is made from.
+pub(super) fn functions(program: &Program<'_>, function: &Function<'_>) -> Vec<FunctionText> {
+    if !function.parts.is_empty() {
+        return vec![composed(program, function)];
+    }
+    let mut text = own(function);
+    let Some(from) = from(function) else {
+        let stages = stage_lines(program, &function.stages);
+        text.statements.splice(0..0, stages);
+        return vec![text];
+    };
+    let whole = FunctionText {
+        docs: text.docs.clone(),
+        arguments: public_arguments(program, function),
+        result: text.result.clone(),
+        statements: stage_lines(program, &function.stages),
+        sets_result_off: false,
+        zeros: Zeros::new(),
+        outputs: vec![(String::new(), call(program, function))],
+        name: std::mem::replace(&mut text.name, from),
+    };
+    text.docs = vec![format!("[`{}`] from what is computed once.", whole.name)];
+    for &position in &function.stages {
+        let kind = program.stages[position].kind;
+        text.arguments.push(stage_argument(
+            kind,
+            function.body.uses(Source::Stage(kind)),
+        ));
+    }
+    vec![whole, text]
+}
+
+/// The argument that holds a stage.
+pub(super) fn stage_argument(kind: &stages::Kind, is_used: bool) -> String {
+    let unused = if is_used { "" } else { "_" };
+    format!("{unused}{}: &{}<R>", kind.argument, kind.type_name)
+}
+
+/// The statements that compute stages.
+pub(super) fn stage_lines(program: &Program<'_>, positions: &[usize]) -> Vec<String> {
+    let line = |&position: &usize| {
+        let stage = &program.stages[position];
+        let mut call = format!("{}(x, u, p", stage.kind.function);
+        for earlier in &program.stages[..position] {
+            if stage.body.uses(Source::Stage(earlier.kind)) {
+                call += &format!(", &{}", earlier.kind.argument);
+            }
+        }
+        format!("let {} = {call});", stage.kind.argument)
+    };
+    positions.iter().map(line).collect()
+}
+
+fn public_arguments(program: &Program<'_>, function: &Function<'_>) -> Vec<String> {
+    let parts = function.parts.iter().map(|&part| &program.functions[part]);
+    let bodies: Vec<&Function<'_>> = parts.chain([function]).collect();
+    let used = |kind: Kind| {
+        let by_stages = !function.stages.is_empty() && kind != Kind::Noise;
+        by_stages || bodies.iter().any(|it| it.body.uses(Source::Argument(kind)))
+    };
+    let scalars: BTreeSet<String> = bodies.iter().flat_map(|it| it.body.scalars()).collect();
+    let scalars = scalars.into_iter().map(|name| format!("{name}: R"));
+    arguments(used).into_iter().chain(scalars).collect()
+}
+
+/// The name of the function that takes what is computed once, where there is one.
+pub(super) fn from(function: &Function<'_>) -> Option<String> {
+    let takes = function.is_part && !function.stages.is_empty();
+    takes.then(|| format!("{}_from", own_name(function)))
+}
+
+fn own_name(function: &Function<'_>) -> String {
+    if function.ir.compressed {
+        values_name(function.ir)
+    } else {
+        function.ir.name.clone()
+    }
+}
+
+/// The call of a function, or of what takes what is computed once, where that is at hand.
+fn call(program: &Program<'_>, function: &Function<'_>) -> String {
+    let mut call = format!(
+        "{}(x, u, p",
+        from(function).unwrap_or_else(|| own_name(function))
+    );
+    if function.body.uses(Source::Argument(Kind::Noise)) {
+        call += ", dw";
+    }
+    for scalar in function.body.scalars() {
+        call += &format!(", {scalar}");
+    }
+    for &position in &function.stages {
+        call += &format!(", &{}", program.stages[position].kind.argument);
+    }
+    call + ")"
+}
+
+/// A function whose results are those of others.
+fn composed(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
+    let ir = function.ir;
+    let mut statements = stage_lines(program, &function.stages);
+    let (mut values, mut results) = (Vec::new(), Vec::new());
+    let mut outputs = ir.outputs.iter();
+    for &part in &function.parts {
+        let part = &program.functions[part];
+        let names = outputs.by_ref().take(part.shapes.len());
+        let names: Vec<String> = names.map(|output| output.name.clone()).collect();
+        statements.push(format!("let {} = {};", tuple(&names), call(program, part)));
+        for (shape, name) in part.shapes.iter().zip(names) {
+            let is_array = part.ir.compressed && shape.pattern().is_some();
+            let entries = shape.output.entries.len();
+            let (value, result) = match shape.scattered(&name) {
+                Some(dense) if is_array && !ir.compressed => (dense, shape.result()),
+                _ if is_array => (name, format!("[R; {entries}]")),
+                _ => (name, shape.result()),
+            };
+            values.push(value);
+            results.push(result);
+        }
+    }
+    FunctionText {
+        name: own_name(function),
+        docs: documentation(function),
+        arguments: public_arguments(program, function),
+        result: tuple(&results),
+        statements,
+        sets_result_off: false,
+        zeros: Zeros::new(),
+        outputs: vec![(String::new(), tuple(&values))],
+    }
+}
+
+/// A function with a body, without what it takes from stages.
+fn own(function: &Function<'_>) -> FunctionText {
+    let Function {
+        ir, shapes, body, ..
+    } = function;
     let mut zeros = Zeros::new();
     let (mut outputs, mut results) = (Vec::new(), Vec::new());
     let mut remaining = body.results.as_slice();
@@ -80,30 +212,31 @@ pub(super) fn function(function: &Function<'_>) -> FunctionText {
         results.push(result);
         outputs.push((output.name.clone(), value));
     }
-    let mut docs = summary(ir);
-    if ir.compressed {
-        docs.push(String::new());
-        docs.push(
-            "The structurally non-zero entries alone, in the order of the pattern.".to_owned(),
-        );
-    }
-    docs.push(String::new());
-    docs.push(format!("{}.", capitalised(&body.cost().describe())));
+    let is_whole = from(function).is_none();
+    let by_stages = is_whole && !function.stages.is_empty();
+    let used = |kind: Kind| (by_stages && kind != Kind::Noise) || body.uses(Source::Argument(kind));
+    let scalars = body.scalars().into_iter().map(|name| format!("{name}: R"));
     FunctionText {
-        name: if ir.compressed {
-            values_name(ir)
-        } else {
-            ir.name.clone()
-        },
-        docs,
-        arguments: arguments(|kind| body.uses(kind), &body.scalars()),
+        name: own_name(function),
+        docs: documentation(function),
+        arguments: arguments(used).into_iter().chain(scalars).collect(),
         result: tuple(&results),
-        source: None,
         statements: body.statements.iter().map(statement).collect(),
         sets_result_off: !matches!(body.statements.last(), None | Some(Statement::Section(_))),
         zeros,
         outputs,
     }
+}
+
+fn documentation(function: &Function<'_>) -> Vec<String> {
+    let mut docs = summary(function.ir);
+    if function.ir.compressed {
+        let entries = "The structurally non-zero entries alone, in the order of the pattern.";
+        docs.extend([String::new(), entries.to_owned()]);
+    }
+    let cost = capitalised(&function.cost.describe());
+    docs.extend([String::new(), format!("{cost}.")]);
+    docs
 }
 
 /// The dense form of a compressed function.
@@ -123,12 +256,37 @@ pub(super) fn dense(function: &Function<'_>) -> FunctionText {
     FunctionText {
         name: ir.name.clone(),
         docs: summary(ir),
-        arguments: arguments(|kind| kind != Kind::Noise, &BTreeSet::new()),
+        arguments: arguments(|kind| kind != Kind::Noise),
         result: tuple(&results),
-        source,
-        statements: Vec::new(),
+        statements: source.into_iter().collect(),
         sets_result_off: false,
         zeros: Zeros::new(),
         outputs: vec![(String::new(), tuple(&dense.collect::<Vec<_>>()))],
     }
+}
+
+/// What a function's items take from the rest of the model, besides the types of their results.
+pub(super) fn imports(program: &Program<'_>, function: &Function<'_>) -> Vec<String> {
+    let mut found = Vec::new();
+    let parts = function.parts.iter().map(|&part| &program.functions[part]);
+    for part in parts.clone() {
+        if part.ir.group != function.ir.group {
+            found.push(from(part).unwrap_or_else(|| own_name(part)));
+            if part.ir.compressed && !function.ir.compressed {
+                found.extend(part.shapes.iter().filter_map(Shape::scatter));
+            }
+        }
+    }
+    let mut bodies = parts.chain([function]);
+    if bodies.any(|it| it.body.uses(Source::Argument(Kind::Noise))) {
+        found.push("Noise".to_owned());
+    }
+    for &position in &function.stages {
+        let kind = program.stages[position].kind;
+        found.push(kind.function.to_owned());
+        if from(function).is_some() {
+            found.push(kind.type_name.to_owned());
+        }
+    }
+    found
 }

@@ -14,13 +14,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::EmitError;
 use crate::emit::render;
-use crate::graph::Kind;
-use crate::ir::{self, Basis, Variable};
+use crate::ir::{self, Basis, Variable, described};
 use crate::schedule::program::Program;
+use crate::schedule::stages::{self, Stage};
+use crate::schedule::tree::Source;
 use crate::wording::wrapped;
 use items::Item;
 use print::{expression, statement};
-use wording::{formula, vector_impl};
+use wording::{arguments, formula, vector_impl};
 
 #[derive(Template)]
 #[template(path = "model.rs")]
@@ -123,12 +124,28 @@ struct PreparedField<'a> {
 }
 
 #[derive(Template)]
+#[template(path = "stages.rs")]
+struct StagesTemplate<'a> {
+    label: String,
+    units: &'static str,
+    imports: Vec<&'static str>,
+    stages: Vec<StageText<'a>>,
+}
+
+struct StageText<'a> {
+    kind: &'static stages::Kind,
+    arguments: Vec<String>,
+    fields: Vec<PreparedField<'a>>,
+    statements: Vec<String>,
+}
+
+#[derive(Template)]
 #[template(path = "functions.rs")]
 struct FunctionsTemplate {
     label: String,
     units: &'static str,
     /// Types of the parent module, in alphabetical order.
-    imports: Vec<&'static str>,
+    imports: Vec<String>,
     paper_names: bool,
     needs_vector: bool,
     items: Vec<Item>,
@@ -149,6 +166,9 @@ pub(crate) fn files(program: &Program<'_>) -> Result<BTreeMap<String, String>, E
         files.insert(group.to_owned(), functions(program, group)?);
     }
     files.insert("prepared".to_owned(), prepared(program)?);
+    if !program.stages.is_empty() {
+        files.insert("stages".to_owned(), stages(program)?);
+    }
     let description = DescriptionTemplate {
         model: program.model,
         label: program.label(),
@@ -167,15 +187,19 @@ fn module(program: &Program<'_>) -> Result<String, EmitError> {
         ..
     } = *program;
     let mut groups = program.groups();
-    groups.sort_unstable();
     let mut modules = groups.clone();
     modules.extend(["description", "prepared"]);
+    if !program.stages.is_empty() {
+        groups.push("stages");
+        modules.push("stages");
+    }
     if home == model.name {
         modules.extend(["nominal", "parameters", "provenance", "table"]);
         if !document.choices.is_empty() {
             modules.push("choices");
         }
     }
+    groups.sort_unstable();
     modules.sort_unstable();
     let vectors = vectors(model);
     let mut lists = Vec::new();
@@ -236,17 +260,51 @@ fn prepared(program: &Program<'_>) -> Result<String, EmitError> {
     })
 }
 
+/// What functions share.
+fn stages(program: &Program<'_>) -> Result<String, EmitError> {
+    let stages = program.stages.iter().map(|it| stage_text(program, it));
+    render(&StagesTemplate {
+        label: program.label(),
+        units: program.document.units.in_words(),
+        imports: vec!["Input", "Prepared", "State"],
+        stages: stages.collect(),
+    })
+}
+
+fn stage_text<'a>(program: &Program<'_>, stage: &'a Stage<'_>) -> StageText<'a> {
+    let statements = &stage.body.statements;
+    let fields = stage.fields.iter().zip(&stage.body.results);
+    let fields = fields.map(|(field, value)| {
+        let formula = || format!("`{}`.", formula(value, statements));
+        let about = field.quantity.map(|it| described(&it.doc, &it.unit));
+        PreparedField {
+            name: &field.name,
+            docs: wrapped(&about.unwrap_or_else(formula)),
+            value: expression(value),
+        }
+    });
+    let mut arguments = arguments(|kind| stage.body.uses(Source::Argument(kind)));
+    let earlier = program.stages.iter().map(|it| it.kind);
+    let earlier = earlier.filter(|&kind| stage.body.uses(Source::Stage(kind)));
+    arguments.extend(earlier.map(|kind| items::stage_argument(kind, true)));
+    StageText {
+        kind: stage.kind,
+        arguments,
+        fields: fields.collect(),
+        statements: statements.iter().map(statement).collect(),
+    }
+}
+
 /// The file of a group of functions.
 fn functions(program: &Program<'_>, group: &str) -> Result<String, EmitError> {
     let mut items = Vec::new();
     // Functions of one group share the patterns of their results.
     let mut patterns = BTreeSet::new();
-    let mut imports = vec!["Input", "Prepared", "State"];
+    let mut imports: BTreeSet<String> = ["Input", "Prepared", "State"].map(str::to_owned).into();
     let own = program.functions.iter().filter(|it| it.ir.group == group);
-    for function in own.clone() {
+    for function in own {
         for shape in &function.shapes {
-            imports.extend(shape.vectors());
-            imports.extend(shape.alias());
+            imports.extend(shape.vectors().chain(shape.alias()).map(str::to_owned));
             if function.ir.compressed
                 && let Some(pattern) = shape.pattern()
                 && patterns.insert(pattern.name.clone())
@@ -255,16 +313,13 @@ fn functions(program: &Program<'_>, group: &str) -> Result<String, EmitError> {
                 items.extend(items::scatter(shape).map(Item::Function));
             }
         }
-        items.push(Item::Function(items::function(function)));
+        imports.extend(items::imports(program, function));
+        let texts = items::functions(program, function);
+        items.extend(texts.into_iter().map(Item::Function));
         if function.ir.compressed {
             items.push(Item::Function(items::dense(function)));
         }
     }
-    if own.clone().any(|it| it.body.uses(Kind::Noise)) {
-        imports.push("Noise");
-    }
-    imports.sort_unstable();
-    imports.dedup();
     let functions = || {
         items.iter().filter_map(|item| match item {
             Item::Function(function) => Some(function),
@@ -276,7 +331,7 @@ fn functions(program: &Program<'_>, group: &str) -> Result<String, EmitError> {
     render(&FunctionsTemplate {
         label: program.label(),
         units: program.document.units.in_words(),
-        imports,
+        imports: imports.into_iter().collect(),
         paper_names,
         needs_vector,
         items,

@@ -2,7 +2,7 @@
 
 use super::format::{ADDENDS, SECTION, TRAILING};
 use crate::graph::{Call, Kind};
-use crate::schedule::tree::{Binding, Expr, Operation, Sign, Statement};
+use crate::schedule::tree::{Binding, Expr, Operation, Sign, Source, Statement};
 
 /// A sum of this many addends is written one a line, so that a new one is one line of a diff.
 const LISTED: usize = 3;
@@ -34,12 +34,13 @@ fn function(call: Call) -> &'static str {
 pub(super) fn expression(expr: &Expr) -> String {
     match expr {
         Expr::Number(value) => literal(*value),
-        Expr::Component(kind, name) => match kind {
-            Kind::State => format!("x.{name}"),
-            Kind::Input => format!("u.{name}"),
-            Kind::Noise => format!("dw.{name}"),
-            Kind::Parameter => format!("p.{name}"),
-            Kind::Argument => name.clone(),
+        Expr::Component(source, name) => match source {
+            Source::Argument(Kind::State) => format!("x.{name}"),
+            Source::Argument(Kind::Input) => format!("u.{name}"),
+            Source::Argument(Kind::Noise) => format!("dw.{name}"),
+            Source::Argument(Kind::Parameter) => format!("p.{name}"),
+            Source::Argument(Kind::Argument) => name.clone(),
+            Source::Stage(stage) => format!("{}.{name}", stage.argument),
         },
         Expr::Name(name) => name.clone(),
         Expr::Negative(part) => format!("-{}", enclosed(part, Binding::Product)),

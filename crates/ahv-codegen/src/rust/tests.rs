@@ -5,6 +5,7 @@
 use super::print::{expression, statement};
 use crate::graph::Dag;
 use crate::graph::passes::{Pass, Passes};
+use crate::schedule::stages::Given;
 use crate::schedule::tree::{Body, Statement};
 use crate::schedule::{Cost, Prepared, body};
 use crate::testing::{
@@ -32,6 +33,13 @@ fn printed(body: &Body) -> (Vec<String>, Vec<String>) {
     (statements.collect(), results.collect())
 }
 
+fn given(prepared: Option<&Prepared>) -> Given<'_> {
+    Given {
+        prepared,
+        stages: &[],
+    }
+}
+
 fn emitted(quantities: &str, roots: &[&str], passes: &Passes) -> Emitted {
     let model = model(quantities);
     let mut dag = Dag::new(&model, passes).unwrap();
@@ -39,10 +47,10 @@ fn emitted(quantities: &str, roots: &[&str], passes: &Passes) -> Emitted {
         .iter()
         .map(|root| dag.build(&expr(root), "test").unwrap())
         .collect();
-    let prepared = Prepared::gather(&mut dag, &model, &[("test".to_owned(), ids.clone())], &[]);
+    let prepared = Prepared::gather(&mut dag, &model, &[("test", &ids)], &[]);
     let fields: Vec<_> = prepared.fields.iter().map(|field| field.id).collect();
-    let prepare = body(&mut dag, &model, None, "prepared", &fields);
-    let function = body(&mut dag, &model, Some(&prepared), "test", &ids);
+    let prepare = body(&mut dag, &model, given(None), "prepared", &fields);
+    let function = body(&mut dag, &model, given(Some(&prepared)), "test", &ids);
     let (statements_of_prepare, values) = printed(&prepare);
     let names = prepared.fields.iter().map(|field| field.name.clone());
     let (statements, results) = printed(&function);

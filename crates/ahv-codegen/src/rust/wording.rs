@@ -1,7 +1,5 @@
 //! How emitted functions are worded: their names, arguments, results and documentation.
 
-use std::collections::BTreeSet;
-
 use super::format;
 use super::print::expression;
 use crate::EmitError;
@@ -23,7 +21,7 @@ pub(super) fn tuple(items: &[String]) -> String {
 }
 
 /// The arguments of a function; those that a model hands to every function may stay unused.
-pub(super) fn arguments(used: impl Fn(Kind) -> bool, scalars: &BTreeSet<String>) -> Vec<String> {
+pub(super) fn arguments(used: impl Fn(Kind) -> bool) -> Vec<String> {
     let by_reference = |name: &str, kind: Kind, ty: &str| {
         let unused = if used(kind) { "" } else { "_" };
         format!("{unused}{name}: &{ty}<R>")
@@ -36,7 +34,6 @@ pub(super) fn arguments(used: impl Fn(Kind) -> bool, scalars: &BTreeSet<String>)
     if used(Kind::Noise) {
         arguments.push(by_reference("dw", Kind::Noise, "Noise"));
     }
-    arguments.extend(scalars.iter().map(|name| format!("{name}: R")));
     arguments
 }
 

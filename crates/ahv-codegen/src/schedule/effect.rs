@@ -5,8 +5,8 @@ use crate::graph::passes::{Pass, Passes};
 use crate::graph::{Dag, Id};
 use crate::ir::{Function, Model};
 
-use super::prepared::Prepared;
-use super::{Cost, body};
+use super::stages::Given;
+use super::{Cost, Prepared, body};
 
 /// The functions that are counted, where a model has them.
 const COUNTED: [&str; 5] = [
@@ -78,9 +78,15 @@ impl<'a> Graph<'a> {
     /// The operations of the functions, and at the end those of `prepare` for them.
     fn operations(&self, passes: &Passes) -> Vec<Cost> {
         let mut dag = self.dag.written_with(passes);
-        let prepared = Prepared::gather(&mut dag, self.model, &self.roots, &[]);
+        let roots = self.roots.iter();
+        let roots: Vec<(&str, &[Id])> = roots.map(|(name, ids)| (&**name, &**ids)).collect();
+        let prepared = Prepared::gather(&mut dag, self.model, &roots, &[]);
         let mut count = |owner: &str, ids: &[Id], prepared: Option<&Prepared>| {
-            body(&mut dag, self.model, prepared, owner, ids).cost()
+            let given = Given {
+                prepared,
+                stages: &[],
+            };
+            body(&mut dag, self.model, given, owner, ids).cost()
         };
         let functions = self.roots.iter();
         let mut counts: Vec<Cost> = functions

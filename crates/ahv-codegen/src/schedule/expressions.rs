@@ -1,8 +1,8 @@
 //! Expressions of nodes: how a value is computed, in the names that its scope has.
 
-use super::Scope;
-use super::tree::{Expr, Operation, Sign};
-use crate::graph::{Id, Kind, Node};
+use super::scope::Scope;
+use super::tree::{Expr, Operation, Sign, Source};
+use crate::graph::{Id, Node};
 
 impl Scope<'_> {
     /// The expression that stands for a node: its name where it has one.
@@ -22,7 +22,7 @@ impl Scope<'_> {
     fn written(&mut self, id: Id) -> Expr {
         match self.dag.node(id).clone() {
             Node::Number(value) => Expr::Number(value),
-            Node::Leaf(kind, name) => Expr::Component(kind, name),
+            Node::Leaf(kind, name) => Expr::Component(Source::Argument(kind), name),
             Node::Sum(terms) => self.sum(terms, false),
             Node::Product(coefficient, factors) => self.product(coefficient, &factors),
             Node::Power(base, -1) => Expr::Reciprocal(Box::new(self.reference(base))),
@@ -113,8 +113,8 @@ impl Scope<'_> {
         if let Some(name) = self.bound.get(&id) {
             return Some(Expr::Name(name.clone()));
         }
-        let field = self.prepared?.field(id)?;
-        Some(Expr::Component(Kind::Parameter, field.to_owned()))
+        let (source, field) = self.given.find(id)?;
+        Some(Expr::Component(source, field.to_owned()))
     }
 
     /// Whether a node is a quantity that an equation defines; derivatives have none.

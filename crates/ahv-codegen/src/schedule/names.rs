@@ -182,7 +182,7 @@ fn is_derivative(name: &str) -> bool {
 }
 
 /// Whether a name only says whose part a value is.
-fn is_numbered(name: &str) -> bool {
+pub(super) fn is_numbered(name: &str) -> bool {
     name.contains("_term_") || name.contains("_constant_")
 }
 

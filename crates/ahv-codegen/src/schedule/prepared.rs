@@ -29,13 +29,13 @@ impl Prepared {
     pub(crate) fn gather(
         dag: &mut Dag,
         model: &ir::Model,
-        roots: &[(String, Vec<Id>)],
+        roots: &[(&str, &[Id])],
         values: &[(String, Id)],
     ) -> Self {
         let mut found = Self::default();
         let mut seen = HashSet::new();
         for (owner, ids) in roots {
-            for &id in ids {
+            for &id in *ids {
                 found.visit(dag, model, id, owner, &mut seen);
             }
         }

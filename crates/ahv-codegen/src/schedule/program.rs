@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::body;
-use super::prepared::Prepared;
-use super::tree::{Body, Expr};
+use super::stages::{self, Given, Stage};
+use super::tree::{Body, Expr, Source};
+use super::{Cost, Prepared, body};
 use crate::EmitError;
 use crate::graph::passes::Passes;
 use crate::graph::{Dag, Id, Node, decay};
@@ -22,6 +22,8 @@ pub(crate) struct Program<'a> {
     pub(crate) prepare: Body,
     /// What depends on parameters alone.
     pub(crate) fields: Vec<Field>,
+    /// What several functions need, computed once.
+    pub(crate) stages: Vec<Stage<'a>>,
     pub(crate) functions: Vec<Function<'a>>,
     /// States that decay by themselves, each with the field that holds its rate.
     pub(crate) coloured: Vec<(String, String)>,
@@ -40,8 +42,16 @@ pub(crate) struct Function<'a> {
     pub(crate) ir: &'a ir::Function,
     /// The shapes of its outputs.
     pub(crate) shapes: Vec<Shape<'a>>,
-    /// Its results are the entries of the outputs in turn.
+    /// Its results are the entries of the outputs in turn. Empty for what consists of parts.
     pub(crate) body: Body,
+    /// The functions whose results are its own, in turn, by position; empty for what has a body.
+    pub(crate) parts: Vec<usize>,
+    /// Whether another function consists of it.
+    pub(crate) is_part: bool,
+    /// The stages that it needs, by position.
+    pub(crate) stages: Vec<usize>,
+    /// The operations that its results need, those of the stages among them.
+    pub(crate) cost: Cost,
 }
 
 impl<'a> Program<'a> {
@@ -61,26 +71,55 @@ impl<'a> Program<'a> {
             roots.push(dag.roots(function)?);
         }
         let functions = model.functions.iter().zip(&roots);
-        let named: Vec<(String, Vec<Id>)> = functions
-            .map(|(function, ids)| (function.name.clone(), ids.clone()))
+        let named: Vec<(&str, &[Id])> = functions
+            .map(|(function, ids)| (&*function.name, ids.as_slice()))
             .collect();
         let decays = decay::rates(model, &mut dag, &roots);
         let prepared = Prepared::gather(&mut dag, model, &named, &decays);
         let (prepare, fields) = prepare(&mut dag, model, document, &prepared);
+        let parts = parts(model, &roots);
+        let own = named.iter().zip(&parts);
+        let own: Vec<_> = own.filter(|(_, parts)| parts.is_empty()).collect();
+        let own: Vec<(&str, &[Id])> = own.into_iter().map(|(function, _)| *function).collect();
+        let stages = stages::of(&mut dag, model, &prepared, &own);
         let mut functions = Vec::new();
-        for (function, ids) in model.functions.iter().zip(&roots) {
+        for (position, function) in model.functions.iter().enumerate() {
             let shapes = function.outputs.iter();
             let shapes = shapes.map(|output| Shape::of(model, document, output));
             let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
-            let mut body = body(&mut dag, model, Some(&prepared), &function.name, ids);
+            let mut write = |stages: &[Stage<'a>]| {
+                let prepared = Some(&prepared);
+                let given = Given { prepared, stages };
+                body(&mut dag, model, given, &function.name, &roots[position])
+            };
+            let cost = write(&[]).cost();
+            let mut body = Body::default();
+            if parts[position].is_empty() {
+                body = write(&stages);
+            }
             if matches!(shapes.as_slice(), [shape] if shape.axes.is_empty()) {
                 body.return_last();
             }
             functions.push(Function {
                 ir: function,
                 shapes,
+                stages: needed(&body, &stages),
                 body,
+                is_part: parts.iter().any(|it| it.contains(&position)),
+                parts: parts[position].clone(),
+                cost,
             });
+        }
+        for position in 0..functions.len() {
+            let of_parts = functions[position].parts.iter();
+            let mut of_parts: Vec<usize> = of_parts
+                .flat_map(|&part| functions[part].stages.clone())
+                .collect();
+            of_parts.sort_unstable();
+            of_parts.dedup();
+            if !of_parts.is_empty() {
+                functions[position].stages = of_parts;
+            }
         }
         let coloured = decays
             .iter()
@@ -91,6 +130,7 @@ impl<'a> Program<'a> {
             home,
             prepare,
             fields,
+            stages,
             functions,
             coloured: coloured.collect(),
         })
@@ -104,7 +144,7 @@ impl<'a> Program<'a> {
     /// The operations of each function, in words.
     pub(crate) fn costs(&self) -> BTreeMap<String, String> {
         let functions = self.functions.iter();
-        let cost = |it: &Function<'_>| capitalised(&it.body.cost().describe());
+        let cost = |it: &Function<'_>| capitalised(&it.cost.describe());
         functions.map(|it| (it.ir.name.clone(), cost(it))).collect()
     }
 
@@ -130,12 +170,19 @@ fn prepare(
     let computed = prepared.fields.iter().map(|field| field.id);
     let computed = computed.filter(|&id| !matches!(dag.node(id), Node::Leaf(..)));
     let computed: Vec<Id> = computed.collect();
-    let body = body(dag, model, None, "prepared", &computed);
+    let nothing = Given {
+        prepared: None,
+        stages: &[],
+    };
+    let body = body(dag, model, nothing, "prepared", &computed);
     let mut fields = Vec::new();
     let mut results = body.results.iter();
     for field in &prepared.fields {
         let (value, leaf) = match dag.node(field.id) {
-            Node::Leaf(kind, name) => (Some(Expr::Component(*kind, name.clone())), Some(name)),
+            Node::Leaf(kind, name) => (
+                Some(Expr::Component(Source::Argument(*kind), name.clone())),
+                Some(name),
+            ),
             _ => (results.next().cloned(), None),
         };
         let quantity = dag.quantities(field.id).first();
@@ -151,4 +198,50 @@ fn prepare(
         }));
     }
     (body, fields)
+}
+
+/// For each function the others whose outputs, one after the other, are its own; none where it has outputs of its own.
+fn parts(model: &ir::Model, roots: &[Vec<Id>]) -> Vec<Vec<usize>> {
+    let outputs: Vec<Vec<(&[ir::Basis], &[Id])>> = model
+        .functions
+        .iter()
+        .zip(roots)
+        .map(|(function, ids)| {
+            let mut rest = ids.as_slice();
+            let outputs = function.outputs.iter().map(|output| {
+                let (own, others) = rest.split_at(output.entries.len());
+                rest = others;
+                (output.basis.as_slice(), own)
+            });
+            outputs.collect()
+        })
+        .collect();
+    let of = |whole: usize| {
+        let mut found = Vec::new();
+        let mut rest = outputs[whole].as_slice();
+        while !rest.is_empty() {
+            let is_next = |&part: &usize| part != whole && rest.starts_with(&outputs[part]);
+            let Some(part) = (0..outputs.len()).find(is_next) else {
+                return Vec::new();
+            };
+            rest = &rest[outputs[part].len()..];
+            found.push(part);
+        }
+        // Two functions may be equal: neither consists of the other.
+        if found.len() > 1 { found } else { Vec::new() }
+    };
+    (0..outputs.len()).map(of).collect()
+}
+
+/// The stages that a body needs, and those that these need, by position.
+fn needed(body: &Body, stages: &[Stage<'_>]) -> Vec<usize> {
+    let mut needed = Vec::new();
+    for (position, stage) in stages.iter().enumerate().rev() {
+        let source = Source::Stage(stage.kind);
+        let by_stage = |&later: &usize| stages[later].body.uses(source);
+        if body.uses(source) || needed.iter().any(by_stage) {
+            needed.insert(0, position);
+        }
+    }
+    needed
 }

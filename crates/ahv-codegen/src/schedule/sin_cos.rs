@@ -1,6 +1,6 @@
 //! Sine and cosine of one angle, computed together.
 
-use super::Scope;
+use super::scope::Scope;
 use super::tree::Statement;
 use crate::graph::passes::Pass;
 use crate::graph::{Call, Id, Node};

@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 
 use super::cost::Cost;
+use super::stages;
 use crate::graph::{Call, Kind};
 
 /// An expression. Sums and products are evaluated from left to right, so that every language has the same bits.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Expr {
     Number(f64),
-    /// A component of an argument: of the state, of the input, of the prepared parameters.
-    Component(Kind, String),
+    /// A component of an argument: of the state, of the input, of what is prepared or computed once.
+    Component(Source, String),
     /// A value that a statement before names.
     Name(String),
     Negative(Box<Expr>),
@@ -20,6 +21,15 @@ pub(crate) enum Expr {
     Product(Vec<(Operation, Expr)>),
     Reciprocal(Box<Expr>),
     Call(Call, Box<Expr>),
+}
+
+/// Where a component stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// In an argument of the model's functions; prepared values stand for the parameters.
+    Argument(Kind),
+    /// In what is computed once for several functions.
+    Stage(&'static stages::Kind),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,10 +128,10 @@ impl Body {
         cost
     }
 
-    /// Whether the function refers to an argument.
-    pub(crate) fn uses(&self, kind: Kind) -> bool {
+    /// Whether the function refers to a component that stands there.
+    pub(crate) fn uses(&self, source: Source) -> bool {
         let mut found = false;
-        self.walk(&mut |expr| found |= matches!(expr, Expr::Component(it, _) if *it == kind));
+        self.walk(&mut |expr| found |= matches!(expr, Expr::Component(it, _) if *it == source));
         found
     }
 
@@ -129,7 +139,7 @@ impl Body {
     pub(crate) fn scalars(&self) -> BTreeSet<String> {
         let mut found = BTreeSet::new();
         self.walk(&mut |expr| {
-            if let Expr::Component(Kind::Argument, name) = expr {
+            if let Expr::Component(Source::Argument(Kind::Argument), name) = expr {
                 found.insert(name.clone());
             }
         });
