@@ -2,23 +2,23 @@
 {%- if paper_names %}
 #![allow(non_snake_case)]
 {%- endif %}
+{%- if is_crowded %}
+#![allow(clippy::too_many_arguments)]
+{%- endif %}
 
 use super::{ {{- imports.join(", ") -}} };
-use ahv_core::{ {%- if has_patterns() %}Pattern, {% endif -%} Real{% if needs_vector %}, Vector{% endif -%} };
+use ahv_core::{Real {%- if needs_vector %}, Vector{% endif -%} };
 
 {%- for item in items %}
 {%- match item %}
-{%- when Item::Pattern(pattern) %}
-/// Where the entries of the compressed [`{{ pattern.alias }}`] stand.
-pub const {{ pattern.name }}: Pattern<{{ pattern.dimensions }}> = Pattern::new([{{ pattern.shape }}], &[
-    {%- for entry in pattern.entries %}{{ entry }}, {% endfor -%}
-]);
+{%- when Item::Entries(definition) %}
+{{ definition }}
 {%- when Item::Function(f) %}
 {%- for line in f.docs %}
 ///{% if !line.is_empty() %} {{ line }}{% endif %}
 {%- endfor %}
 #[inline(always)]
-pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
+{% if f.is_public %}pub {% endif %}fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}){% if !f.result.is_empty() %} -> {{ f.result }}{% endif %} {
 {%- for statement in f.statements %}
     {{ statement }}
 {%- endfor %}
@@ -32,7 +32,7 @@ pub fn {{ f.name }}<R: Real>({{ f.arguments.join(", ") }}) -> {{ f.result }} {
 {%- endfor %}
 {%- if f.outputs.len() == 1 %}
     {{ f.outputs[0].1 }}
-{%- else %}
+{%- else if f.outputs.len() > 1 %}
 {%- for (name, value) in f.outputs %}
     let {{ name }} = {{ value }};
 {%- endfor %}

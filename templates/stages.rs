@@ -1,4 +1,4 @@
-//! What functions of {{ label }} share. Units are {{ units }}.
+//! {{ about }}
 
 use super::{ {{- imports.join(", ") -}} };
 use ahv_core::Real;
@@ -6,31 +6,40 @@ use ahv_core::Real;
 {%- for stage in stages %}
 
 /// {{ stage.kind.doc }}.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[__record]
 pub struct {{ stage.kind.type_name }}<R> {
-{%- for field in stage.fields %}
-{%- for line in field.docs %}
+{%- for (name, docs) in stage.fields %}
+{%- for line in docs %}
     /// {{ line }}
 {%- endfor %}
-    pub {{ field.name }}: R,
+    pub {{ name }}: R,
 {%- endfor %}
 }
+{%- for part in stage.parts %}
 
-/// Computes [`{{ stage.kind.type_name }}`].
-#[inline(always)]
-pub fn {{ stage.kind.function }}<R: Real>({{ stage.arguments.join(", ") }}) -> {{ stage.kind.type_name }}<R> {
+/// Fills a part of [`{{ stage.kind.type_name }}`].
+{% if stage.is_inline %}#[inline(always)]
+{% endif -%}
+fn {{ part.name }}<R: Real>({{ part.arguments }}) {
+{%- for statement in part.statements %}
+    {{ statement }}
+{%- endfor %}
+}
+{%- endfor %}
+
+{%- for line in stage.docs %}
+///{% if !line.is_empty() %} {{ line }}{% endif %}
+{%- endfor %}
+{% if stage.is_inline %}#[inline(always)]
+{% endif -%}
+pub fn {{ stage.kind.function }}<R: Real>({{ stage.arguments }}) -> {{ stage.kind.type_name }}<R> {
+    let mut {{ stage.kind.argument }} = {{ stage.kind.type_name }}::splat(R::ZERO);
+{%- for part in stage.parts %}
+    {{ part.call }}
+{%- endfor %}
 {%- for statement in stage.statements %}
     {{ statement }}
 {%- endfor %}
-    __section!("");
-    {{ stage.kind.type_name }} {
-{%- for field in stage.fields %}
-{%- if field.name == field.value %}
-        {{ field.name }},
-{%- else %}
-        {{ field.name }}: {{ field.value }},
-{%- endif %}
-{%- endfor %}
-    }
+    {{ stage.kind.argument }}
 }
 {%- endfor %}

@@ -401,7 +401,6 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -
         include_str!("../templates/model.rs"),
         include_str!("../templates/nominal.rs"),
         include_str!("../templates/parameters.rs"),
-        include_str!("../templates/prepared.rs"),
         include_str!("../templates/provenance.rs"),
         include_str!("../templates/stages.rs"),
         include_str!("../templates/table.rs"),

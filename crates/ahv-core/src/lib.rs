@@ -10,7 +10,7 @@
 //! * [`GeneratedModel`]: what a generated model and its [`Table`] say of themselves, for commands and analyses that never saw
 //!   the model; [`ModelList`]: the models of a package.
 //! * [`Bounds`]: an interval of validity.
-//! * [`Pattern`]: where the entries of a compressed matrix stand.
+//! * [`record!`], [`entries!`]: structs of numbers with names; [`Pattern`]: where the entries of a compressed matrix stand.
 //! * [`NoiseClass`]: how a column of the diffusion depends on the state.
 //! * [`Shown`]: a number in a text for people.
 //!
@@ -70,6 +70,7 @@ mod noise;
 mod pattern;
 mod provenance;
 mod real;
+mod record;
 mod shown;
 mod table;
 mod vector;

@@ -5,15 +5,6 @@
 use super::{Input, Intermediates, Prepared, State, intermediates};
 use ahv_core::Real;
 
-/// Time derivative of the state, eq. (1).
-///
-/// 103 operations: 38 additions, 60 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline(always)]
-pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    let i = intermediates(x, u, p);
-    drift_from(x, u, p, &i)
-}
-
 /// [`drift`] from what is computed once.
 #[inline(always)]
 pub fn drift_from<R: Real>(
@@ -40,4 +31,13 @@ pub fn drift_from<R: Real>(
         eta_2: x.eta_dot_2,
         eta_dot_2: eta_acceleration_2,
     }
+}
+
+/// Time derivative of the state, eq. (1).
+///
+/// 103 operations: 38 additions, 60 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
+    let i = intermediates(x, u, p);
+    drift_from(x, u, p, &i)
 }

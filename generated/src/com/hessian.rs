@@ -2,72 +2,73 @@
 
 //! Functions of COM. Units are foot, slug, second and radian.
 
-use super::{Hessian, Input, Prepared, State, intermediates, slopes};
-use ahv_core::{Pattern, Real};
+use super::{
+    Hessian, Input, Intermediates, Prepared, Slopes, State, intermediates, slopes,
+};
 
-/// Where the entries of the compressed [`Hessian`] stand.
-pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, State.velocity, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma, State.gamma),
-        ahv_core::at!(State.velocity, State.alpha, State.velocity),
-        ahv_core::at!(State.velocity, State.alpha, State.altitude),
-        ahv_core::at!(State.velocity, State.alpha, State.alpha),
-        ahv_core::at!(State.altitude, State.gamma, State.velocity),
-        ahv_core::at!(State.altitude, State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.velocity, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma, State.velocity),
-        ahv_core::at!(State.gamma, State.gamma, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.alpha, State.velocity),
-        ahv_core::at!(State.gamma, State.alpha, State.altitude),
-        ahv_core::at!(State.gamma, State.alpha, State.alpha),
-        ahv_core::at!(State.alpha, State.velocity, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma, State.velocity),
-        ahv_core::at!(State.alpha, State.gamma, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma, State.gamma),
-        ahv_core::at!(State.alpha, State.alpha, State.velocity),
-        ahv_core::at!(State.alpha, State.alpha, State.altitude),
-        ahv_core::at!(State.alpha, State.alpha, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.velocity, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.alpha),
-        ahv_core::at!(State.eta_dot_1, State.velocity, State.velocity),
-        ahv_core::at!(State.eta_dot_1, State.altitude, State.velocity),
-        ahv_core::at!(State.eta_dot_1, State.altitude, State.altitude),
-        ahv_core::at!(State.eta_dot_1, State.alpha, State.velocity),
-        ahv_core::at!(State.eta_dot_1, State.alpha, State.altitude),
-        ahv_core::at!(State.eta_dot_1, State.alpha, State.alpha),
-        ahv_core::at!(State.eta_dot_2, State.velocity, State.velocity),
-        ahv_core::at!(State.eta_dot_2, State.altitude, State.velocity),
-        ahv_core::at!(State.eta_dot_2, State.altitude, State.altitude),
-        ahv_core::at!(State.eta_dot_2, State.alpha, State.velocity),
-        ahv_core::at!(State.eta_dot_2, State.alpha, State.altitude),
-        ahv_core::at!(State.eta_dot_2, State.alpha, State.alpha),
-    ],
-);
+use ahv_core::Real;
 
-/// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 220 operations: 49 additions, 166 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`Hessian`].
+    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        velocity_by_velocity_velocity: velocity.velocity.velocity,
+        velocity_by_altitude_velocity: velocity.altitude.velocity,
+        velocity_by_altitude_altitude: velocity.altitude.altitude,
+        velocity_by_gamma_altitude: velocity.gamma.altitude,
+        velocity_by_gamma_gamma: velocity.gamma.gamma,
+        velocity_by_alpha_velocity: velocity.alpha.velocity,
+        velocity_by_alpha_altitude: velocity.alpha.altitude,
+        velocity_by_alpha_alpha: velocity.alpha.alpha,
+        altitude_by_gamma_velocity: altitude.gamma.velocity,
+        altitude_by_gamma_gamma: altitude.gamma.gamma,
+        gamma_by_velocity_velocity: gamma.velocity.velocity,
+        gamma_by_altitude_velocity: gamma.altitude.velocity,
+        gamma_by_altitude_altitude: gamma.altitude.altitude,
+        gamma_by_gamma_velocity: gamma.gamma.velocity,
+        gamma_by_gamma_altitude: gamma.gamma.altitude,
+        gamma_by_gamma_gamma: gamma.gamma.gamma,
+        gamma_by_alpha_velocity: gamma.alpha.velocity,
+        gamma_by_alpha_altitude: gamma.alpha.altitude,
+        gamma_by_alpha_alpha: gamma.alpha.alpha,
+        alpha_by_velocity_velocity: alpha.velocity.velocity,
+        alpha_by_altitude_velocity: alpha.altitude.velocity,
+        alpha_by_altitude_altitude: alpha.altitude.altitude,
+        alpha_by_gamma_velocity: alpha.gamma.velocity,
+        alpha_by_gamma_altitude: alpha.gamma.altitude,
+        alpha_by_gamma_gamma: alpha.gamma.gamma,
+        alpha_by_alpha_velocity: alpha.alpha.velocity,
+        alpha_by_alpha_altitude: alpha.alpha.altitude,
+        alpha_by_alpha_alpha: alpha.alpha.alpha,
+        pitch_rate_by_velocity_velocity: pitch_rate.velocity.velocity,
+        pitch_rate_by_altitude_velocity: pitch_rate.altitude.velocity,
+        pitch_rate_by_altitude_altitude: pitch_rate.altitude.altitude,
+        pitch_rate_by_alpha_velocity: pitch_rate.alpha.velocity,
+        pitch_rate_by_alpha_altitude: pitch_rate.alpha.altitude,
+        pitch_rate_by_alpha_alpha: pitch_rate.alpha.alpha,
+        eta_dot_1_by_velocity_velocity: eta_dot_1.velocity.velocity,
+        eta_dot_1_by_altitude_velocity: eta_dot_1.altitude.velocity,
+        eta_dot_1_by_altitude_altitude: eta_dot_1.altitude.altitude,
+        eta_dot_1_by_alpha_velocity: eta_dot_1.alpha.velocity,
+        eta_dot_1_by_alpha_altitude: eta_dot_1.alpha.altitude,
+        eta_dot_1_by_alpha_alpha: eta_dot_1.alpha.alpha,
+        eta_dot_2_by_velocity_velocity: eta_dot_2.velocity.velocity,
+        eta_dot_2_by_altitude_velocity: eta_dot_2.altitude.velocity,
+        eta_dot_2_by_altitude_altitude: eta_dot_2.altitude.altitude,
+        eta_dot_2_by_alpha_velocity: eta_dot_2.alpha.velocity,
+        eta_dot_2_by_alpha_altitude: eta_dot_2.alpha.altitude,
+        eta_dot_2_by_alpha_alpha: eta_dot_2.alpha.alpha,
+    }
+}
+
+/// Entries of [`hessian_values`]: derivatives by velocity_altitude.
 #[inline(always)]
-pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 46] {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-
+fn hessian_by_velocity_altitude<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to velocity
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
     let d2_velocity_rate_d_velocity_d_velocity = -d2_drag_d_velocity_d_velocity
@@ -80,12 +81,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
     let d2_velocity_rate_d_velocity_d_altitude = -d2_drag_d_velocity_d_altitude
         * p.inv_m; // 1/s/ft
-
-    // Derivatives with respect to alpha
-    let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_velocity_d_alpha = -d2_drag_d_velocity_d_alpha * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to altitude
     let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
     let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
@@ -104,6 +99,102 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
     let d2_velocity_rate_d_altitude_d_altitude = -(i.sin_gamma
         * d2_gravity_d_altitude_d_altitude + d2_drag_d_altitude_d_altitude * p.inv_m); // 1/s^2/ft
+
+    // Derivatives with respect to velocity
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
+    let inverse_momentum_3 = i.inverse_momentum * s.inverse_momentum_2;
+    let d2_force_turn_d_velocity_d_velocity = i.thrust * i.sin_alpha * p.two_m_2
+        * inverse_momentum_3; // rad*s/ft^2
+    let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+
+    // Derivatives with respect to altitude
+    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    let d2_force_turn_d_velocity_d_altitude = i.c_l
+        * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
+    let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
+    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
+        * i.inv_velocity
+        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
+    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
+        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
+    let d2_force_turn_d_altitude_d_altitude = i.c_l
+        * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
+        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
+
+    // Derivatives with respect to velocity
+    let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
+    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
+        * p.inv_effective_inertia; // rad/ft^2
+
+    // Derivatives with respect to altitude
+    let d2_pitching_moment_d_velocity_d_altitude = i.c_m * p.c_bar
+        * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
+    let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
+        * p.inv_effective_inertia; // rad/s/ft^2
+    let d2_pitching_moment_d_altitude_d_altitude = i.c_m * p.c_bar
+        * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
+    let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
+        * p.inv_effective_inertia; // rad/s^2/ft^2
+
+    // Derivatives with respect to velocity
+    let d2_eta_acceleration_1_d_velocity_d_velocity = -p.psi_1
+        * d2_pitch_acceleration_d_velocity_d_velocity; // slug^0.5/ft^1.5
+
+    // Derivatives with respect to altitude
+    let d2_eta_acceleration_1_d_velocity_d_altitude = -p.psi_1
+        * d2_pitch_acceleration_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_acceleration_1_d_altitude_d_altitude = -p.psi_1
+        * d2_pitch_acceleration_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+
+    // Derivatives with respect to velocity
+    let d2_eta_acceleration_2_d_velocity_d_velocity = -p.psi_2
+        * d2_pitch_acceleration_d_velocity_d_velocity; // slug^0.5/ft^1.5
+
+    // Derivatives with respect to altitude
+    let d2_eta_acceleration_2_d_velocity_d_altitude = -p.psi_2
+        * d2_pitch_acceleration_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_acceleration_2_d_altitude_d_altitude = -p.psi_2
+        * d2_pitch_acceleration_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+
+    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
+    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
+    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
+    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
+    hessian.eta_dot_1_by_velocity_velocity = d2_eta_acceleration_1_d_velocity_d_velocity;
+    hessian.eta_dot_2_by_velocity_velocity = d2_eta_acceleration_2_d_velocity_d_velocity;
+    hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
+    hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
+    hessian.gamma_by_altitude_velocity = d2_gamma_rate_d_velocity_d_altitude;
+    hessian.gamma_by_altitude_altitude = d2_gamma_rate_d_altitude_d_altitude;
+    hessian.alpha_by_altitude_velocity = -d2_gamma_rate_d_velocity_d_altitude;
+    hessian.alpha_by_altitude_altitude = -d2_gamma_rate_d_altitude_d_altitude;
+    hessian.pitch_rate_by_altitude_velocity = d2_pitch_acceleration_d_velocity_d_altitude;
+    hessian.pitch_rate_by_altitude_altitude = d2_pitch_acceleration_d_altitude_d_altitude;
+    hessian.eta_dot_1_by_altitude_velocity = d2_eta_acceleration_1_d_velocity_d_altitude;
+    hessian.eta_dot_1_by_altitude_altitude = d2_eta_acceleration_1_d_altitude_d_altitude;
+    hessian.eta_dot_2_by_altitude_velocity = d2_eta_acceleration_2_d_velocity_d_altitude;
+    hessian.eta_dot_2_by_altitude_altitude = d2_eta_acceleration_2_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by gamma_alpha.
+#[inline(always)]
+fn hessian_by_gamma_alpha<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to alpha
+    let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
+    let d2_velocity_rate_d_velocity_d_alpha = -d2_drag_d_velocity_d_alpha * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to gamma
     let d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
@@ -131,26 +222,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
 
     // Derivatives with respect to gamma
     let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-
-    // Derivatives with respect to velocity
-    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
-    let inverse_momentum_3 = i.inverse_momentum * s.inverse_momentum_2;
-    let d2_force_turn_d_velocity_d_velocity = i.thrust * i.sin_alpha * p.two_m_2
-        * inverse_momentum_3; // rad*s/ft^2
-    let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
-        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
-
-    // Derivatives with respect to altitude
-    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
-    let d2_force_turn_d_velocity_d_altitude = i.c_l
-        * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
-    let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
-        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
-
-    // Derivatives with respect to gamma
     let d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
         * s.d_cos_gamma_d_gamma; // 1/ft
 
@@ -158,17 +229,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity * p.c_l_alpha
         - s.inverse_momentum_2 * p.m
             * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha); // 1/ft
-
-    // Derivatives with respect to altitude
-    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
-        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
-        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_force_turn_d_altitude_d_altitude = i.c_l
-        * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
-        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
     let d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
@@ -186,31 +246,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * (R::TWO * i.cos_alpha * s.d_thrust_d_alpha
             + i.sin_alpha * d2_thrust_d_alpha_d_alpha
             + i.thrust * s.d_cos_alpha_d_alpha); // 1/s/rad
-
-    // Derivatives with respect to velocity
-    let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
-    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
-        * p.inv_effective_inertia; // rad/ft^2
-
-    // Derivatives with respect to altitude
-    let d2_pitching_moment_d_velocity_d_altitude = i.c_m * p.c_bar
-        * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
-    let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
-        * p.inv_effective_inertia; // rad/s/ft^2
-
-    // Derivatives with respect to alpha
     let d2_pitching_moment_d_velocity_d_alpha = s.d_reference_force_d_velocity * p.c_bar
         * s.d_c_m_d_alpha; // lb*s/ft/rad
     let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
         * p.inv_effective_inertia; // 1/s/ft
-
-    // Derivatives with respect to altitude
-    let d2_pitching_moment_d_altitude_d_altitude = i.c_m * p.c_bar
-        * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
-    let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
-        * p.inv_effective_inertia; // rad/s^2/ft^2
-
-    // Derivatives with respect to alpha
     let d2_pitching_moment_d_altitude_d_alpha = s.d_reference_force_d_altitude * p.c_bar
         * s.d_c_m_d_alpha; // lb/ft/rad
     let d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha
@@ -220,103 +259,70 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_pitch_acceleration_d_alpha_d_alpha = p.inv_effective_inertia
         * (d2_pitching_moment_d_alpha_d_alpha
             + p.minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2); // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d2_eta_acceleration_1_d_velocity_d_velocity = -p.psi_1
-        * d2_pitch_acceleration_d_velocity_d_velocity; // slug^0.5/ft^1.5
-
-    // Derivatives with respect to altitude
-    let d2_eta_acceleration_1_d_velocity_d_altitude = -p.psi_1
-        * d2_pitch_acceleration_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-
-    // Derivatives with respect to alpha
     let d2_eta_acceleration_1_d_velocity_d_alpha = -p.psi_1
         * d2_pitch_acceleration_d_velocity_d_alpha; // slug^0.5/ft^0.5/s/rad
-
-    // Derivatives with respect to altitude
-    let d2_eta_acceleration_1_d_altitude_d_altitude = -p.psi_1
-        * d2_pitch_acceleration_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
-    // Derivatives with respect to alpha
     let d2_eta_acceleration_1_d_altitude_d_alpha = -p.psi_1
         * d2_pitch_acceleration_d_altitude_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_eta_acceleration_1_d_alpha_d_alpha = R::TWO * p.n_1_alpha_2
         - p.psi_1 * d2_pitch_acceleration_d_alpha_d_alpha; // ft^0.5*slug^0.5/s^2/rad^2
-
-    // Derivatives with respect to velocity
-    let d2_eta_acceleration_2_d_velocity_d_velocity = -p.psi_2
-        * d2_pitch_acceleration_d_velocity_d_velocity; // slug^0.5/ft^1.5
-
-    // Derivatives with respect to altitude
-    let d2_eta_acceleration_2_d_velocity_d_altitude = -p.psi_2
-        * d2_pitch_acceleration_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-
-    // Derivatives with respect to alpha
     let d2_eta_acceleration_2_d_velocity_d_alpha = -p.psi_2
         * d2_pitch_acceleration_d_velocity_d_alpha; // slug^0.5/ft^0.5/s/rad
-
-    // Derivatives with respect to altitude
-    let d2_eta_acceleration_2_d_altitude_d_altitude = -p.psi_2
-        * d2_pitch_acceleration_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
-    // Derivatives with respect to alpha
     let d2_eta_acceleration_2_d_altitude_d_alpha = -p.psi_2
         * d2_pitch_acceleration_d_altitude_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_eta_acceleration_2_d_alpha_d_alpha = R::TWO * p.n_2_alpha_2
         - p.psi_2 * d2_pitch_acceleration_d_alpha_d_alpha; // ft^0.5*slug^0.5/s^2/rad^2
 
-    [
-        d2_velocity_rate_d_velocity_d_velocity,
-        d2_velocity_rate_d_velocity_d_altitude,
-        d2_velocity_rate_d_altitude_d_altitude,
-        d2_velocity_rate_d_altitude_d_gamma,
-        d2_velocity_rate_d_gamma_d_gamma,
-        d2_velocity_rate_d_velocity_d_alpha,
-        d2_velocity_rate_d_altitude_d_alpha,
-        d2_velocity_rate_d_alpha_d_alpha,
-        i.cos_gamma,
-        d2_altitude_rate_d_gamma_d_gamma,
-        d2_gamma_rate_d_velocity_d_velocity,
-        d2_gamma_rate_d_velocity_d_altitude,
-        d2_gamma_rate_d_altitude_d_altitude,
-        d2_gamma_rate_d_velocity_d_gamma,
-        d2_gamma_rate_d_altitude_d_gamma,
-        d2_gamma_rate_d_gamma_d_gamma,
-        d2_force_turn_d_velocity_d_alpha,
-        d2_force_turn_d_altitude_d_alpha,
-        d2_force_turn_d_alpha_d_alpha,
-        -d2_gamma_rate_d_velocity_d_velocity,
-        -d2_gamma_rate_d_velocity_d_altitude,
-        -d2_gamma_rate_d_altitude_d_altitude,
-        -d2_gamma_rate_d_velocity_d_gamma,
-        -d2_gamma_rate_d_altitude_d_gamma,
-        -d2_gamma_rate_d_gamma_d_gamma,
-        -d2_force_turn_d_velocity_d_alpha,
-        -d2_force_turn_d_altitude_d_alpha,
-        -d2_force_turn_d_alpha_d_alpha,
-        d2_pitch_acceleration_d_velocity_d_velocity,
-        d2_pitch_acceleration_d_velocity_d_altitude,
-        d2_pitch_acceleration_d_altitude_d_altitude,
-        d2_pitch_acceleration_d_velocity_d_alpha,
-        d2_pitch_acceleration_d_altitude_d_alpha,
-        d2_pitch_acceleration_d_alpha_d_alpha,
-        d2_eta_acceleration_1_d_velocity_d_velocity,
-        d2_eta_acceleration_1_d_velocity_d_altitude,
-        d2_eta_acceleration_1_d_altitude_d_altitude,
-        d2_eta_acceleration_1_d_velocity_d_alpha,
-        d2_eta_acceleration_1_d_altitude_d_alpha,
-        d2_eta_acceleration_1_d_alpha_d_alpha,
-        d2_eta_acceleration_2_d_velocity_d_velocity,
-        d2_eta_acceleration_2_d_velocity_d_altitude,
-        d2_eta_acceleration_2_d_altitude_d_altitude,
-        d2_eta_acceleration_2_d_velocity_d_alpha,
-        d2_eta_acceleration_2_d_altitude_d_alpha,
-        d2_eta_acceleration_2_d_alpha_d_alpha,
-    ]
+    hessian.velocity_by_gamma_altitude = d2_velocity_rate_d_altitude_d_gamma;
+    hessian.velocity_by_gamma_gamma = d2_velocity_rate_d_gamma_d_gamma;
+    hessian.altitude_by_gamma_velocity = i.cos_gamma;
+    hessian.altitude_by_gamma_gamma = d2_altitude_rate_d_gamma_d_gamma;
+    hessian.gamma_by_gamma_velocity = d2_gamma_rate_d_velocity_d_gamma;
+    hessian.gamma_by_gamma_altitude = d2_gamma_rate_d_altitude_d_gamma;
+    hessian.gamma_by_gamma_gamma = d2_gamma_rate_d_gamma_d_gamma;
+    hessian.alpha_by_gamma_velocity = -d2_gamma_rate_d_velocity_d_gamma;
+    hessian.alpha_by_gamma_altitude = -d2_gamma_rate_d_altitude_d_gamma;
+    hessian.alpha_by_gamma_gamma = -d2_gamma_rate_d_gamma_d_gamma;
+    hessian.velocity_by_alpha_velocity = d2_velocity_rate_d_velocity_d_alpha;
+    hessian.velocity_by_alpha_altitude = d2_velocity_rate_d_altitude_d_alpha;
+    hessian.velocity_by_alpha_alpha = d2_velocity_rate_d_alpha_d_alpha;
+    hessian.gamma_by_alpha_velocity = d2_force_turn_d_velocity_d_alpha;
+    hessian.gamma_by_alpha_altitude = d2_force_turn_d_altitude_d_alpha;
+    hessian.gamma_by_alpha_alpha = d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha_by_alpha_velocity = -d2_force_turn_d_velocity_d_alpha;
+    hessian.alpha_by_alpha_altitude = -d2_force_turn_d_altitude_d_alpha;
+    hessian.alpha_by_alpha_alpha = -d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate_by_alpha_velocity = d2_pitch_acceleration_d_velocity_d_alpha;
+    hessian.pitch_rate_by_alpha_altitude = d2_pitch_acceleration_d_altitude_d_alpha;
+    hessian.pitch_rate_by_alpha_alpha = d2_pitch_acceleration_d_alpha_d_alpha;
+    hessian.eta_dot_1_by_alpha_velocity = d2_eta_acceleration_1_d_velocity_d_alpha;
+    hessian.eta_dot_1_by_alpha_altitude = d2_eta_acceleration_1_d_altitude_d_alpha;
+    hessian.eta_dot_1_by_alpha_alpha = d2_eta_acceleration_1_d_alpha_d_alpha;
+    hessian.eta_dot_2_by_alpha_velocity = d2_eta_acceleration_2_d_velocity_d_alpha;
+    hessian.eta_dot_2_by_alpha_altitude = d2_eta_acceleration_2_d_altitude_d_alpha;
+    hessian.eta_dot_2_by_alpha_alpha = d2_eta_acceleration_2_d_alpha_d_alpha;
+}
+
+/// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 220 operations: 49 additions, 166 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn hessian_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> HessianEntries<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let mut hessian = HessianEntries::splat(R::ZERO);
+    hessian_by_velocity_altitude(&mut hessian, x, p, &i, &s);
+    hessian_by_gamma_alpha(&mut hessian, x, u, p, &i, &s);
+    hessian
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
 #[inline(always)]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
-    HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
+    hessian_values(x, u, p).dense()
 }

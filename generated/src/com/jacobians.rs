@@ -7,204 +7,79 @@ use super::{
     drift_from, intermediates, slopes,
 };
 
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`StateJacobian`] stand.
-pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma),
-        ahv_core::at!(State.velocity, State.alpha),
-        ahv_core::at!(State.altitude, State.velocity),
-        ahv_core::at!(State.altitude, State.gamma),
-        ahv_core::at!(State.gamma, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.alpha),
-        ahv_core::at!(State.alpha, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma),
-        ahv_core::at!(State.alpha, State.alpha),
-        ahv_core::at!(State.alpha, State.pitch_rate),
-        ahv_core::at!(State.pitch_rate, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.eta_1),
-        ahv_core::at!(State.pitch_rate, State.eta_dot_1),
-        ahv_core::at!(State.pitch_rate, State.eta_2),
-        ahv_core::at!(State.pitch_rate, State.eta_dot_2),
-        ahv_core::at!(State.eta_1, State.eta_dot_1),
-        ahv_core::at!(State.eta_dot_1, State.velocity),
-        ahv_core::at!(State.eta_dot_1, State.altitude),
-        ahv_core::at!(State.eta_dot_1, State.alpha),
-        ahv_core::at!(State.eta_dot_1, State.eta_1),
-        ahv_core::at!(State.eta_dot_1, State.eta_dot_1),
-        ahv_core::at!(State.eta_dot_1, State.eta_2),
-        ahv_core::at!(State.eta_dot_1, State.eta_dot_2),
-        ahv_core::at!(State.eta_2, State.eta_dot_2),
-        ahv_core::at!(State.eta_dot_2, State.velocity),
-        ahv_core::at!(State.eta_dot_2, State.altitude),
-        ahv_core::at!(State.eta_dot_2, State.alpha),
-        ahv_core::at!(State.eta_dot_2, State.eta_1),
-        ahv_core::at!(State.eta_dot_2, State.eta_dot_1),
-        ahv_core::at!(State.eta_dot_2, State.eta_2),
-        ahv_core::at!(State.eta_dot_2, State.eta_dot_2),
-    ],
-);
-
-/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_state_jacobian<R: Real>(values: &[R; 38]) -> StateJacobian<R> {
-    let no_state = State::splat(R::ZERO);
-    State {
-        velocity: State {
-            velocity: values[0],
-            altitude: values[1],
-            gamma: values[2],
-            alpha: values[3],
-            ..no_state
-        },
-        altitude: State {
-            velocity: values[4],
-            gamma: values[5],
-            ..no_state
-        },
-        gamma: State {
-            velocity: values[6],
-            altitude: values[7],
-            gamma: values[8],
-            alpha: values[9],
-            ..no_state
-        },
-        alpha: State {
-            velocity: values[10],
-            altitude: values[11],
-            gamma: values[12],
-            alpha: values[13],
-            pitch_rate: values[14],
-            ..no_state
-        },
-        pitch_rate: State {
-            velocity: values[15],
-            altitude: values[16],
-            alpha: values[17],
-            eta_1: values[18],
-            eta_dot_1: values[19],
-            eta_2: values[20],
-            eta_dot_2: values[21],
-            ..no_state
-        },
-        eta_1: State {
-            eta_dot_1: values[22],
-            ..no_state
-        },
-        eta_dot_1: State {
-            velocity: values[23],
-            altitude: values[24],
-            alpha: values[25],
-            eta_1: values[26],
-            eta_dot_1: values[27],
-            eta_2: values[28],
-            eta_dot_2: values[29],
-            ..no_state
-        },
-        eta_2: State {
-            eta_dot_2: values[30],
-            ..no_state
-        },
-        eta_dot_2: State {
-            velocity: values[31],
-            altitude: values[32],
-            alpha: values[33],
-            eta_1: values[34],
-            eta_dot_1: values[35],
-            eta_2: values[36],
-            eta_dot_2: values[37],
-            ..no_state
-        },
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`StateJacobian`].
+    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity_by_velocity: velocity.velocity,
+        velocity_by_altitude: velocity.altitude,
+        velocity_by_gamma: velocity.gamma,
+        velocity_by_alpha: velocity.alpha,
+        altitude_by_velocity: altitude.velocity,
+        altitude_by_gamma: altitude.gamma,
+        gamma_by_velocity: gamma.velocity,
+        gamma_by_altitude: gamma.altitude,
+        gamma_by_gamma: gamma.gamma,
+        gamma_by_alpha: gamma.alpha,
+        alpha_by_velocity: alpha.velocity,
+        alpha_by_altitude: alpha.altitude,
+        alpha_by_gamma: alpha.gamma,
+        alpha_by_alpha: alpha.alpha,
+        alpha_by_pitch_rate: alpha.pitch_rate,
+        pitch_rate_by_velocity: pitch_rate.velocity,
+        pitch_rate_by_altitude: pitch_rate.altitude,
+        pitch_rate_by_alpha: pitch_rate.alpha,
+        pitch_rate_by_eta_1: pitch_rate.eta_1,
+        pitch_rate_by_eta_dot_1: pitch_rate.eta_dot_1,
+        pitch_rate_by_eta_2: pitch_rate.eta_2,
+        pitch_rate_by_eta_dot_2: pitch_rate.eta_dot_2,
+        eta_1_by_eta_dot_1: eta_1.eta_dot_1,
+        eta_dot_1_by_velocity: eta_dot_1.velocity,
+        eta_dot_1_by_altitude: eta_dot_1.altitude,
+        eta_dot_1_by_alpha: eta_dot_1.alpha,
+        eta_dot_1_by_eta_1: eta_dot_1.eta_1,
+        eta_dot_1_by_eta_dot_1: eta_dot_1.eta_dot_1,
+        eta_dot_1_by_eta_2: eta_dot_1.eta_2,
+        eta_dot_1_by_eta_dot_2: eta_dot_1.eta_dot_2,
+        eta_2_by_eta_dot_2: eta_2.eta_dot_2,
+        eta_dot_2_by_velocity: eta_dot_2.velocity,
+        eta_dot_2_by_altitude: eta_dot_2.altitude,
+        eta_dot_2_by_alpha: eta_dot_2.alpha,
+        eta_dot_2_by_eta_1: eta_dot_2.eta_1,
+        eta_dot_2_by_eta_dot_1: eta_dot_2.eta_dot_1,
+        eta_dot_2_by_eta_2: eta_dot_2.eta_2,
+        eta_dot_2_by_eta_dot_2: eta_dot_2.eta_dot_2,
     }
 }
 
-/// Where the entries of the compressed [`InputJacobian`] stand.
-pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Input::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Input.phi),
-        ahv_core::at!(State.velocity, Input.delta_e),
-        ahv_core::at!(State.gamma, Input.phi),
-        ahv_core::at!(State.gamma, Input.delta_e),
-        ahv_core::at!(State.alpha, Input.phi),
-        ahv_core::at!(State.alpha, Input.delta_e),
-        ahv_core::at!(State.pitch_rate, Input.phi),
-        ahv_core::at!(State.pitch_rate, Input.delta_e),
-        ahv_core::at!(State.eta_dot_1, Input.phi),
-        ahv_core::at!(State.eta_dot_1, Input.delta_e),
-        ahv_core::at!(State.eta_dot_2, Input.phi),
-        ahv_core::at!(State.eta_dot_2, Input.delta_e),
-    ],
-);
-
-/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_input_jacobian<R: Real>(values: &[R; 12]) -> InputJacobian<R> {
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    State {
-        velocity: Input {
-            phi: values[0],
-            delta_e: values[1],
-        },
-        gamma: Input {
-            phi: values[2],
-            delta_e: values[3],
-        },
-        alpha: Input {
-            phi: values[4],
-            delta_e: values[5],
-        },
-        pitch_rate: Input {
-            phi: values[6],
-            delta_e: values[7],
-        },
-        eta_dot_1: Input {
-            phi: values[8],
-            delta_e: values[9],
-        },
-        eta_dot_2: Input {
-            phi: values[10],
-            delta_e: values[11],
-        },
-        ..no_state_input
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`InputJacobian`].
+    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity_by_phi: velocity.phi,
+        velocity_by_delta_e: velocity.delta_e,
+        gamma_by_phi: gamma.phi,
+        gamma_by_delta_e: gamma.delta_e,
+        alpha_by_phi: alpha.phi,
+        alpha_by_delta_e: alpha.delta_e,
+        pitch_rate_by_phi: pitch_rate.phi,
+        pitch_rate_by_delta_e: pitch_rate.delta_e,
+        eta_dot_1_by_phi: eta_dot_1.phi,
+        eta_dot_1_by_delta_e: eta_dot_1.delta_e,
+        eta_dot_2_by_phi: eta_dot_2.phi,
+        eta_dot_2_by_delta_e: eta_dot_2.delta_e,
     }
 }
 
-/// Derivatives of the drift with respect to the state and to the input, eq. (1).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 171 operations: 46 additions, 120 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// Entries of [`jacobians_values`]: derivatives by velocity to eta_dot_2.
 #[inline(always)]
-pub fn jacobians_values<R: Real>(
+fn jacobians_by_velocity_to_eta_dot_2<R: Real>(
+    state: &mut StateJacobianEntries<R>,
     x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ([R; 38], [R; 12]) {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    jacobians_values_from(x, u, p, &i, &s)
-}
-
-/// [`jacobians_values`] from what is computed once.
-#[inline(always)]
-pub fn jacobians_values_from<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) -> ([R; 38], [R; 12]) {
+) {
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
@@ -256,6 +131,54 @@ pub fn jacobians_values_from<R: Real>(
     let d_eta_acceleration_2_d_alpha = d_generalized_force_2_d_alpha
         - p.psi_2 * d_pitch_acceleration_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
+    state.velocity_by_velocity = d_velocity_rate_d_velocity;
+    state.altitude_by_velocity = i.sin_gamma;
+    state.gamma_by_velocity = d_gamma_rate_d_velocity;
+    state.alpha_by_velocity = -d_gamma_rate_d_velocity;
+    state.pitch_rate_by_velocity = d_pitch_acceleration_d_velocity;
+    state.eta_dot_1_by_velocity = d_eta_acceleration_1_d_velocity;
+    state.eta_dot_2_by_velocity = d_eta_acceleration_2_d_velocity;
+    state.velocity_by_altitude = d_velocity_rate_d_altitude;
+    state.gamma_by_altitude = d_gamma_rate_d_altitude;
+    state.alpha_by_altitude = -d_gamma_rate_d_altitude;
+    state.pitch_rate_by_altitude = d_pitch_acceleration_d_altitude;
+    state.eta_dot_1_by_altitude = d_eta_acceleration_1_d_altitude;
+    state.eta_dot_2_by_altitude = d_eta_acceleration_2_d_altitude;
+    state.velocity_by_gamma = d_velocity_rate_d_gamma;
+    state.altitude_by_gamma = s.d_altitude_rate_d_gamma;
+    state.gamma_by_gamma = d_gamma_rate_d_gamma;
+    state.alpha_by_gamma = -d_gamma_rate_d_gamma;
+    state.velocity_by_alpha = d_velocity_rate_d_alpha;
+    state.gamma_by_alpha = d_force_turn_d_alpha;
+    state.alpha_by_alpha = -d_force_turn_d_alpha;
+    state.pitch_rate_by_alpha = d_pitch_acceleration_d_alpha;
+    state.eta_dot_1_by_alpha = d_eta_acceleration_1_d_alpha;
+    state.eta_dot_2_by_alpha = d_eta_acceleration_2_d_alpha;
+    state.alpha_by_pitch_rate = R::ONE;
+    state.pitch_rate_by_eta_1 = p.d_pitch_acceleration_d_eta_1;
+    state.eta_dot_1_by_eta_1 = p.d_eta_acceleration_1_d_eta_1;
+    state.eta_dot_2_by_eta_1 = p.d_eta_acceleration_2_d_eta_1;
+    state.pitch_rate_by_eta_dot_1 = p.d_pitch_acceleration_d_eta_dot_1;
+    state.eta_1_by_eta_dot_1 = R::ONE;
+    state.eta_dot_1_by_eta_dot_1 = p.d_eta_acceleration_1_d_eta_dot_1;
+    state.eta_dot_2_by_eta_dot_1 = p.d_eta_acceleration_2_d_eta_dot_1;
+    state.pitch_rate_by_eta_2 = p.d_pitch_acceleration_d_eta_2;
+    state.eta_dot_1_by_eta_2 = p.d_eta_acceleration_1_d_eta_2;
+    state.eta_dot_2_by_eta_2 = p.d_eta_acceleration_2_d_eta_2;
+    state.pitch_rate_by_eta_dot_2 = p.d_pitch_acceleration_d_eta_dot_2;
+    state.eta_dot_1_by_eta_dot_2 = p.d_eta_acceleration_1_d_eta_dot_2;
+    state.eta_2_by_eta_dot_2 = R::ONE;
+    state.eta_dot_2_by_eta_dot_2 = p.d_eta_acceleration_2_d_eta_dot_2;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by phi_delta_e.
+#[inline(always)]
+fn jacobians_by_phi_delta_e<R: Real>(
+    input: &mut InputJacobianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to phi
     let d_pitch_acceleration_d_phi = p.z_t_over_effective_inertia * i.thrust_phi; // rad/s^2
     let d_eta_acceleration_1_d_phi = -p.psi_1 * d_pitch_acceleration_d_phi; // ft^0.5*slug^0.5/s^2
@@ -270,62 +193,50 @@ pub fn jacobians_values_from<R: Real>(
     let d_eta_acceleration_2_d_delta_e = p.n_2_delta_e
         - p.psi_2 * d_pitch_acceleration_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
 
-    // Result
-    let state = [
-        d_velocity_rate_d_velocity,
-        d_velocity_rate_d_altitude,
-        d_velocity_rate_d_gamma,
-        d_velocity_rate_d_alpha,
-        i.sin_gamma,
-        s.d_altitude_rate_d_gamma,
-        d_gamma_rate_d_velocity,
-        d_gamma_rate_d_altitude,
-        d_gamma_rate_d_gamma,
-        d_force_turn_d_alpha,
-        -d_gamma_rate_d_velocity,
-        -d_gamma_rate_d_altitude,
-        -d_gamma_rate_d_gamma,
-        -d_force_turn_d_alpha,
-        R::ONE,
-        d_pitch_acceleration_d_velocity,
-        d_pitch_acceleration_d_altitude,
-        d_pitch_acceleration_d_alpha,
-        p.d_pitch_acceleration_d_eta_1,
-        p.d_pitch_acceleration_d_eta_dot_1,
-        p.d_pitch_acceleration_d_eta_2,
-        p.d_pitch_acceleration_d_eta_dot_2,
-        R::ONE,
-        d_eta_acceleration_1_d_velocity,
-        d_eta_acceleration_1_d_altitude,
-        d_eta_acceleration_1_d_alpha,
-        p.d_eta_acceleration_1_d_eta_1,
-        p.d_eta_acceleration_1_d_eta_dot_1,
-        p.d_eta_acceleration_1_d_eta_2,
-        p.d_eta_acceleration_1_d_eta_dot_2,
-        R::ONE,
-        d_eta_acceleration_2_d_velocity,
-        d_eta_acceleration_2_d_altitude,
-        d_eta_acceleration_2_d_alpha,
-        p.d_eta_acceleration_2_d_eta_1,
-        p.d_eta_acceleration_2_d_eta_dot_1,
-        p.d_eta_acceleration_2_d_eta_2,
-        p.d_eta_acceleration_2_d_eta_dot_2,
-    ];
-    let input = [
-        s.d_velocity_rate_d_phi,
-        s.d_velocity_rate_d_delta_e,
-        s.d_force_turn_d_phi,
-        i.turn_factor * p.c_l_delta_e,
-        -s.d_force_turn_d_phi,
-        d_alpha_rate_d_delta_e,
-        d_pitch_acceleration_d_phi,
-        d_pitch_acceleration_d_delta_e,
-        d_eta_acceleration_1_d_phi,
-        d_eta_acceleration_1_d_delta_e,
-        d_eta_acceleration_2_d_phi,
-        d_eta_acceleration_2_d_delta_e,
-    ];
+    input.velocity_by_phi = s.d_velocity_rate_d_phi;
+    input.gamma_by_phi = s.d_force_turn_d_phi;
+    input.alpha_by_phi = -s.d_force_turn_d_phi;
+    input.pitch_rate_by_phi = d_pitch_acceleration_d_phi;
+    input.eta_dot_1_by_phi = d_eta_acceleration_1_d_phi;
+    input.eta_dot_2_by_phi = d_eta_acceleration_2_d_phi;
+    input.velocity_by_delta_e = s.d_velocity_rate_d_delta_e;
+    input.gamma_by_delta_e = i.turn_factor * p.c_l_delta_e;
+    input.alpha_by_delta_e = d_alpha_rate_d_delta_e;
+    input.pitch_rate_by_delta_e = d_pitch_acceleration_d_delta_e;
+    input.eta_dot_1_by_delta_e = d_eta_acceleration_1_d_delta_e;
+    input.eta_dot_2_by_delta_e = d_eta_acceleration_2_d_delta_e;
+}
+
+/// [`jacobians_values`] from what is computed once.
+#[inline(always)]
+pub fn jacobians_values_from<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+    jacobians_by_velocity_to_eta_dot_2(&mut state, x, p, i, s);
+    jacobians_by_phi_delta_e(&mut input, p, i, s);
     (state, input)
+}
+
+/// Derivatives of the drift with respect to the state and to the input, eq. (1).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 171 operations: 46 additions, 120 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn jacobians_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    jacobians_values_from(x, u, p, &i, &s)
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
@@ -336,7 +247,7 @@ pub fn jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (state.dense(), input.dense())
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
@@ -350,7 +261,7 @@ pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, [R; 38], [R; 12]) {
+) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let drift = drift_from(x, u, p, &i);
@@ -367,5 +278,5 @@ pub fn drift_and_jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
-    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (drift, state.dense(), input.dense())
 }

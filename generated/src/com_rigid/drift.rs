@@ -5,15 +5,6 @@
 use super::{Input, Intermediates, Prepared, State, intermediates};
 use ahv_core::Real;
 
-/// Time derivative of the state, eq. (1).
-///
-/// 77 operations: 25 additions, 47 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline(always)]
-pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    let i = intermediates(x, u, p);
-    drift_from(x, u, p, &i)
-}
-
 /// [`drift`] from what is computed once.
 #[inline(always)]
 pub fn drift_from<R: Real>(
@@ -32,4 +23,13 @@ pub fn drift_from<R: Real>(
         alpha: alpha_rate,
         pitch_rate: i.pitch_acceleration,
     }
+}
+
+/// Time derivative of the state, eq. (1).
+///
+/// 77 operations: 25 additions, 47 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
+    let i = intermediates(x, u, p);
+    drift_from(x, u, p, &i)
 }

@@ -7,128 +7,44 @@ use super::{
     drift_from, intermediates, slopes,
 };
 
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`StateJacobian`] stand.
-pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma),
-        ahv_core::at!(State.velocity, State.alpha),
-        ahv_core::at!(State.altitude, State.velocity),
-        ahv_core::at!(State.altitude, State.gamma),
-        ahv_core::at!(State.gamma, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.alpha),
-        ahv_core::at!(State.alpha, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma),
-        ahv_core::at!(State.alpha, State.alpha),
-        ahv_core::at!(State.alpha, State.pitch_rate),
-        ahv_core::at!(State.pitch_rate, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha),
-    ],
-);
-
-/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_state_jacobian<R: Real>(values: &[R; 18]) -> StateJacobian<R> {
-    let no_state = State::splat(R::ZERO);
-    State {
-        velocity: State {
-            velocity: values[0],
-            altitude: values[1],
-            gamma: values[2],
-            alpha: values[3],
-            ..no_state
-        },
-        altitude: State {
-            velocity: values[4],
-            gamma: values[5],
-            ..no_state
-        },
-        gamma: State {
-            velocity: values[6],
-            altitude: values[7],
-            gamma: values[8],
-            alpha: values[9],
-            ..no_state
-        },
-        alpha: State {
-            velocity: values[10],
-            altitude: values[11],
-            gamma: values[12],
-            alpha: values[13],
-            pitch_rate: values[14],
-        },
-        pitch_rate: State {
-            velocity: values[15],
-            altitude: values[16],
-            alpha: values[17],
-            ..no_state
-        },
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`StateJacobian`].
+    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity_by_velocity: velocity.velocity,
+        velocity_by_altitude: velocity.altitude,
+        velocity_by_gamma: velocity.gamma,
+        velocity_by_alpha: velocity.alpha,
+        altitude_by_velocity: altitude.velocity,
+        altitude_by_gamma: altitude.gamma,
+        gamma_by_velocity: gamma.velocity,
+        gamma_by_altitude: gamma.altitude,
+        gamma_by_gamma: gamma.gamma,
+        gamma_by_alpha: gamma.alpha,
+        alpha_by_velocity: alpha.velocity,
+        alpha_by_altitude: alpha.altitude,
+        alpha_by_gamma: alpha.gamma,
+        alpha_by_alpha: alpha.alpha,
+        alpha_by_pitch_rate: alpha.pitch_rate,
+        pitch_rate_by_velocity: pitch_rate.velocity,
+        pitch_rate_by_altitude: pitch_rate.altitude,
+        pitch_rate_by_alpha: pitch_rate.alpha,
     }
 }
 
-/// Where the entries of the compressed [`InputJacobian`] stand.
-pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Input::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Input.phi),
-        ahv_core::at!(State.velocity, Input.delta_e),
-        ahv_core::at!(State.gamma, Input.phi),
-        ahv_core::at!(State.gamma, Input.delta_e),
-        ahv_core::at!(State.alpha, Input.phi),
-        ahv_core::at!(State.alpha, Input.delta_e),
-        ahv_core::at!(State.pitch_rate, Input.phi),
-        ahv_core::at!(State.pitch_rate, Input.delta_e),
-    ],
-);
-
-/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_input_jacobian<R: Real>(values: &[R; 8]) -> InputJacobian<R> {
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    State {
-        velocity: Input {
-            phi: values[0],
-            delta_e: values[1],
-        },
-        gamma: Input {
-            phi: values[2],
-            delta_e: values[3],
-        },
-        alpha: Input {
-            phi: values[4],
-            delta_e: values[5],
-        },
-        pitch_rate: Input {
-            phi: values[6],
-            delta_e: values[7],
-        },
-        ..no_state_input
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`InputJacobian`].
+    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity_by_phi: velocity.phi,
+        velocity_by_delta_e: velocity.delta_e,
+        gamma_by_phi: gamma.phi,
+        gamma_by_delta_e: gamma.delta_e,
+        alpha_by_phi: alpha.phi,
+        alpha_by_delta_e: alpha.delta_e,
+        pitch_rate_by_phi: pitch_rate.phi,
+        pitch_rate_by_delta_e: pitch_rate.delta_e,
     }
-}
-
-/// Derivatives of the drift with respect to the state and to the input, eq. (1).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 149 operations: 38 additions, 106 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline(always)]
-pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ([R; 18], [R; 8]) {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    jacobians_values_from(x, u, p, &i, &s)
 }
 
 /// [`jacobians_values`] from what is computed once.
@@ -139,7 +55,7 @@ pub fn jacobians_values_from<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) -> ([R; 18], [R; 8]) {
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
     let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
@@ -186,37 +102,53 @@ pub fn jacobians_values_from<R: Real>(
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
     // Result
-    let state = [
-        d_velocity_rate_d_velocity,
-        d_velocity_rate_d_altitude,
-        d_velocity_rate_d_gamma,
-        d_velocity_rate_d_alpha,
-        i.sin_gamma,
-        s.d_altitude_rate_d_gamma,
-        d_gamma_rate_d_velocity,
-        d_gamma_rate_d_altitude,
-        d_gamma_rate_d_gamma,
-        d_force_turn_d_alpha,
-        -d_gamma_rate_d_velocity,
-        -d_gamma_rate_d_altitude,
-        -d_gamma_rate_d_gamma,
-        -d_force_turn_d_alpha,
-        R::ONE,
-        d_pitch_acceleration_d_velocity,
-        d_pitch_acceleration_d_altitude,
-        d_pitch_acceleration_d_alpha,
-    ];
-    let input = [
-        s.d_velocity_rate_d_phi,
-        s.d_velocity_rate_d_delta_e,
-        s.d_force_turn_d_phi,
-        i.turn_factor * p.c_l_delta_e,
-        -s.d_force_turn_d_phi,
-        d_alpha_rate_d_delta_e,
-        d_pitch_acceleration_d_phi,
-        d_pitch_acceleration_d_delta_e,
-    ];
+    let state = StateJacobianEntries {
+        velocity_by_velocity: d_velocity_rate_d_velocity,
+        velocity_by_altitude: d_velocity_rate_d_altitude,
+        velocity_by_gamma: d_velocity_rate_d_gamma,
+        velocity_by_alpha: d_velocity_rate_d_alpha,
+        altitude_by_velocity: i.sin_gamma,
+        altitude_by_gamma: s.d_altitude_rate_d_gamma,
+        gamma_by_velocity: d_gamma_rate_d_velocity,
+        gamma_by_altitude: d_gamma_rate_d_altitude,
+        gamma_by_gamma: d_gamma_rate_d_gamma,
+        gamma_by_alpha: d_force_turn_d_alpha,
+        alpha_by_velocity: -d_gamma_rate_d_velocity,
+        alpha_by_altitude: -d_gamma_rate_d_altitude,
+        alpha_by_gamma: -d_gamma_rate_d_gamma,
+        alpha_by_alpha: -d_force_turn_d_alpha,
+        alpha_by_pitch_rate: R::ONE,
+        pitch_rate_by_velocity: d_pitch_acceleration_d_velocity,
+        pitch_rate_by_altitude: d_pitch_acceleration_d_altitude,
+        pitch_rate_by_alpha: d_pitch_acceleration_d_alpha,
+    };
+    let input = InputJacobianEntries {
+        velocity_by_phi: s.d_velocity_rate_d_phi,
+        velocity_by_delta_e: s.d_velocity_rate_d_delta_e,
+        gamma_by_phi: s.d_force_turn_d_phi,
+        gamma_by_delta_e: i.turn_factor * p.c_l_delta_e,
+        alpha_by_phi: -s.d_force_turn_d_phi,
+        alpha_by_delta_e: d_alpha_rate_d_delta_e,
+        pitch_rate_by_phi: d_pitch_acceleration_d_phi,
+        pitch_rate_by_delta_e: d_pitch_acceleration_d_delta_e,
+    };
     (state, input)
+}
+
+/// Derivatives of the drift with respect to the state and to the input, eq. (1).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 149 operations: 38 additions, 106 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn jacobians_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    jacobians_values_from(x, u, p, &i, &s)
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
@@ -227,7 +159,7 @@ pub fn jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (state.dense(), input.dense())
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
@@ -241,7 +173,7 @@ pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, [R; 18], [R; 8]) {
+) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let drift = drift_from(x, u, p, &i);
@@ -258,5 +190,5 @@ pub fn drift_and_jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
-    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (drift, state.dense(), input.dense())
 }

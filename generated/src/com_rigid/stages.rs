@@ -5,73 +5,73 @@
 use super::{Input, Prepared, State};
 use ahv_core::Real;
 
-/// Quantities of the drift that other functions need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Intermediates<R> {
-    /// Air density over its reference, dimensionless.
-    pub density_ratio: R,
-    /// Air density, slug/ft^3.
-    pub density: R,
-    /// `x.velocity * x.velocity`.
-    pub velocity_2: R,
-    /// Dynamic pressure, lb/ft^2.
-    pub dynamic_pressure: R,
-    /// Dynamic pressure times reference area, lb/ft.
-    pub reference_force: R,
-    /// Sin of the angle of attack, dimensionless.
-    pub sin_alpha: R,
-    /// Cos of the angle of attack, dimensionless.
-    pub cos_alpha: R,
-    /// Sin of the flight-path angle, dimensionless.
-    pub sin_gamma: R,
-    /// Cos of the flight-path angle, dimensionless.
-    pub cos_gamma: R,
-    /// Radius of the Earth over the distance to its centre, dimensionless.
-    pub radius_ratio: R,
-    /// `radius_ratio * radius_ratio`.
-    pub radius_ratio_2: R,
-    /// Acceleration of gravity at altitude, ft/s^2.
-    pub gravity: R,
-    /// `1 / x.velocity`.
-    pub inv_velocity: R,
-    /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
-    pub gravity_turn: R,
-    /// Reciprocal of mass times velocity, s/slug.
-    pub inverse_momentum: R,
-    /// Turn rate per force coefficient across the flight path, 1/s.
-    pub turn_factor: R,
-    /// `x.alpha * x.alpha`.
-    pub alpha_2: R,
-    /// `x.alpha * alpha_2`.
-    pub alpha_3: R,
-    /// Slope of the thrust in the fuel equivalence ratio, lb/ft.
-    pub thrust_phi: R,
-    /// Thrust, lb/ft.
-    pub thrust: R,
-    /// Lift coefficient, dimensionless.
-    pub c_l: R,
-    /// `u.delta_e * u.delta_e`.
-    pub delta_e_2: R,
-    /// Drag coefficient, dimensionless.
-    pub c_d: R,
-    /// Pitching-moment coefficient, dimensionless.
-    pub c_m: R,
-    /// Drag, lb/ft.
-    pub drag: R,
-    /// Pitching moment, lb.
-    pub pitching_moment: R,
-    /// Force along the flight path, lb/ft.
-    pub path_force: R,
-    /// Rate of the velocity, ft/s^2.
-    pub velocity_rate: R,
-    /// Rate of the altitude, ft/s.
-    pub altitude_rate: R,
-    /// Rate of the flight-path angle, rad/s.
-    pub gamma_rate: R,
-    /// Pitch acceleration, rad/s^2.
-    pub pitch_acceleration: R,
+ahv_core::record! {
+    /// Quantities of the drift that other functions need.
+    pub struct Intermediates<R> {
+        /// Air density over its reference, dimensionless.
+        pub density_ratio: R,
+        /// Air density, slug/ft^3.
+        pub density: R,
+        /// `x.velocity * x.velocity`.
+        pub velocity_2: R,
+        /// Dynamic pressure, lb/ft^2.
+        pub dynamic_pressure: R,
+        /// Dynamic pressure times reference area, lb/ft.
+        pub reference_force: R,
+        /// Sin of the angle of attack, dimensionless.
+        pub sin_alpha: R,
+        /// Cos of the angle of attack, dimensionless.
+        pub cos_alpha: R,
+        /// Sin of the flight-path angle, dimensionless.
+        pub sin_gamma: R,
+        /// Cos of the flight-path angle, dimensionless.
+        pub cos_gamma: R,
+        /// Radius of the Earth over the distance to its centre, dimensionless.
+        pub radius_ratio: R,
+        /// `i.radius_ratio * i.radius_ratio`.
+        pub radius_ratio_2: R,
+        /// Acceleration of gravity at altitude, ft/s^2.
+        pub gravity: R,
+        /// `1 / x.velocity`.
+        pub inv_velocity: R,
+        /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
+        pub gravity_turn: R,
+        /// Reciprocal of mass times velocity, s/slug.
+        pub inverse_momentum: R,
+        /// Turn rate per force coefficient across the flight path, 1/s.
+        pub turn_factor: R,
+        /// `x.alpha * x.alpha`.
+        pub alpha_2: R,
+        /// `x.alpha * i.alpha_2`.
+        pub alpha_3: R,
+        /// Slope of the thrust in the fuel equivalence ratio, lb/ft.
+        pub thrust_phi: R,
+        /// Thrust, lb/ft.
+        pub thrust: R,
+        /// Lift coefficient, dimensionless.
+        pub c_l: R,
+        /// `u.delta_e * u.delta_e`.
+        pub delta_e_2: R,
+        /// Drag coefficient, dimensionless.
+        pub c_d: R,
+        /// Pitching-moment coefficient, dimensionless.
+        pub c_m: R,
+        /// Drag, lb/ft.
+        pub drag: R,
+        /// Pitching moment, lb.
+        pub pitching_moment: R,
+        /// Force along the flight path, lb/ft.
+        pub path_force: R,
+        /// Rate of the velocity, ft/s^2.
+        pub velocity_rate: R,
+        /// Rate of the altitude, ft/s.
+        pub altitude_rate: R,
+        /// Rate of the flight-path angle, rad/s.
+        pub gamma_rate: R,
+        /// Pitch acceleration, rad/s^2.
+        pub pitch_acceleration: R,
+    }
 }
-
 /// Computes [`Intermediates`].
 #[inline(always)]
 pub fn intermediates<R: Real>(
@@ -79,151 +79,120 @@ pub fn intermediates<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> Intermediates<R> {
+    let mut i = Intermediates::splat(R::ZERO);
+
     // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    i.density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
+    i.density = p.rho_0 * i.density_ratio; // slug/ft^3
+    i.velocity_2 = x.velocity * x.velocity;
+    i.dynamic_pressure = R::HALF * i.density * i.velocity_2; // lb/ft^2
+    i.reference_force = i.dynamic_pressure * p.s; // lb/ft
 
     // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
+    (i.sin_alpha, i.cos_alpha) = x.alpha.sin_cos();
+    (i.sin_gamma, i.cos_gamma) = x.gamma.sin_cos();
 
     // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
+    i.radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    i.radius_ratio_2 = i.radius_ratio * i.radius_ratio;
+    i.gravity = p.g * i.radius_ratio_2; // ft/s^2
+    i.inv_velocity = x.velocity.recip();
+    i.gravity_turn = i.gravity * i.inv_velocity
+        - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
-    let inverse_momentum = p.inv_m * inv_velocity; // s/slug
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
+    i.inverse_momentum = p.inv_m * i.inv_velocity; // s/slug
+    i.turn_factor = i.density * x.velocity * p.half_s_over_m; // 1/s
 
     // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let alpha_3 = x.alpha * alpha_2;
-    let thrust_phi = p.t_phi
-        + p.t_phi_alpha_3 * alpha_3
-        + p.t_phi_alpha_2 * alpha_2
+    i.alpha_2 = x.alpha * x.alpha;
+    i.alpha_3 = x.alpha * i.alpha_2;
+    i.thrust_phi = p.t_phi
+        + p.t_phi_alpha_3 * i.alpha_3
+        + p.t_phi_alpha_2 * i.alpha_2
         + p.t_phi_alpha * x.alpha; // lb/ft
-    let thrust = p.t_0
-        + thrust_phi * u.phi
-        + p.t_alpha_3 * alpha_3
-        + p.t_alpha_2 * alpha_2
+    i.thrust = p.t_0
+        + i.thrust_phi * u.phi
+        + p.t_alpha_3 * i.alpha_3
+        + p.t_alpha_2 * i.alpha_2
         + p.t_alpha * x.alpha; // lb/ft
-    let c_l = p.c_l_0
+    i.c_l = p.c_l_0
         + p.c_l_alpha * x.alpha
         + p.c_l_delta_e * u.delta_e;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * alpha_2
+    i.delta_e_2 = u.delta_e * u.delta_e;
+    i.c_d = p.c_d_0
+        + p.c_d_alpha_2 * i.alpha_2
         + p.c_d_alpha * x.alpha
-        + p.c_d_delta_e_2 * delta_e_2
+        + p.c_d_delta_e_2 * i.delta_e_2
         + p.c_d_delta_e * u.delta_e;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * alpha_2
+    i.c_m = p.c_m_0
+        + p.c_m_alpha_2 * i.alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e;
 
     // Forces and moment, (2)
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * p.c_bar * c_m; // lb
+    i.drag = i.reference_force * i.c_d; // lb/ft
+    i.pitching_moment = p.z_t * i.thrust + i.reference_force * p.c_bar * i.c_m; // lb
 
     // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * c_l + thrust * sin_alpha * inverse_momentum; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
+    i.path_force = i.thrust * i.cos_alpha - i.drag; // lb/ft
+    let force_turn = i.turn_factor * i.c_l + i.thrust * i.sin_alpha * i.inverse_momentum; // rad/s
+    i.velocity_rate = i.path_force * p.inv_m - i.gravity * i.sin_gamma; // ft/s^2
+    i.altitude_rate = x.velocity * i.sin_gamma; // ft/s
+    i.gamma_rate = force_turn - i.gravity_turn * i.cos_gamma; // rad/s
+    i.pitch_acceleration = i.pitching_moment * p.inv_i_yy; // rad/s^2
+    i
+}
 
-    Intermediates {
-        density_ratio,
-        density,
-        velocity_2,
-        dynamic_pressure,
-        reference_force,
-        sin_alpha,
-        cos_alpha,
-        sin_gamma,
-        cos_gamma,
-        radius_ratio,
-        radius_ratio_2,
-        gravity,
-        inv_velocity,
-        gravity_turn,
-        inverse_momentum,
-        turn_factor,
-        alpha_2,
-        alpha_3,
-        thrust_phi,
-        thrust,
-        c_l,
-        delta_e_2,
-        c_d,
-        c_m,
-        drag,
-        pitching_moment,
-        path_force,
-        velocity_rate,
-        altitude_rate,
-        gamma_rate,
-        pitch_acceleration,
+ahv_core::record! {
+    /// Quantities of the Jacobians that other functions need.
+    pub struct Slopes<R> {
+        /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
+        pub d_dynamic_pressure_d_velocity: R,
+        /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
+        pub d_reference_force_d_velocity: R,
+        /// `i.inv_velocity * i.inv_velocity`.
+        pub inv_velocity_2: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// velocity, 1/ft.
+        pub d_gravity_turn_d_velocity: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
+        pub d_turn_factor_d_velocity: R,
+        /// `i.inverse_momentum * i.inverse_momentum`.
+        pub inverse_momentum_2: R,
+        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
+        pub d_radius_ratio_d_altitude: R,
+        /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
+        pub d_gravity_d_altitude: R,
+        /// Derivative of air density with respect to altitude, slug/ft^4.
+        pub d_density_d_altitude: R,
+        /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
+        pub d_reference_force_d_altitude: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// altitude, 1/s/ft.
+        pub d_gravity_turn_d_altitude: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
+        pub d_turn_factor_d_altitude: R,
+        /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
+        pub d_altitude_rate_d_gamma: R,
+        /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
+        pub d_cos_gamma_d_gamma: R,
+        /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
+        pub d_cos_alpha_d_alpha: R,
+        /// Derivative of thrust with respect to alpha, lb/ft/rad.
+        pub d_thrust_d_alpha: R,
+        /// Derivative of drag coefficient with respect to alpha, 1/rad.
+        pub d_c_d_d_alpha: R,
+        /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
+        pub d_c_m_d_alpha: R,
+        /// Derivative of rate of the velocity with respect to phi, ft/s^2.
+        pub d_velocity_rate_d_phi: R,
+        /// Derivative of turn rate by the force across the flight path with respect to phi, rad/s.
+        pub d_force_turn_d_phi: R,
+        /// Derivative of rate of the velocity with respect to delta_e, ft/s^2/rad.
+        pub d_velocity_rate_d_delta_e: R,
     }
 }
-
-/// Quantities of the Jacobians that other functions need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slopes<R> {
-    /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
-    pub d_dynamic_pressure_d_velocity: R,
-    /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
-    pub d_reference_force_d_velocity: R,
-    /// `i.inv_velocity * i.inv_velocity`.
-    pub inv_velocity_2: R,
-    /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-    /// velocity, 1/ft.
-    pub d_gravity_turn_d_velocity: R,
-    /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
-    pub d_turn_factor_d_velocity: R,
-    /// `i.inverse_momentum * i.inverse_momentum`.
-    pub inverse_momentum_2: R,
-    /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
-    pub d_radius_ratio_d_altitude: R,
-    /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
-    pub d_gravity_d_altitude: R,
-    /// Derivative of air density with respect to altitude, slug/ft^4.
-    pub d_density_d_altitude: R,
-    /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
-    pub d_reference_force_d_altitude: R,
-    /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-    /// altitude, 1/s/ft.
-    pub d_gravity_turn_d_altitude: R,
-    /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
-    pub d_turn_factor_d_altitude: R,
-    /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
-    pub d_altitude_rate_d_gamma: R,
-    /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
-    pub d_cos_gamma_d_gamma: R,
-    /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
-    pub d_cos_alpha_d_alpha: R,
-    /// Derivative of thrust with respect to alpha, lb/ft/rad.
-    pub d_thrust_d_alpha: R,
-    /// Derivative of drag coefficient with respect to alpha, 1/rad.
-    pub d_c_d_d_alpha: R,
-    /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
-    pub d_c_m_d_alpha: R,
-    /// Derivative of rate of the velocity with respect to phi, ft/s^2.
-    pub d_velocity_rate_d_phi: R,
-    /// Derivative of turn rate by the force across the flight path with respect to phi, rad/s.
-    pub d_force_turn_d_phi: R,
-    /// Derivative of rate of the velocity with respect to delta_e, ft/s^2/rad.
-    pub d_velocity_rate_d_delta_e: R,
-}
-
 /// Computes [`Slopes`].
 #[inline(always)]
 pub fn slopes<R: Real>(
@@ -232,73 +201,52 @@ pub fn slopes<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) -> Slopes<R> {
+    let mut s = Slopes::splat(R::ZERO);
+
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let inv_velocity_2 = i.inv_velocity * i.inv_velocity;
-    let d_gravity_turn_d_velocity = -(i.gravity * inv_velocity_2
+    s.d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
+    s.d_reference_force_d_velocity = p.s * s.d_dynamic_pressure_d_velocity; // lb*s/ft^2
+    s.inv_velocity_2 = i.inv_velocity * i.inv_velocity;
+    s.d_gravity_turn_d_velocity = -(i.gravity * s.inv_velocity_2
         + p.earth_curvature * i.radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
+    s.d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
 
     // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -i.radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * i.radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
+    s.d_radius_ratio_d_altitude = -i.radius_ratio_2 * p.earth_curvature; // 1/ft
+    s.d_gravity_d_altitude = p.two_g * i.radius_ratio * s.d_radius_ratio_d_altitude; // 1/s^2
     let d_density_ratio_d_altitude = -i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * i.inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
+    s.d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
+    let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * s.d_density_d_altitude; // lb/ft^3
+    s.d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
+    s.d_gravity_turn_d_altitude = s.d_gravity_d_altitude * i.inv_velocity
+        - x.velocity * p.earth_curvature * s.d_radius_ratio_d_altitude; // 1/s/ft
+    s.d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * s.d_density_d_altitude; // 1/s/ft
 
     // Derivatives with respect to gamma
-    let d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
+    s.d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
+    s.d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
+    s.d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
     let d_thrust_phi_d_alpha = p.three_t_phi_alpha_3 * i.alpha_2
         + p.two_t_phi_alpha_2 * x.alpha
         + p.t_phi_alpha; // lb/ft/rad
-    let d_thrust_d_alpha = p.three_t_alpha_3 * i.alpha_2
+    s.d_thrust_d_alpha = p.three_t_alpha_3 * i.alpha_2
         + p.two_t_alpha_2 * x.alpha
         + p.t_alpha
         + u.phi * d_thrust_phi_d_alpha; // lb/ft/rad
-    let d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    let d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
+    s.d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
+    s.d_c_m_d_alpha = p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha; // 1/rad
 
     // Derivatives with respect to phi
     let d_path_force_d_phi = i.cos_alpha * i.thrust_phi; // lb/ft
-    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
-    let d_force_turn_d_phi = i.inverse_momentum * i.sin_alpha * i.thrust_phi; // rad/s
+    s.d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
+    s.d_force_turn_d_phi = i.inverse_momentum * i.sin_alpha * i.thrust_phi; // rad/s
 
     // Derivatives with respect to delta_e
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
     let d_drag_d_delta_e = i.reference_force * d_c_d_d_delta_e; // lb/ft/rad
-    let d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
-    let inverse_momentum_2 = i.inverse_momentum * i.inverse_momentum;
-
-    Slopes {
-        d_dynamic_pressure_d_velocity,
-        d_reference_force_d_velocity,
-        inv_velocity_2,
-        d_gravity_turn_d_velocity,
-        d_turn_factor_d_velocity,
-        inverse_momentum_2,
-        d_radius_ratio_d_altitude,
-        d_gravity_d_altitude,
-        d_density_d_altitude,
-        d_reference_force_d_altitude,
-        d_gravity_turn_d_altitude,
-        d_turn_factor_d_altitude,
-        d_altitude_rate_d_gamma,
-        d_cos_gamma_d_gamma,
-        d_cos_alpha_d_alpha,
-        d_thrust_d_alpha,
-        d_c_d_d_alpha,
-        d_c_m_d_alpha,
-        d_velocity_rate_d_phi,
-        d_force_turn_d_phi,
-        d_velocity_rate_d_delta_e,
-    }
+    s.d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
+    s.inverse_momentum_2 = i.inverse_momentum * i.inverse_momentum;
+    s
 }

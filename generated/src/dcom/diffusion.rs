@@ -7,80 +7,58 @@ use super::{
     intermediates, slopes,
 };
 
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`Diffusion`] stand.
-pub const DIFFUSION_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Noise::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Noise.w_gamma),
-        ahv_core::at!(State.velocity, Noise.w_alpha),
-        ahv_core::at!(State.altitude, Noise.w_gamma),
-        ahv_core::at!(State.gamma, Noise.w_gamma),
-        ahv_core::at!(State.gamma, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_gamma),
-        ahv_core::at!(State.alpha, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_q),
-        ahv_core::at!(State.pitch_rate, Noise.w_alpha),
-        ahv_core::at!(State.eta_dot_1, Noise.w_alpha),
-        ahv_core::at!(State.eta_dot_1, Noise.xi_1),
-        ahv_core::at!(State.eta_dot_2, Noise.w_alpha),
-        ahv_core::at!(State.eta_dot_2, Noise.xi_1),
-        ahv_core::at!(State.eta_dot_2, Noise.xi_2),
-        ahv_core::at!(State.eta_dot_3, Noise.w_alpha),
-        ahv_core::at!(State.eta_dot_3, Noise.xi_1),
-        ahv_core::at!(State.eta_dot_3, Noise.xi_3),
-    ],
-);
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`Diffusion`].
+    pub struct DiffusionEntries, DIFFUSION_PATTERN: State<Noise> {
+        velocity_by_w_gamma: velocity.w_gamma,
+        velocity_by_w_alpha: velocity.w_alpha,
+        altitude_by_w_gamma: altitude.w_gamma,
+        gamma_by_w_gamma: gamma.w_gamma,
+        gamma_by_w_alpha: gamma.w_alpha,
+        alpha_by_w_gamma: alpha.w_gamma,
+        alpha_by_w_alpha: alpha.w_alpha,
+        alpha_by_w_q: alpha.w_q,
+        pitch_rate_by_w_alpha: pitch_rate.w_alpha,
+        eta_dot_1_by_w_alpha: eta_dot_1.w_alpha,
+        eta_dot_1_by_xi_1: eta_dot_1.xi_1,
+        eta_dot_2_by_w_alpha: eta_dot_2.w_alpha,
+        eta_dot_2_by_xi_1: eta_dot_2.xi_1,
+        eta_dot_2_by_xi_2: eta_dot_2.xi_2,
+        eta_dot_3_by_w_alpha: eta_dot_3.w_alpha,
+        eta_dot_3_by_xi_1: eta_dot_3.xi_1,
+        eta_dot_3_by_xi_3: eta_dot_3.xi_3,
+    }
+}
 
-/// The [`Diffusion`] whose structurally non-zero entries are `values`, in the order of the pattern.
+/// [`diffusion_values`] from what is computed once.
 #[inline(always)]
-pub fn dense_diffusion<R: Real>(values: &[R; 17]) -> Diffusion<R> {
-    let no_noise = Noise::splat(R::ZERO);
-    let no_state_noise = State::splat(no_noise);
-    State {
-        velocity: Noise {
-            w_gamma: values[0],
-            w_alpha: values[1],
-            ..no_noise
-        },
-        altitude: Noise {
-            w_gamma: values[2],
-            ..no_noise
-        },
-        gamma: Noise {
-            w_gamma: values[3],
-            w_alpha: values[4],
-            ..no_noise
-        },
-        alpha: Noise {
-            w_gamma: values[5],
-            w_alpha: values[6],
-            w_q: values[7],
-            ..no_noise
-        },
-        pitch_rate: Noise {
-            w_alpha: values[8],
-            ..no_noise
-        },
-        eta_dot_1: Noise {
-            w_alpha: values[9],
-            xi_1: values[10],
-            ..no_noise
-        },
-        eta_dot_2: Noise {
-            w_alpha: values[11],
-            xi_1: values[12],
-            xi_2: values[13],
-            ..no_noise
-        },
-        eta_dot_3: Noise {
-            w_alpha: values[14],
-            xi_1: values[15],
-            xi_3: values[16],
-            ..no_noise
-        },
-        ..no_state_noise
+pub fn diffusion_values_from<R: Real>(
+    _x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    _i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> DiffusionEntries<R> {
+    DiffusionEntries {
+        velocity_by_w_gamma: s.d_velocity_rate_d_gamma * p.w_gamma,
+        velocity_by_w_alpha: s.d_velocity_rate_d_alpha * p.w_alpha,
+        altitude_by_w_gamma: s.d_altitude_rate_d_gamma * p.w_gamma,
+        gamma_by_w_gamma: s.d_gamma_rate_d_gamma * p.w_gamma,
+        gamma_by_w_alpha: s.d_force_turn_d_alpha * p.w_alpha,
+        alpha_by_w_gamma: -s.d_gamma_rate_d_gamma * p.w_gamma,
+        alpha_by_w_alpha: -s.d_force_turn_d_alpha * p.w_alpha,
+        alpha_by_w_q: p.w_q,
+        pitch_rate_by_w_alpha: s.d_pitch_acceleration_d_alpha * p.w_alpha,
+        eta_dot_1_by_w_alpha: s.d_generalized_force_1_d_alpha * p.w_alpha,
+        eta_dot_1_by_xi_1: p.sigma_1,
+        eta_dot_2_by_w_alpha: s.d_generalized_force_2_d_alpha * p.w_alpha,
+        eta_dot_2_by_xi_1: p.sigma_2_shared_noise,
+        eta_dot_2_by_xi_2: p.sigma_2_own_noise,
+        eta_dot_3_by_w_alpha: s.d_generalized_force_3_d_alpha * p.w_alpha,
+        eta_dot_3_by_xi_1: p.sigma_3_shared_noise,
+        eta_dot_3_by_xi_3: p.sigma_3_own_noise,
     }
 }
 
@@ -95,47 +73,17 @@ pub fn diffusion_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> [R; 17] {
+) -> DiffusionEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     diffusion_values_from(x, u, p, &i, &s)
-}
-
-/// [`diffusion_values`] from what is computed once.
-#[inline(always)]
-pub fn diffusion_values_from<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    _i: &Intermediates<R>,
-    s: &Slopes<R>,
-) -> [R; 17] {
-    [
-        s.d_velocity_rate_d_gamma * p.w_gamma,
-        s.d_velocity_rate_d_alpha * p.w_alpha,
-        s.d_altitude_rate_d_gamma * p.w_gamma,
-        s.d_gamma_rate_d_gamma * p.w_gamma,
-        s.d_force_turn_d_alpha * p.w_alpha,
-        -s.d_gamma_rate_d_gamma * p.w_gamma,
-        -s.d_force_turn_d_alpha * p.w_alpha,
-        p.w_q,
-        s.d_pitch_acceleration_d_alpha * p.w_alpha,
-        s.d_generalized_force_1_d_alpha * p.w_alpha,
-        p.sigma_1,
-        s.d_generalized_force_2_d_alpha * p.w_alpha,
-        p.sigma_2_shared_noise,
-        p.sigma_2_own_noise,
-        s.d_generalized_force_3_d_alpha * p.w_alpha,
-        p.sigma_3_shared_noise,
-        p.sigma_3_own_noise,
-    ]
 }
 
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the columns of w_gamma, w_alpha
 /// and w_q are derivatives of the drift; the modes are driven as in (17), eq. (17).
 #[inline(always)]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    dense_diffusion(&diffusion_values(x, u, p))
+    diffusion_values(x, u, p).dense()
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (17).
@@ -151,22 +99,7 @@ pub fn drift_and_diffusion<R: Real>(
     let s = slopes(x, u, p, &i);
     let drift = drift_from(x, u, p, &i);
     let diffusion = diffusion_values_from(x, u, p, &i, &s);
-    (drift, dense_diffusion(&diffusion))
-}
-
-/// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (17).
-///
-/// 122 operations: 37 additions, 80 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline(always)]
-pub fn noise_increment<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
-) -> State<R> {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    noise_increment_from(x, u, p, dw, &i, &s)
+    (drift, diffusion.dense())
 }
 
 /// [`noise_increment`] from what is computed once.
@@ -204,6 +137,21 @@ pub fn noise_increment_from<R: Real>(
         eta_dot_3: p.sigma_3 * (shared_noise_dxi_1 + p.own_noise * dw.xi_3)
             + s.d_generalized_force_3_d_alpha * p.w_alpha * dw.w_alpha,
     }
+}
+
+/// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (17).
+///
+/// 122 operations: 37 additions, 80 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn noise_increment<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    dw: &Noise<R>,
+) -> State<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    noise_increment_from(x, u, p, dw, &i, &s)
 }
 
 /// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq. (17).

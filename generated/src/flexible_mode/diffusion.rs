@@ -3,23 +3,13 @@
 //! Functions of FLEXIBLE_MODE. Units are foot, slug, second and radian.
 
 use super::{Diffusion, Input, Noise, Prepared, State, drift};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`Diffusion`] stand.
-pub const DIFFUSION_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Noise::<u8>::LEN],
-    &[ahv_core::at!(State.eta_dot, Noise.xi), ahv_core::at!(State.chi, Noise.xi)],
-);
-
-/// The [`Diffusion`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_diffusion<R: Real>(values: &[R; 2]) -> Diffusion<R> {
-    let no_noise = Noise::splat(R::ZERO);
-    let no_state_noise = State::splat(no_noise);
-    State {
-        eta_dot: Noise { xi: values[0] },
-        chi: Noise { xi: values[1] },
-        ..no_state_noise
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`Diffusion`].
+    pub struct DiffusionEntries, DIFFUSION_PATTERN: State<Noise> {
+        eta_dot_by_xi: eta_dot.xi,
+        chi_by_xi: chi.xi,
     }
 }
 
@@ -34,15 +24,18 @@ pub fn diffusion_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
     p: &Prepared<R>,
-) -> [R; 2] {
-    [p.sigma, p.chi_diffusion]
+) -> DiffusionEntries<R> {
+    DiffusionEntries {
+        eta_dot_by_xi: p.sigma,
+        chi_by_xi: p.chi_diffusion,
+    }
 }
 
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; mode (17) and coloured noise (24)
 /// share one white noise, eq. (17).
 #[inline(always)]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    dense_diffusion(&diffusion_values(x, u, p))
+    diffusion_values(x, u, p).dense()
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (17).
@@ -56,7 +49,7 @@ pub fn drift_and_diffusion<R: Real>(
 ) -> (State<R>, Diffusion<R>) {
     let drift = drift(x, u, p);
     let diffusion = diffusion_values(x, u, p);
-    (drift, dense_diffusion(&diffusion))
+    (drift, diffusion.dense())
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (17).

@@ -3,13 +3,14 @@
 //! Functions of FLEXIBLE_MODE. Units are foot, slug, second and radian.
 
 use super::{Hessian, Input, Prepared, State};
-use ahv_core::{Pattern, Real};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`Hessian`] stand.
-pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN, State::<u8>::LEN],
-    &[],
-);
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`Hessian`].
+    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        
+    }
+}
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (5).
 ///
@@ -21,12 +22,12 @@ pub fn hessian_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
     _p: &Prepared<R>,
-) -> [R; 0] {
-    []
+) -> HessianEntries<R> {
+    HessianEntries::splat(R::ZERO)
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (5).
 #[inline(always)]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
-    HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
+    hessian_values(x, u, p).dense()
 }

@@ -3,54 +3,22 @@
 //! Functions of FLEXIBLE_MODE. Units are foot, slug, second and radian.
 
 use super::{Input, InputJacobian, Prepared, State, StateJacobian, drift};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`StateJacobian`] stand.
-pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.eta, State.eta_dot),
-        ahv_core::at!(State.eta_dot, State.eta),
-        ahv_core::at!(State.eta_dot, State.eta_dot),
-        ahv_core::at!(State.chi, State.chi),
-    ],
-);
-
-/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_state_jacobian<R: Real>(values: &[R; 4]) -> StateJacobian<R> {
-    let no_state = State::splat(R::ZERO);
-    State {
-        eta: State {
-            eta_dot: values[0],
-            ..no_state
-        },
-        eta_dot: State {
-            eta: values[1],
-            eta_dot: values[2],
-            ..no_state
-        },
-        chi: State {
-            chi: values[3],
-            ..no_state
-        },
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`StateJacobian`].
+    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
+        eta_by_eta_dot: eta.eta_dot,
+        eta_dot_by_eta: eta_dot.eta,
+        eta_dot_by_eta_dot: eta_dot.eta_dot,
+        chi_by_chi: chi.chi,
     }
 }
 
-/// Where the entries of the compressed [`InputJacobian`] stand.
-pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Input::<u8>::LEN],
-    &[ahv_core::at!(State.eta_dot, Input.force)],
-);
-
-/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_input_jacobian<R: Real>(values: &[R; 1]) -> InputJacobian<R> {
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    State {
-        eta_dot: Input { force: values[0] },
-        ..no_state_input
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`InputJacobian`].
+    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        eta_dot_by_force: eta_dot.force,
     }
 }
 
@@ -64,10 +32,17 @@ pub fn jacobians_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
     p: &Prepared<R>,
-) -> ([R; 4], [R; 1]) {
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     // Result
-    let state = [R::ONE, p.minus_stiffness, p.minus_damping, p.minus_chi_decay];
-    let input = [R::ONE];
+    let state = StateJacobianEntries {
+        eta_by_eta_dot: R::ONE,
+        eta_dot_by_eta: p.minus_stiffness,
+        eta_dot_by_eta_dot: p.minus_damping,
+        chi_by_chi: p.minus_chi_decay,
+    };
+    let input = InputJacobianEntries {
+        eta_dot_by_force: R::ONE,
+    };
     (state, input)
 }
 
@@ -79,7 +54,7 @@ pub fn jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (state.dense(), input.dense())
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
@@ -93,7 +68,7 @@ pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, [R; 4], [R; 1]) {
+) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let drift = drift(x, u, p);
     let (state, input) = jacobians_values(x, u, p);
     (drift, state, input)
@@ -108,5 +83,5 @@ pub fn drift_and_jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
-    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (drift, state.dense(), input.dense())
 }

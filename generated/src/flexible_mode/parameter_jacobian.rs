@@ -3,19 +3,18 @@
 //! Functions of FLEXIBLE_MODE. Units are foot, slug, second and radian.
 
 use super::{Input, ParameterJacobian, Parameters, Prepared, State};
-use ahv_core::{Pattern, Real};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`ParameterJacobian`] stand.
-pub const PARAMETER_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Parameters::<u8>::LEN],
-    &[
-        ahv_core::at!(State.eta_dot, Parameters.omega),
-        ahv_core::at!(State.eta_dot, Parameters.zeta),
-        ahv_core::at!(State.chi, Parameters.omega),
-        ahv_core::at!(State.chi, Parameters.zeta),
-        ahv_core::at!(State.chi, Parameters.moment_matching),
-    ],
-);
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`ParameterJacobian`].
+    pub struct ParameterJacobianEntries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
+        eta_dot_by_omega: eta_dot.omega,
+        eta_dot_by_zeta: eta_dot.zeta,
+        chi_by_omega: chi.omega,
+        chi_by_zeta: chi.zeta,
+        chi_by_moment_matching: chi.moment_matching,
+    }
+}
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (5).
 ///
@@ -27,20 +26,20 @@ pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
     _u: &Input<R>,
     p: &Prepared<R>,
-) -> [R; 5] {
+) -> ParameterJacobianEntries<R> {
     // Derivatives with respect to parameters
     let d_eta_acceleration_d_omega = -(x.eta_dot * p.two_zeta + x.eta * p.two_omega); // ft^0.5*slug^0.5/s/rad
     let d_chi_rate_d_omega = -x.chi * p.d_chi_decay_d_omega; // ft^0.5*slug^0.5/rad
     let d_chi_rate_d_zeta = -x.chi * p.d_chi_decay_d_zeta; // ft^0.5*slug^0.5/s
     let d_chi_rate_d_moment_matching = -x.chi * p.d_chi_decay_d_moment_matching; // ft^0.5*slug^0.5/s
 
-    [
-        d_eta_acceleration_d_omega,
-        x.eta_dot * p.minus_two_omega,
-        d_chi_rate_d_omega,
-        d_chi_rate_d_zeta,
-        d_chi_rate_d_moment_matching,
-    ]
+    ParameterJacobianEntries {
+        eta_dot_by_omega: d_eta_acceleration_d_omega,
+        eta_dot_by_zeta: x.eta_dot * p.minus_two_omega,
+        chi_by_omega: d_chi_rate_d_omega,
+        chi_by_zeta: d_chi_rate_d_zeta,
+        chi_by_moment_matching: d_chi_rate_d_moment_matching,
+    }
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (5).
@@ -50,5 +49,5 @@ pub fn parameter_jacobian<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> ParameterJacobian<R> {
-    PARAMETER_JACOBIAN_PATTERN.dense(&parameter_jacobian_values(x, u, p))
+    parameter_jacobian_values(x, u, p).dense()
 }

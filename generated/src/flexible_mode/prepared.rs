@@ -5,255 +5,177 @@
 use super::Parameters;
 use ahv_core::Real;
 
-/// Parameters as the functions of this model use them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prepared<R> {
-    /// Damping of the mode, rad/s.
-    pub damping: R,
-    /// Stiffness of the mode, rad^2/s^2.
-    pub stiffness: R,
-    /// Decay rate of the coloured noise, 1/s.
-    pub chi_decay: R,
-    /// `-stiffness`.
-    pub minus_stiffness: R,
-    /// `-damping`.
-    pub minus_damping: R,
-    /// `-chi_decay`.
-    pub minus_chi_decay: R,
-    /// `2 * zeta`.
-    pub two_zeta: R,
-    /// `2 * omega`.
-    pub two_omega: R,
-    /// `R::from_f64(-2.0) * omega`.
-    pub minus_two_omega: R,
-    /// Derivative of decay rate of the coloured noise with respect to omega, 1/rad.
-    pub d_chi_decay_d_omega: R,
-    /// Derivative of decay rate of the coloured noise with respect to zeta, 1/s.
-    pub d_chi_decay_d_zeta: R,
-    /// Derivative of decay rate of the coloured noise with respect to moment_matching, 1/s.
-    pub d_chi_decay_d_moment_matching: R,
-    /// Intensity of the white noise, (ft*slug)^0.5/s^1.5.
-    pub sigma: R,
-    /// Diffusion of the coloured noise, (ft*slug)^0.5/s^0.5.
-    pub chi_diffusion: R,
-    /// `zeta * omega`.
-    pub zeta_omega: R,
-    /// `zeta * sigma * inv_omega`.
-    pub zeta_sigma_over_omega: R,
-    /// `R::HALF * zeta * sigma_2 * inv_omega * inv_stiffness`.
-    pub half_zeta_sigma_2_over_omega_stiffness: R,
-    /// `R::from_f64(0.7071067811865475) * sigma * inv_omega`.
-    pub reduction_variance_constant_1: R,
-    /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega * inv_stiffness`.
-    pub chi_variance_variance_constant_1: R,
-    /// `R::HALF * omega * inv_zeta`.
-    pub half_omega_over_zeta: R,
-    /// `sigma * inv_damping`.
-    pub sigma_over_damping: R,
-    /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega`.
-    pub eta_dot_variance_constant_1: R,
-    /// `R::HALF * chi_diffusion_2 * inv_chi_decay`.
-    pub half_chi_diffusion_2_over_chi_decay: R,
-    /// `R::from_f64(-2.0) * chi_decay`.
-    pub minus_two_chi_decay: R,
-    /// `sigma * sigma`.
-    pub sigma_2: R,
-    /// Natural frequency, rad/s.
-    pub omega: R,
-    /// `damping * damping`.
-    pub damping_2: R,
-    /// `chi_diffusion * chi_diffusion`.
-    pub chi_diffusion_2: R,
-    /// `chi_decay * chi_decay`.
-    pub chi_decay_2: R,
-    /// `omega * damped_ratio`.
-    pub omega_damped_ratio: R,
-    /// Damping ratio, dimensionless.
-    pub zeta: R,
-    /// `1 / damped_ratio`.
-    pub inv_damped_ratio: R,
-    /// `1 / omega`.
-    pub inv_omega: R,
-    /// `1 / stiffness`.
-    pub inv_stiffness: R,
-    /// `2 * zeta_2`.
-    pub two_zeta_2: R,
-    /// `R::from_f64(0.25) * sigma_2 * inv_omega * inv_stiffness`.
-    pub eta_variance_at_critical_constant_1: R,
-    /// Faster decay rate of the mode, 1/s.
-    pub fast_pole: R,
-    /// Slower decay rate of the mode, 1/s.
-    pub slow_pole: R,
-    /// `pole_garecip()`.
-    pub inv_pole_gap: R,
-    /// `stiffness * inv_pole_gap`.
-    pub stiffness_over_pole_gap: R,
-    /// `2 * zeta_2 * stiffness * inv_pole_gap_2`.
-    pub two_zeta_2_stiffness_inv_pole_gap_2: R,
-    /// `zeta * omega * inv_pole_gap`.
-    pub zeta_omega_over_pole_gap: R,
-    /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega * inv_stiffness * inv_pole_gap`.
-    pub eta_autocorrelation_overdamped_constant_1: R,
-}
-
-impl<R> Prepared<R> {
-    /// Applies `f` to each field; the type of the fields may change.
-    #[inline(always)]
-    pub fn map_ref<U>(&self, mut f: impl FnMut(&R) -> U) -> Prepared<U> {
-        Prepared {
-            damping: f(&self.damping),
-            stiffness: f(&self.stiffness),
-            chi_decay: f(&self.chi_decay),
-            minus_stiffness: f(&self.minus_stiffness),
-            minus_damping: f(&self.minus_damping),
-            minus_chi_decay: f(&self.minus_chi_decay),
-            two_zeta: f(&self.two_zeta),
-            two_omega: f(&self.two_omega),
-            minus_two_omega: f(&self.minus_two_omega),
-            d_chi_decay_d_omega: f(&self.d_chi_decay_d_omega),
-            d_chi_decay_d_zeta: f(&self.d_chi_decay_d_zeta),
-            d_chi_decay_d_moment_matching: f(&self.d_chi_decay_d_moment_matching),
-            sigma: f(&self.sigma),
-            chi_diffusion: f(&self.chi_diffusion),
-            zeta_omega: f(&self.zeta_omega),
-            zeta_sigma_over_omega: f(&self.zeta_sigma_over_omega),
-            half_zeta_sigma_2_over_omega_stiffness: f(
-                &self.half_zeta_sigma_2_over_omega_stiffness,
-            ),
-            reduction_variance_constant_1: f(&self.reduction_variance_constant_1),
-            chi_variance_variance_constant_1: f(&self.chi_variance_variance_constant_1),
-            half_omega_over_zeta: f(&self.half_omega_over_zeta),
-            sigma_over_damping: f(&self.sigma_over_damping),
-            eta_dot_variance_constant_1: f(&self.eta_dot_variance_constant_1),
-            half_chi_diffusion_2_over_chi_decay: f(
-                &self.half_chi_diffusion_2_over_chi_decay,
-            ),
-            minus_two_chi_decay: f(&self.minus_two_chi_decay),
-            sigma_2: f(&self.sigma_2),
-            omega: f(&self.omega),
-            damping_2: f(&self.damping_2),
-            chi_diffusion_2: f(&self.chi_diffusion_2),
-            chi_decay_2: f(&self.chi_decay_2),
-            omega_damped_ratio: f(&self.omega_damped_ratio),
-            zeta: f(&self.zeta),
-            inv_damped_ratio: f(&self.inv_damped_ratio),
-            inv_omega: f(&self.inv_omega),
-            inv_stiffness: f(&self.inv_stiffness),
-            two_zeta_2: f(&self.two_zeta_2),
-            eta_variance_at_critical_constant_1: f(
-                &self.eta_variance_at_critical_constant_1,
-            ),
-            fast_pole: f(&self.fast_pole),
-            slow_pole: f(&self.slow_pole),
-            inv_pole_gap: f(&self.inv_pole_gap),
-            stiffness_over_pole_gap: f(&self.stiffness_over_pole_gap),
-            two_zeta_2_stiffness_inv_pole_gap_2: f(
-                &self.two_zeta_2_stiffness_inv_pole_gap_2,
-            ),
-            zeta_omega_over_pole_gap: f(&self.zeta_omega_over_pole_gap),
-            eta_autocorrelation_overdamped_constant_1: f(
-                &self.eta_autocorrelation_overdamped_constant_1,
-            ),
-        }
+ahv_core::record! {
+    /// Parameters as the functions of this model use them.
+    pub struct Prepared<R> {
+        /// Damping of the mode, rad/s.
+        pub damping: R,
+        /// Stiffness of the mode, rad^2/s^2.
+        pub stiffness: R,
+        /// Decay rate of the coloured noise, 1/s.
+        pub chi_decay: R,
+        /// `-stiffness`.
+        pub minus_stiffness: R,
+        /// `-damping`.
+        pub minus_damping: R,
+        /// `-chi_decay`.
+        pub minus_chi_decay: R,
+        /// `2 * zeta`.
+        pub two_zeta: R,
+        /// `2 * omega`.
+        pub two_omega: R,
+        /// `R::from_f64(-2.0) * omega`.
+        pub minus_two_omega: R,
+        /// Derivative of decay rate of the coloured noise with respect to omega, 1/rad.
+        pub d_chi_decay_d_omega: R,
+        /// Derivative of decay rate of the coloured noise with respect to zeta, 1/s.
+        pub d_chi_decay_d_zeta: R,
+        /// Derivative of decay rate of the coloured noise with respect to moment_matching, 1/s.
+        pub d_chi_decay_d_moment_matching: R,
+        /// Intensity of the white noise, (ft*slug)^0.5/s^1.5.
+        pub sigma: R,
+        /// Diffusion of the coloured noise, (ft*slug)^0.5/s^0.5.
+        pub chi_diffusion: R,
+        /// `zeta * omega`.
+        pub zeta_omega: R,
+        /// `zeta * sigma * inv_omega`.
+        pub zeta_sigma_over_omega: R,
+        /// `R::HALF * zeta * sigma_2 * inv_omega * inv_stiffness`.
+        pub half_zeta_sigma_2_over_omega_stiffness: R,
+        /// `R::from_f64(0.7071067811865475) * sigma * inv_omega`.
+        pub reduction_variance_constant_1: R,
+        /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega * inv_stiffness`.
+        pub chi_variance_variance_constant_1: R,
+        /// `R::HALF * omega * inv_zeta`.
+        pub half_omega_over_zeta: R,
+        /// `sigma * inv_damping`.
+        pub sigma_over_damping: R,
+        /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega`.
+        pub eta_dot_variance_constant_1: R,
+        /// `R::HALF * chi_diffusion_2 * inv_chi_decay`.
+        pub half_chi_diffusion_2_over_chi_decay: R,
+        /// `R::from_f64(-2.0) * chi_decay`.
+        pub minus_two_chi_decay: R,
+        /// `sigma * sigma`.
+        pub sigma_2: R,
+        /// Natural frequency, rad/s.
+        pub omega: R,
+        /// `damping * damping`.
+        pub damping_2: R,
+        /// `chi_diffusion * chi_diffusion`.
+        pub chi_diffusion_2: R,
+        /// `chi_decay * chi_decay`.
+        pub chi_decay_2: R,
+        /// `omega * damped_ratio`.
+        pub omega_damped_ratio: R,
+        /// Damping ratio, dimensionless.
+        pub zeta: R,
+        /// `1 / damped_ratio`.
+        pub inv_damped_ratio: R,
+        /// `1 / omega`.
+        pub inv_omega: R,
+        /// `1 / stiffness`.
+        pub inv_stiffness: R,
+        /// `2 * zeta_2`.
+        pub two_zeta_2: R,
+        /// `R::from_f64(0.25) * sigma_2 * inv_omega * inv_stiffness`.
+        pub eta_variance_at_critical_constant_1: R,
+        /// Faster decay rate of the mode, 1/s.
+        pub fast_pole: R,
+        /// Slower decay rate of the mode, 1/s.
+        pub slow_pole: R,
+        /// `pole_garecip()`.
+        pub inv_pole_gap: R,
+        /// `stiffness * inv_pole_gap`.
+        pub stiffness_over_pole_gap: R,
+        /// `2 * zeta_2 * stiffness * inv_pole_gap_2`.
+        pub two_zeta_2_stiffness_inv_pole_gap_2: R,
+        /// `zeta * omega * inv_pole_gap`.
+        pub zeta_omega_over_pole_gap: R,
+        /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega * inv_stiffness * inv_pole_gap`.
+        pub eta_autocorrelation_overdamped_constant_1: R,
     }
 }
-
 /// Computes everything that depends on parameters alone.
 ///
 /// 94 operations: 13 additions, 71 multiplications, 8 divisions, 2 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
+    let mut c = Prepared::splat(R::ZERO);
+    c.sigma = p.sigma;
+    c.omega = p.omega;
+    c.zeta = p.zeta;
+
     // Response of the mode, (5)
-    let damping = R::TWO * p.zeta * p.omega; // rad/s
-    let stiffness = p.omega * p.omega; // rad^2/s^2
+    c.damping = R::TWO * p.zeta * p.omega; // rad/s
+    c.stiffness = p.omega * p.omega; // rad^2/s^2
 
     // Coloured noise, (23)
     let inv_zeta = p.zeta.recip();
     let moment_matching_over_zeta = p.moment_matching * inv_zeta;
-    let d_chi_decay_d_omega = p.zeta * (R::ONE - p.moment_matching)
+    c.d_chi_decay_d_omega = p.zeta * (R::ONE - p.moment_matching)
         + R::HALF * moment_matching_over_zeta; // 1/rad
-    let chi_decay = p.omega * d_chi_decay_d_omega; // 1/s
+    c.chi_decay = p.omega * c.d_chi_decay_d_omega; // 1/s
     let chi_share = p.zeta * (R::ONE - p.variance_matching - p.moment_matching)
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * moment_matching_over_zeta;
-    let inv_omega = p.omega.recip();
-    let chi_diffusion = chi_share * p.sigma * inv_omega; // (ft*slug)^0.5/s^0.5
+    c.inv_omega = p.omega.recip();
+    c.chi_diffusion = chi_share * p.sigma * c.inv_omega; // (ft*slug)^0.5/s^0.5
 
     // Derivatives with respect to parameters
     let inv_zeta_2 = inv_zeta * inv_zeta;
-    let d_chi_decay_d_zeta = p.omega
+    c.d_chi_decay_d_zeta = p.omega
         * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_2) + R::ONE); // 1/s
-    let d_chi_decay_d_moment_matching = p.omega * (R::HALF * inv_zeta - p.zeta); // 1/s
+    c.d_chi_decay_d_moment_matching = p.omega * (R::HALF * inv_zeta - p.zeta); // 1/s
 
     // Response of the mode, (13)
     let one_plus_zeta = R::ONE + p.zeta;
     let damped_ratio = ((R::ONE - p.zeta) * one_plus_zeta).sqrt();
     let overdamped_ratio = ((p.zeta - R::ONE) * one_plus_zeta).sqrt();
     let zeta_plus_overdamped_ratio = p.zeta + overdamped_ratio;
-    let fast_pole = p.omega * zeta_plus_overdamped_ratio; // 1/s
+    c.fast_pole = p.omega * zeta_plus_overdamped_ratio; // 1/s
     let inv_of_zeta_plus_overdamped_ratio = zeta_plus_overdamped_ratio.recip();
-    let slow_pole = p.omega * inv_of_zeta_plus_overdamped_ratio; // 1/s
+    c.slow_pole = p.omega * inv_of_zeta_plus_overdamped_ratio; // 1/s
     let pole_gap = R::TWO * p.omega * overdamped_ratio; // 1/s
-    let sigma_2 = p.sigma * p.sigma;
-    let inv_stiffness = stiffness.recip();
-    let inv_damping = damping.recip();
-    let chi_diffusion_2 = chi_diffusion * chi_diffusion;
-    let inv_chi_decay = chi_decay.recip();
-    let damping_2 = damping * damping;
-    let chi_decay_2 = chi_decay * chi_decay;
-    let inv_damped_ratio = damped_ratio.recip();
+    c.minus_stiffness = -c.stiffness;
+    c.minus_damping = -c.damping;
+    c.minus_chi_decay = -c.chi_decay;
+    c.two_zeta = R::TWO * p.zeta;
+    c.two_omega = R::TWO * p.omega;
+    c.minus_two_omega = R::from_f64(-2.0) * p.omega;
+    c.zeta_omega = p.zeta * p.omega;
+    c.zeta_sigma_over_omega = p.zeta * p.sigma * c.inv_omega;
+    c.sigma_2 = p.sigma * p.sigma;
+    c.inv_stiffness = c.stiffness.recip();
+    c.half_zeta_sigma_2_over_omega_stiffness = R::HALF * p.zeta * c.sigma_2 * c.inv_omega
+        * c.inv_stiffness;
+    c.reduction_variance_constant_1 = R::from_f64(0.7071067811865475) * p.sigma
+        * c.inv_omega;
+    c.chi_variance_variance_constant_1 = R::from_f64(0.25) * c.sigma_2 * inv_zeta
+        * c.inv_omega * c.inv_stiffness;
+    c.half_omega_over_zeta = R::HALF * p.omega * inv_zeta;
+    let inv_damping = c.damping.recip();
+    c.sigma_over_damping = p.sigma * inv_damping;
+    c.eta_dot_variance_constant_1 = R::from_f64(0.25) * c.sigma_2 * inv_zeta
+        * c.inv_omega;
+    c.chi_diffusion_2 = c.chi_diffusion * c.chi_diffusion;
+    let inv_chi_decay = c.chi_decay.recip();
+    c.half_chi_diffusion_2_over_chi_decay = R::HALF * c.chi_diffusion_2 * inv_chi_decay;
+    c.minus_two_chi_decay = R::from_f64(-2.0) * c.chi_decay;
+    c.damping_2 = c.damping * c.damping;
+    c.chi_decay_2 = c.chi_decay * c.chi_decay;
+    c.omega_damped_ratio = p.omega * damped_ratio;
+    c.inv_damped_ratio = damped_ratio.recip();
     let zeta_2 = p.zeta * p.zeta;
-    let inv_pole_gap = pole_gap.recip();
-    let inv_pole_gap_2 = inv_pole_gap * inv_pole_gap;
-
-    Prepared {
-        damping,
-        stiffness,
-        chi_decay,
-        minus_stiffness: -stiffness,
-        minus_damping: -damping,
-        minus_chi_decay: -chi_decay,
-        two_zeta: R::TWO * p.zeta,
-        two_omega: R::TWO * p.omega,
-        minus_two_omega: R::from_f64(-2.0) * p.omega,
-        d_chi_decay_d_omega,
-        d_chi_decay_d_zeta,
-        d_chi_decay_d_moment_matching,
-        sigma: p.sigma,
-        chi_diffusion,
-        zeta_omega: p.zeta * p.omega,
-        zeta_sigma_over_omega: p.zeta * p.sigma * inv_omega,
-        half_zeta_sigma_2_over_omega_stiffness: R::HALF * p.zeta * sigma_2 * inv_omega
-            * inv_stiffness,
-        reduction_variance_constant_1: R::from_f64(0.7071067811865475) * p.sigma
-            * inv_omega,
-        chi_variance_variance_constant_1: R::from_f64(0.25) * sigma_2 * inv_zeta
-            * inv_omega * inv_stiffness,
-        half_omega_over_zeta: R::HALF * p.omega * inv_zeta,
-        sigma_over_damping: p.sigma * inv_damping,
-        eta_dot_variance_constant_1: R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega,
-        half_chi_diffusion_2_over_chi_decay: R::HALF * chi_diffusion_2 * inv_chi_decay,
-        minus_two_chi_decay: R::from_f64(-2.0) * chi_decay,
-        sigma_2,
-        omega: p.omega,
-        damping_2,
-        chi_diffusion_2,
-        chi_decay_2,
-        omega_damped_ratio: p.omega * damped_ratio,
-        zeta: p.zeta,
-        inv_damped_ratio,
-        inv_omega,
-        inv_stiffness,
-        two_zeta_2: R::TWO * zeta_2,
-        eta_variance_at_critical_constant_1: R::from_f64(0.25) * sigma_2 * inv_omega
-            * inv_stiffness,
-        fast_pole,
-        slow_pole,
-        inv_pole_gap,
-        stiffness_over_pole_gap: stiffness * inv_pole_gap,
-        two_zeta_2_stiffness_inv_pole_gap_2: R::TWO * zeta_2 * stiffness
-            * inv_pole_gap_2,
-        zeta_omega_over_pole_gap: p.zeta * p.omega * inv_pole_gap,
-        eta_autocorrelation_overdamped_constant_1: R::from_f64(0.25) * sigma_2 * inv_zeta
-            * inv_omega * inv_stiffness * inv_pole_gap,
-    }
+    c.two_zeta_2 = R::TWO * zeta_2;
+    c.eta_variance_at_critical_constant_1 = R::from_f64(0.25) * c.sigma_2 * c.inv_omega
+        * c.inv_stiffness;
+    c.inv_pole_gap = pole_gap.recip();
+    c.stiffness_over_pole_gap = c.stiffness * c.inv_pole_gap;
+    let inv_pole_gap_2 = c.inv_pole_gap * c.inv_pole_gap;
+    c.two_zeta_2_stiffness_inv_pole_gap_2 = R::TWO * zeta_2 * c.stiffness
+        * inv_pole_gap_2;
+    c.zeta_omega_over_pole_gap = p.zeta * p.omega * c.inv_pole_gap;
+    c.eta_autocorrelation_overdamped_constant_1 = R::from_f64(0.25) * c.sigma_2
+        * inv_zeta * c.inv_omega * c.inv_stiffness * c.inv_pole_gap;
+    c
 }

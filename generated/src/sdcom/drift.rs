@@ -5,15 +5,6 @@
 use super::{Input, Intermediates, Prepared, State, intermediates};
 use ahv_core::Real;
 
-/// Time derivative of the state, eq. (27).
-///
-/// 148 operations: 57 additions, 86 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline(always)]
-pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    let i = intermediates(x, u, p);
-    drift_from(x, u, p, &i)
-}
-
 /// [`drift`] from what is computed once.
 #[inline(always)]
 pub fn drift_from<R: Real>(
@@ -40,4 +31,13 @@ pub fn drift_from<R: Real>(
         chi_2: chi_rate_2,
         chi_3: chi_rate_3,
     }
+}
+
+/// Time derivative of the state, eq. (27).
+///
+/// 148 operations: 57 additions, 86 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
+    let i = intermediates(x, u, p);
+    drift_from(x, u, p, &i)
 }

@@ -2,93 +2,94 @@
 
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
-use super::{Hessian, Input, Prepared, State, intermediates, slopes};
-use ahv_core::{Pattern, Real};
+use super::{
+    Hessian, Input, Intermediates, NoiseSlopes, Prepared, Slopes, State, intermediates,
+    noise_slopes, slopes,
+};
 
-/// Where the entries of the compressed [`Hessian`] stand.
-pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, State.velocity, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma, State.gamma),
-        ahv_core::at!(State.velocity, State.alpha, State.velocity),
-        ahv_core::at!(State.velocity, State.alpha, State.altitude),
-        ahv_core::at!(State.velocity, State.alpha, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_1, State.velocity),
-        ahv_core::at!(State.velocity, State.chi_1, State.altitude),
-        ahv_core::at!(State.velocity, State.chi_1, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_2, State.velocity),
-        ahv_core::at!(State.velocity, State.chi_2, State.altitude),
-        ahv_core::at!(State.velocity, State.chi_2, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_3, State.velocity),
-        ahv_core::at!(State.velocity, State.chi_3, State.altitude),
-        ahv_core::at!(State.velocity, State.chi_3, State.alpha),
-        ahv_core::at!(State.altitude, State.gamma, State.velocity),
-        ahv_core::at!(State.altitude, State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.velocity, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma, State.velocity),
-        ahv_core::at!(State.gamma, State.gamma, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.alpha, State.velocity),
-        ahv_core::at!(State.gamma, State.alpha, State.altitude),
-        ahv_core::at!(State.gamma, State.alpha, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_1, State.velocity),
-        ahv_core::at!(State.gamma, State.chi_1, State.altitude),
-        ahv_core::at!(State.gamma, State.chi_1, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_2, State.velocity),
-        ahv_core::at!(State.gamma, State.chi_2, State.altitude),
-        ahv_core::at!(State.gamma, State.chi_2, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_3, State.velocity),
-        ahv_core::at!(State.gamma, State.chi_3, State.altitude),
-        ahv_core::at!(State.gamma, State.chi_3, State.alpha),
-        ahv_core::at!(State.alpha, State.velocity, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma, State.velocity),
-        ahv_core::at!(State.alpha, State.gamma, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma, State.gamma),
-        ahv_core::at!(State.alpha, State.alpha, State.velocity),
-        ahv_core::at!(State.alpha, State.alpha, State.altitude),
-        ahv_core::at!(State.alpha, State.alpha, State.alpha),
-        ahv_core::at!(State.alpha, State.chi_1, State.velocity),
-        ahv_core::at!(State.alpha, State.chi_1, State.altitude),
-        ahv_core::at!(State.alpha, State.chi_1, State.alpha),
-        ahv_core::at!(State.alpha, State.chi_2, State.velocity),
-        ahv_core::at!(State.alpha, State.chi_2, State.altitude),
-        ahv_core::at!(State.alpha, State.chi_2, State.alpha),
-        ahv_core::at!(State.alpha, State.chi_3, State.velocity),
-        ahv_core::at!(State.alpha, State.chi_3, State.altitude),
-        ahv_core::at!(State.alpha, State.chi_3, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.velocity, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.chi_1, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.chi_1, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.chi_2, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.chi_2, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.chi_3, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.chi_3, State.altitude),
-    ],
-);
+use ahv_core::Real;
 
-/// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 740 operations: 235 additions, 500 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`Hessian`].
+    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        velocity_by_velocity_velocity: velocity.velocity.velocity,
+        velocity_by_altitude_velocity: velocity.altitude.velocity,
+        velocity_by_altitude_altitude: velocity.altitude.altitude,
+        velocity_by_gamma_altitude: velocity.gamma.altitude,
+        velocity_by_gamma_gamma: velocity.gamma.gamma,
+        velocity_by_alpha_velocity: velocity.alpha.velocity,
+        velocity_by_alpha_altitude: velocity.alpha.altitude,
+        velocity_by_alpha_alpha: velocity.alpha.alpha,
+        velocity_by_chi_1_velocity: velocity.chi_1.velocity,
+        velocity_by_chi_1_altitude: velocity.chi_1.altitude,
+        velocity_by_chi_1_alpha: velocity.chi_1.alpha,
+        velocity_by_chi_2_velocity: velocity.chi_2.velocity,
+        velocity_by_chi_2_altitude: velocity.chi_2.altitude,
+        velocity_by_chi_2_alpha: velocity.chi_2.alpha,
+        velocity_by_chi_3_velocity: velocity.chi_3.velocity,
+        velocity_by_chi_3_altitude: velocity.chi_3.altitude,
+        velocity_by_chi_3_alpha: velocity.chi_3.alpha,
+        altitude_by_gamma_velocity: altitude.gamma.velocity,
+        altitude_by_gamma_gamma: altitude.gamma.gamma,
+        gamma_by_velocity_velocity: gamma.velocity.velocity,
+        gamma_by_altitude_velocity: gamma.altitude.velocity,
+        gamma_by_altitude_altitude: gamma.altitude.altitude,
+        gamma_by_gamma_velocity: gamma.gamma.velocity,
+        gamma_by_gamma_altitude: gamma.gamma.altitude,
+        gamma_by_gamma_gamma: gamma.gamma.gamma,
+        gamma_by_alpha_velocity: gamma.alpha.velocity,
+        gamma_by_alpha_altitude: gamma.alpha.altitude,
+        gamma_by_alpha_alpha: gamma.alpha.alpha,
+        gamma_by_chi_1_velocity: gamma.chi_1.velocity,
+        gamma_by_chi_1_altitude: gamma.chi_1.altitude,
+        gamma_by_chi_1_alpha: gamma.chi_1.alpha,
+        gamma_by_chi_2_velocity: gamma.chi_2.velocity,
+        gamma_by_chi_2_altitude: gamma.chi_2.altitude,
+        gamma_by_chi_2_alpha: gamma.chi_2.alpha,
+        gamma_by_chi_3_velocity: gamma.chi_3.velocity,
+        gamma_by_chi_3_altitude: gamma.chi_3.altitude,
+        gamma_by_chi_3_alpha: gamma.chi_3.alpha,
+        alpha_by_velocity_velocity: alpha.velocity.velocity,
+        alpha_by_altitude_velocity: alpha.altitude.velocity,
+        alpha_by_altitude_altitude: alpha.altitude.altitude,
+        alpha_by_gamma_velocity: alpha.gamma.velocity,
+        alpha_by_gamma_altitude: alpha.gamma.altitude,
+        alpha_by_gamma_gamma: alpha.gamma.gamma,
+        alpha_by_alpha_velocity: alpha.alpha.velocity,
+        alpha_by_alpha_altitude: alpha.alpha.altitude,
+        alpha_by_alpha_alpha: alpha.alpha.alpha,
+        alpha_by_chi_1_velocity: alpha.chi_1.velocity,
+        alpha_by_chi_1_altitude: alpha.chi_1.altitude,
+        alpha_by_chi_1_alpha: alpha.chi_1.alpha,
+        alpha_by_chi_2_velocity: alpha.chi_2.velocity,
+        alpha_by_chi_2_altitude: alpha.chi_2.altitude,
+        alpha_by_chi_2_alpha: alpha.chi_2.alpha,
+        alpha_by_chi_3_velocity: alpha.chi_3.velocity,
+        alpha_by_chi_3_altitude: alpha.chi_3.altitude,
+        alpha_by_chi_3_alpha: alpha.chi_3.alpha,
+        pitch_rate_by_velocity_velocity: pitch_rate.velocity.velocity,
+        pitch_rate_by_altitude_velocity: pitch_rate.altitude.velocity,
+        pitch_rate_by_altitude_altitude: pitch_rate.altitude.altitude,
+        pitch_rate_by_alpha_velocity: pitch_rate.alpha.velocity,
+        pitch_rate_by_alpha_altitude: pitch_rate.alpha.altitude,
+        pitch_rate_by_alpha_alpha: pitch_rate.alpha.alpha,
+        pitch_rate_by_chi_1_velocity: pitch_rate.chi_1.velocity,
+        pitch_rate_by_chi_1_altitude: pitch_rate.chi_1.altitude,
+        pitch_rate_by_chi_2_velocity: pitch_rate.chi_2.velocity,
+        pitch_rate_by_chi_2_altitude: pitch_rate.chi_2.altitude,
+        pitch_rate_by_chi_3_velocity: pitch_rate.chi_3.velocity,
+        pitch_rate_by_chi_3_altitude: pitch_rate.chi_3.altitude,
+    }
+}
+
+/// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
-pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 67] {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-
+fn hessian_by_velocity<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to velocity
     let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_eta_static_1_d_velocity_d_velocity = d2_generalized_force_1_d_velocity_d_velocity
@@ -115,7 +116,43 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_thrust_d_velocity_d_velocity - d2_drag_d_velocity_d_velocity; // lb*s^2/ft^3
     let d2_velocity_rate_d_velocity_d_velocity = d2_path_force_d_velocity_d_velocity
         * p.inv_m; // 1/ft
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
+    let d2_c_l_d_velocity_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_velocity
+        + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_velocity
+        + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_velocity; // s^2/ft^2
+    let d2_normal_coefficient_d_velocity_d_velocity = i.sin_alpha
+        * d2_c_t_d_velocity_d_velocity + d2_c_l_d_velocity_d_velocity; // s^2/ft^2
+    let d2_force_turn_d_velocity_d_velocity = R::TWO * s.d_normal_coefficient_d_velocity
+        * s.d_turn_factor_d_velocity
+        + i.turn_factor * d2_normal_coefficient_d_velocity_d_velocity; // rad*s/ft^2
+    let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+    let d2_c_m_d_velocity_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_velocity_d_velocity
+        + p.c_m_eta_2 * d2_eta_static_2_d_velocity_d_velocity
+        + p.c_m_eta_3 * d2_eta_static_3_d_velocity_d_velocity; // s^2/ft^2
+    let d2_pitching_moment_d_velocity_d_velocity = p.c_bar
+        * (R::TWO * s.d_c_m_d_velocity * s.d_reference_force_d_velocity
+            + p.s * i.c_m * i.density + i.reference_force * d2_c_m_d_velocity_d_velocity)
+        + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
+    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
+        * p.inv_i_yy; // rad/ft^2
 
+    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
+    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
+    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
+    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude_of_velocity.
+#[inline(always)]
+fn hessian_by_altitude_of_velocity<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s
@@ -150,57 +187,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
     let d2_velocity_rate_d_velocity_d_altitude = d2_path_force_d_velocity_d_altitude
         * p.inv_m; // 1/s/ft
-
-    // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_1_d_velocity_d_alpha = d2_generalized_force_1_d_velocity_d_alpha
-        * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_2_d_velocity_d_alpha = d2_generalized_force_2_d_velocity_d_alpha
-        * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_3_d_velocity_d_alpha = d2_generalized_force_3_d_velocity_d_alpha
-        * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
-    let d2_c_t_d_velocity_d_alpha = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_alpha
-        + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_alpha
-        + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    let d2_thrust_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
-        + i.reference_force * d2_c_t_d_velocity_d_alpha; // lb*s/ft^2/rad
-    let d2_c_d_d_velocity_d_alpha = p.c_d_eta_1 * d2_eta_static_1_d_velocity_d_alpha
-        + p.c_d_eta_2 * d2_eta_static_2_d_velocity_d_alpha
-        + p.c_d_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_velocity_d_alpha; // lb*s/ft^2/rad
-    let d2_path_force_d_velocity_d_alpha = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_velocity_d_alpha
-        - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_velocity_d_alpha = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to chi_1
-    let d2_thrust_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_chi_1 = i.cos_alpha * d2_thrust_d_velocity_d_chi_1
-        - d2_drag_d_velocity_d_chi_1; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_chi_1 = d2_path_force_d_velocity_d_chi_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_thrust_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_chi_2 = i.cos_alpha * d2_thrust_d_velocity_d_chi_2
-        - d2_drag_d_velocity_d_chi_2; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_chi_2 = d2_path_force_d_velocity_d_chi_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_thrust_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_chi_3 = i.cos_alpha * d2_thrust_d_velocity_d_chi_3
-        - d2_drag_d_velocity_d_chi_3; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_chi_3 = d2_path_force_d_velocity_d_chi_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to altitude
     let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
     let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
@@ -245,125 +231,68 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_velocity_rate_d_altitude_d_altitude = d2_path_force_d_altitude_d_altitude
         * p.inv_m - i.sin_gamma * d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
 
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
+    hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
+}
 
-    // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_1_d_altitude_d_alpha = d2_generalized_force_1_d_altitude_d_alpha
-        * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
-    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_2_d_altitude_d_alpha = d2_generalized_force_2_d_altitude_d_alpha
-        * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
-    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_3_d_altitude_d_alpha = d2_generalized_force_3_d_altitude_d_alpha
-        * p.inv_omega_3_2; // slug^0.5/ft^0.5/rad
-    let d2_c_t_d_altitude_d_alpha = p.c_t_eta_1 * d2_eta_static_1_d_altitude_d_alpha
-        + p.c_t_eta_2 * d2_eta_static_2_d_altitude_d_alpha
-        + p.c_t_eta_3 * d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    let d2_thrust_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
-        + i.reference_force * d2_c_t_d_altitude_d_alpha; // lb/ft^2/rad
-    let d2_c_d_d_altitude_d_alpha = p.c_d_eta_1 * d2_eta_static_1_d_altitude_d_alpha
-        + p.c_d_eta_2 * d2_eta_static_2_d_altitude_d_alpha
-        + p.c_d_eta_3 * d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_altitude_d_alpha; // lb/ft^2/rad
-    let d2_path_force_d_altitude_d_alpha = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_altitude_d_alpha
-        - d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
-    let d2_velocity_rate_d_altitude_d_alpha = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to chi_1
-    let d2_thrust_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
-    let d2_drag_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
-    let d2_path_force_d_altitude_d_chi_1 = i.cos_alpha * d2_thrust_d_altitude_d_chi_1
-        - d2_drag_d_altitude_d_chi_1; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_chi_1 = d2_path_force_d_altitude_d_chi_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_thrust_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
-    let d2_drag_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
-    let d2_path_force_d_altitude_d_chi_2 = i.cos_alpha * d2_thrust_d_altitude_d_chi_2
-        - d2_drag_d_altitude_d_chi_2; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_chi_2 = d2_path_force_d_altitude_d_chi_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_thrust_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_t_eta_3; // lb/ft^2.5/slug^0.5
-    let d2_drag_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_d_eta_3; // lb/ft^2.5/slug^0.5
-    let d2_path_force_d_altitude_d_chi_3 = i.cos_alpha * d2_thrust_d_altitude_d_chi_3
-        - d2_drag_d_altitude_d_chi_3; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_chi_3 = d2_path_force_d_altitude_d_chi_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_1_d_alpha_d_alpha = d2_generalized_force_1_d_alpha_d_alpha
-        * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_2_d_alpha_d_alpha = d2_generalized_force_2_d_alpha_d_alpha
-        * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_3_d_alpha_d_alpha = d2_generalized_force_3_d_alpha_d_alpha
-        * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
-    let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
-        + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
-    let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
-        + R::TWO * p.c_t_alpha_2
-        + p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_alpha
-        + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
-        + p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
-        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
-        - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
-
-    // Derivatives with respect to chi_1
-    let d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_1 = d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_2 = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_3 = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-
-    // Derivatives with respect to velocity
-    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
-    let d2_c_l_d_velocity_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_velocity
-        + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_velocity
-        + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_velocity; // s^2/ft^2
-    let d2_normal_coefficient_d_velocity_d_velocity = i.sin_alpha
-        * d2_c_t_d_velocity_d_velocity + d2_c_l_d_velocity_d_velocity; // s^2/ft^2
-    let d2_force_turn_d_velocity_d_velocity = R::TWO * s.d_normal_coefficient_d_velocity
-        * s.d_turn_factor_d_velocity
-        + i.turn_factor * d2_normal_coefficient_d_velocity_d_velocity; // rad*s/ft^2
-    let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
-        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
-
+/// Entries of [`hessian_values`]: derivatives by altitude_of_gamma.
+#[inline(always)]
+fn hessian_by_altitude_of_gamma<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to altitude
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    let d2_reference_force_d_velocity_d_altitude = p.s
+        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_1_d_velocity_d_altitude = d2_generalized_force_1_d_velocity_d_altitude
+        * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_2_d_velocity_d_altitude = d2_generalized_force_2_d_velocity_d_altitude
+        * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_3_d_velocity_d_altitude = d2_generalized_force_3_d_velocity_d_altitude
+        * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
+    let d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_altitude
+        + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_altitude
+        + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
+    let d2_gravity_d_altitude_d_altitude = p.g
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
+            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    let d2_density_d_altitude_d_altitude = p.rho_0
+        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // lb/ft^4
+    let d2_reference_force_d_altitude_d_altitude = p.s
+        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_1_d_altitude_d_altitude = d2_generalized_force_1_d_altitude_d_altitude
+        * p.inv_omega_1_2; // slug^0.5/ft^1.5
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_2_d_altitude_d_altitude = d2_generalized_force_2_d_altitude_d_altitude
+        * p.inv_omega_2_2; // slug^0.5/ft^1.5
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_3_d_altitude_d_altitude = d2_generalized_force_3_d_altitude_d_altitude
+        * p.inv_omega_3_2; // slug^0.5/ft^1.5
+    let d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_altitude_d_altitude
+        + p.c_t_eta_2 * d2_eta_static_2_d_altitude_d_altitude
+        + p.c_t_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
@@ -378,35 +307,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + i.turn_factor * d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
     let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
-
-    // Derivatives with respect to gamma
-    let d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to alpha
-    let d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_alpha
-        + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_alpha
-        + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    let d2_normal_coefficient_d_velocity_d_alpha = s.d_c_t_d_velocity * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_velocity_d_alpha
-        + d2_c_l_d_velocity_d_alpha; // s/ft/rad
-    let d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * d2_normal_coefficient_d_velocity_d_alpha; // 1/ft
-
-    // Derivatives with respect to chi_1
-    let d2_force_turn_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_chi_1; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_force_turn_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_chi_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_force_turn_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_chi_3; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to altitude
     let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
         * i.inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
@@ -423,69 +323,161 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
 
-    // Derivatives with respect to gamma
-    let d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    hessian.gamma_by_altitude_velocity = d2_gamma_rate_d_velocity_d_altitude;
+    hessian.gamma_by_altitude_altitude = d2_gamma_rate_d_altitude_d_altitude;
+}
 
-    // Derivatives with respect to alpha
-    let d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_altitude_d_alpha
-        + p.c_l_eta_2 * d2_eta_static_2_d_altitude_d_alpha
-        + p.c_l_eta_3 * d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    let d2_normal_coefficient_d_altitude_d_alpha = s.d_c_t_d_altitude * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_altitude_d_alpha
-        + d2_c_l_d_altitude_d_alpha; // 1/ft/rad
-    let d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * d2_normal_coefficient_d_altitude_d_alpha; // 1/s/ft
-
-    // Derivatives with respect to chi_1
-    let d2_force_turn_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_chi_1; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_force_turn_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_chi_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_force_turn_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_chi_3; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
-        + i.c_t * s.d_cos_alpha_d_alpha
-        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    let d2_force_turn_d_alpha_d_alpha = i.turn_factor
-        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
-
-    // Derivatives with respect to chi_1
-    let d2_force_turn_d_alpha_d_chi_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_force_turn_d_alpha_d_chi_2 = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_force_turn_d_alpha_d_chi_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to velocity
-    let d2_c_m_d_velocity_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_velocity_d_velocity
-        + p.c_m_eta_2 * d2_eta_static_2_d_velocity_d_velocity
-        + p.c_m_eta_3 * d2_eta_static_3_d_velocity_d_velocity; // s^2/ft^2
-    let d2_pitching_moment_d_velocity_d_velocity = p.c_bar
-        * (R::TWO * s.d_c_m_d_velocity * s.d_reference_force_d_velocity
-            + p.s * i.c_m * i.density + i.reference_force * d2_c_m_d_velocity_d_velocity)
-        + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
-    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
-        * p.inv_i_yy; // rad/ft^2
-
+/// Entries of [`hessian_values`]: derivatives by altitude_of_alpha.
+#[inline(always)]
+fn hessian_by_altitude_of_alpha<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to altitude
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    let d2_reference_force_d_velocity_d_altitude = p.s
+        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_1_d_velocity_d_altitude = d2_generalized_force_1_d_velocity_d_altitude
+        * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_2_d_velocity_d_altitude = d2_generalized_force_2_d_velocity_d_altitude
+        * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_3_d_velocity_d_altitude = d2_generalized_force_3_d_velocity_d_altitude
+        * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
+    let d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_altitude
+        + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_altitude
+        + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
+    let d2_gravity_d_altitude_d_altitude = p.g
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
+            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    let d2_density_d_altitude_d_altitude = p.rho_0
+        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // lb/ft^4
+    let d2_reference_force_d_altitude_d_altitude = p.s
+        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_1_d_altitude_d_altitude = d2_generalized_force_1_d_altitude_d_altitude
+        * p.inv_omega_1_2; // slug^0.5/ft^1.5
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_2_d_altitude_d_altitude = d2_generalized_force_2_d_altitude_d_altitude
+        * p.inv_omega_2_2; // slug^0.5/ft^1.5
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_3_d_altitude_d_altitude = d2_generalized_force_3_d_altitude_d_altitude
+        * p.inv_omega_3_2; // slug^0.5/ft^1.5
+    let d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_altitude_d_altitude
+        + p.c_t_eta_2 * d2_eta_static_2_d_altitude_d_altitude
+        + p.c_t_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    let d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_altitude
+        + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_altitude
+        + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    let d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha
+        * d2_c_t_d_velocity_d_altitude + d2_c_l_d_velocity_d_altitude; // s/ft^2
+    let d2_force_turn_d_velocity_d_altitude = s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
+        + s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_altitude
+        + i.normal_coefficient * d2_turn_factor_d_velocity_d_altitude
+        + i.turn_factor * d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
+    let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
+    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
+        * i.inv_velocity
+        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
+    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
+        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
+    let d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_altitude_d_altitude
+        + p.c_l_eta_2 * d2_eta_static_2_d_altitude_d_altitude
+        + p.c_l_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    let d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
+        * d2_c_t_d_altitude_d_altitude + d2_c_l_d_altitude_d_altitude; // 1/ft^2
+    let d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
+        + i.normal_coefficient * d2_turn_factor_d_altitude_d_altitude
+        + i.turn_factor * d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
+        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
+
+    hessian.alpha_by_altitude_velocity = -d2_gamma_rate_d_velocity_d_altitude;
+    hessian.alpha_by_altitude_altitude = -d2_gamma_rate_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate to alpha.
+#[inline(always)]
+fn hessian_by_altitude_of_pitch_rate_to_alpha<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+    m: &NoiseSlopes<R>,
+) {
+    // Derivatives with respect to altitude
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    let d2_reference_force_d_velocity_d_altitude = p.s
+        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_1_d_velocity_d_altitude = d2_generalized_force_1_d_velocity_d_altitude
+        * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_2_d_velocity_d_altitude = d2_generalized_force_2_d_velocity_d_altitude
+        * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_eta_static_3_d_velocity_d_altitude = d2_generalized_force_3_d_velocity_d_altitude
+        * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
+    let d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_altitude
+        + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_altitude
+        + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    let d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
+        + s.d_reference_force_d_velocity * s.d_c_t_d_altitude
+        + i.c_t * d2_reference_force_d_velocity_d_altitude
+        + i.reference_force * d2_c_t_d_velocity_d_altitude; // lb*s/ft^3
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    let d2_density_d_altitude_d_altitude = p.rho_0
+        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // lb/ft^4
+    let d2_reference_force_d_altitude_d_altitude = p.s
+        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_1_d_altitude_d_altitude = d2_generalized_force_1_d_altitude_d_altitude
+        * p.inv_omega_1_2; // slug^0.5/ft^1.5
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_2_d_altitude_d_altitude = d2_generalized_force_2_d_altitude_d_altitude
+        * p.inv_omega_2_2; // slug^0.5/ft^1.5
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_eta_static_3_d_altitude_d_altitude = d2_generalized_force_3_d_altitude_d_altitude
+        * p.inv_omega_3_2; // slug^0.5/ft^1.5
+    let d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_altitude_d_altitude
+        + p.c_t_eta_2 * d2_eta_static_2_d_altitude_d_altitude
+        + p.c_t_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    let d2_thrust_d_altitude_d_altitude = R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
+        + i.c_t * d2_reference_force_d_altitude_d_altitude
+        + i.reference_force * d2_c_t_d_altitude_d_altitude; // lb/ft^3
     let d2_c_m_d_velocity_d_altitude = p.c_m_eta_1 * d2_eta_static_1_d_velocity_d_altitude
         + p.c_m_eta_2 * d2_eta_static_2_d_velocity_d_altitude
         + p.c_m_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
@@ -497,17 +489,95 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + p.z_t * d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
     let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
         * p.inv_i_yy; // rad/s/ft^2
+    let d2_c_m_d_altitude_d_altitude = p.c_m_eta_1 * d2_eta_static_1_d_altitude_d_altitude
+        + p.c_m_eta_2 * d2_eta_static_2_d_altitude_d_altitude
+        + p.c_m_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    let d2_pitching_moment_d_altitude_d_altitude = p.c_bar
+        * (R::TWO * s.d_c_m_d_altitude * s.d_reference_force_d_altitude
+            + i.c_m * d2_reference_force_d_altitude_d_altitude
+            + i.reference_force * d2_c_m_d_altitude_d_altitude)
+        + p.z_t * d2_thrust_d_altitude_d_altitude; // lb/ft^2
+    let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
+        * p.inv_i_yy; // rad/s^2/ft^2
 
-    // Derivatives with respect to alpha
-    let d2_c_m_d_velocity_d_alpha = p.c_m_eta_1 * d2_eta_static_1_d_velocity_d_alpha
-        + p.c_m_eta_2 * d2_eta_static_2_d_velocity_d_alpha
-        + p.c_m_eta_3 * d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    let d2_pitching_moment_d_velocity_d_alpha = p.c_bar
-        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
-            + i.reference_force * d2_c_m_d_velocity_d_alpha)
-        + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
-    let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
-        * p.inv_i_yy; // 1/s/ft
+    hessian.pitch_rate_by_altitude_velocity = d2_pitch_acceleration_d_velocity_d_altitude;
+    hessian.pitch_rate_by_altitude_altitude = d2_pitch_acceleration_d_altitude_d_altitude;
+    hessian.velocity_by_gamma_altitude = m.d2_velocity_rate_d_gamma_d_altitude;
+    hessian.velocity_by_gamma_gamma = m.d2_velocity_rate_d_gamma_d_gamma;
+    hessian.altitude_by_gamma_velocity = i.cos_gamma;
+    hessian.altitude_by_gamma_gamma = m.d2_altitude_rate_d_gamma_d_gamma;
+    hessian.gamma_by_gamma_velocity = m.d2_gamma_rate_d_gamma_d_velocity;
+    hessian.gamma_by_gamma_altitude = m.d2_gamma_rate_d_gamma_d_altitude;
+    hessian.gamma_by_gamma_gamma = m.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.alpha_by_gamma_velocity = -m.d2_gamma_rate_d_gamma_d_velocity;
+    hessian.alpha_by_gamma_altitude = -m.d2_gamma_rate_d_gamma_d_altitude;
+    hessian.alpha_by_gamma_gamma = -m.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.velocity_by_alpha_velocity = m.d2_velocity_rate_d_alpha_d_velocity;
+    hessian.velocity_by_alpha_altitude = m.d2_velocity_rate_d_alpha_d_altitude;
+    hessian.velocity_by_alpha_alpha = m.d2_velocity_rate_d_alpha_d_alpha;
+    hessian.gamma_by_alpha_velocity = m.d2_force_turn_d_alpha_d_velocity;
+    hessian.gamma_by_alpha_altitude = m.d2_force_turn_d_alpha_d_altitude;
+    hessian.gamma_by_alpha_alpha = m.d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha_by_alpha_velocity = -m.d2_force_turn_d_alpha_d_velocity;
+    hessian.alpha_by_alpha_altitude = -m.d2_force_turn_d_alpha_d_altitude;
+    hessian.alpha_by_alpha_alpha = -m.d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate_by_alpha_velocity = m.d2_pitch_acceleration_d_alpha_d_velocity;
+    hessian.pitch_rate_by_alpha_altitude = m.d2_pitch_acceleration_d_alpha_d_altitude;
+    hessian.pitch_rate_by_alpha_alpha = m.d2_pitch_acceleration_d_alpha_d_alpha;
+}
+
+/// Entries of [`hessian_values`]: derivatives by chi_1_chi_2.
+#[inline(always)]
+fn hessian_by_chi_1_chi_2<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+    m: &NoiseSlopes<R>,
+) {
+    // Derivatives with respect to chi_1
+    let d2_thrust_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_chi_1 = i.cos_alpha * d2_thrust_d_velocity_d_chi_1
+        - d2_drag_d_velocity_d_chi_1; // lb*s/ft^2.5/slug^0.5
+    let d2_velocity_rate_d_velocity_d_chi_1 = d2_path_force_d_velocity_d_chi_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_thrust_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_chi_2 = i.cos_alpha * d2_thrust_d_velocity_d_chi_2
+        - d2_drag_d_velocity_d_chi_2; // lb*s/ft^2.5/slug^0.5
+    let d2_velocity_rate_d_velocity_d_chi_2 = d2_path_force_d_velocity_d_chi_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_1
+    let d2_thrust_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
+    let d2_drag_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
+    let d2_path_force_d_altitude_d_chi_1 = i.cos_alpha * d2_thrust_d_altitude_d_chi_1
+        - d2_drag_d_altitude_d_chi_1; // lb/ft^2.5/slug^0.5
+    let d2_velocity_rate_d_altitude_d_chi_1 = d2_path_force_d_altitude_d_chi_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_thrust_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
+    let d2_drag_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
+    let d2_path_force_d_altitude_d_chi_2 = i.cos_alpha * d2_thrust_d_altitude_d_chi_2
+        - d2_drag_d_altitude_d_chi_2; // lb/ft^2.5/slug^0.5
+    let d2_velocity_rate_d_altitude_d_chi_2 = d2_path_force_d_altitude_d_chi_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_1
+    let d2_force_turn_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_chi_1; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_force_turn_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_chi_2; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_1
+    let d2_force_turn_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_chi_1; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_force_turn_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_chi_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_1
     let d2_pitching_moment_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
@@ -521,35 +591,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_pitch_acceleration_d_velocity_d_chi_2 = d2_pitching_moment_d_velocity_d_chi_2
         * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d2_pitching_moment_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
-        * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_velocity_d_chi_3; // lb*s/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_velocity_d_chi_3 = d2_pitching_moment_d_velocity_d_chi_3
-        * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to altitude
-    let d2_c_m_d_altitude_d_altitude = p.c_m_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_m_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_m_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    let d2_pitching_moment_d_altitude_d_altitude = p.c_bar
-        * (R::TWO * s.d_c_m_d_altitude * s.d_reference_force_d_altitude
-            + i.c_m * d2_reference_force_d_altitude_d_altitude
-            + i.reference_force * d2_c_m_d_altitude_d_altitude)
-        + p.z_t * d2_thrust_d_altitude_d_altitude; // lb/ft^2
-    let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
-        * p.inv_i_yy; // rad/s^2/ft^2
-
-    // Derivatives with respect to alpha
-    let d2_c_m_d_altitude_d_alpha = p.c_m_eta_1 * d2_eta_static_1_d_altitude_d_alpha
-        + p.c_m_eta_2 * d2_eta_static_2_d_altitude_d_alpha
-        + p.c_m_eta_3 * d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    let d2_pitching_moment_d_altitude_d_alpha = p.c_bar
-        * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
-            + i.reference_force * d2_c_m_d_altitude_d_alpha)
-        + p.z_t * d2_thrust_d_altitude_d_alpha; // lb/ft/rad
-    let d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha
-        * p.inv_i_yy; // 1/s^2/ft
-
     // Derivatives with respect to chi_1
     let d2_pitching_moment_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
         * p.c_bar_c_m_eta_1 + p.z_t * d2_thrust_d_altitude_d_chi_1; // lb/ft^1.5/slug^0.5
@@ -562,95 +603,103 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_pitch_acceleration_d_altitude_d_chi_2 = d2_pitching_moment_d_altitude_d_chi_2
         * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
+    hessian.velocity_by_chi_1_velocity = d2_velocity_rate_d_velocity_d_chi_1;
+    hessian.velocity_by_chi_1_altitude = d2_velocity_rate_d_altitude_d_chi_1;
+    hessian.velocity_by_chi_1_alpha = m.d2_velocity_rate_d_alpha_d_chi_1;
+    hessian.gamma_by_chi_1_velocity = d2_force_turn_d_velocity_d_chi_1;
+    hessian.gamma_by_chi_1_altitude = d2_force_turn_d_altitude_d_chi_1;
+    hessian.gamma_by_chi_1_alpha = m.d2_force_turn_d_alpha_d_chi_1;
+    hessian.alpha_by_chi_1_velocity = -d2_force_turn_d_velocity_d_chi_1;
+    hessian.alpha_by_chi_1_altitude = -d2_force_turn_d_altitude_d_chi_1;
+    hessian.alpha_by_chi_1_alpha = -m.d2_force_turn_d_alpha_d_chi_1;
+    hessian.pitch_rate_by_chi_1_velocity = d2_pitch_acceleration_d_velocity_d_chi_1;
+    hessian.pitch_rate_by_chi_1_altitude = d2_pitch_acceleration_d_altitude_d_chi_1;
+    hessian.velocity_by_chi_2_velocity = d2_velocity_rate_d_velocity_d_chi_2;
+    hessian.velocity_by_chi_2_altitude = d2_velocity_rate_d_altitude_d_chi_2;
+    hessian.velocity_by_chi_2_alpha = m.d2_velocity_rate_d_alpha_d_chi_2;
+    hessian.gamma_by_chi_2_velocity = d2_force_turn_d_velocity_d_chi_2;
+    hessian.gamma_by_chi_2_altitude = d2_force_turn_d_altitude_d_chi_2;
+    hessian.gamma_by_chi_2_alpha = m.d2_force_turn_d_alpha_d_chi_2;
+    hessian.alpha_by_chi_2_velocity = -d2_force_turn_d_velocity_d_chi_2;
+    hessian.alpha_by_chi_2_altitude = -d2_force_turn_d_altitude_d_chi_2;
+    hessian.alpha_by_chi_2_alpha = -m.d2_force_turn_d_alpha_d_chi_2;
+    hessian.pitch_rate_by_chi_2_velocity = d2_pitch_acceleration_d_velocity_d_chi_2;
+    hessian.pitch_rate_by_chi_2_altitude = d2_pitch_acceleration_d_altitude_d_chi_2;
+}
+
+/// Entries of [`hessian_values`]: derivatives by chi_3.
+#[inline(always)]
+fn hessian_by_chi_3<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+    m: &NoiseSlopes<R>,
+) {
     // Derivatives with respect to chi_3
+    let d2_thrust_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_chi_3 = i.cos_alpha * d2_thrust_d_velocity_d_chi_3
+        - d2_drag_d_velocity_d_chi_3; // lb*s/ft^2.5/slug^0.5
+    let d2_velocity_rate_d_velocity_d_chi_3 = d2_path_force_d_velocity_d_chi_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    let d2_thrust_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_t_eta_3; // lb/ft^2.5/slug^0.5
+    let d2_drag_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_d_eta_3; // lb/ft^2.5/slug^0.5
+    let d2_path_force_d_altitude_d_chi_3 = i.cos_alpha * d2_thrust_d_altitude_d_chi_3
+        - d2_drag_d_altitude_d_chi_3; // lb/ft^2.5/slug^0.5
+    let d2_velocity_rate_d_altitude_d_chi_3 = d2_path_force_d_altitude_d_chi_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    let d2_force_turn_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_chi_3; // rad/ft^1.5/slug^0.5
+    let d2_force_turn_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_chi_3; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
+        * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_velocity_d_chi_3; // lb*s/ft^1.5/slug^0.5
+    let d2_pitch_acceleration_d_velocity_d_chi_3 = d2_pitching_moment_d_velocity_d_chi_3
+        * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
     let d2_pitching_moment_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
         * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_altitude_d_chi_3; // lb/ft^1.5/slug^0.5
     let d2_pitch_acceleration_d_altitude_d_chi_3 = d2_pitching_moment_d_altitude_d_chi_3
         * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    // Derivatives with respect to alpha
-    let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
-        + p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.c_bar * i.reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
-    let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
-        * p.inv_i_yy; // 1/s^2/rad
+    hessian.velocity_by_chi_3_velocity = d2_velocity_rate_d_velocity_d_chi_3;
+    hessian.velocity_by_chi_3_altitude = d2_velocity_rate_d_altitude_d_chi_3;
+    hessian.velocity_by_chi_3_alpha = m.d2_velocity_rate_d_alpha_d_chi_3;
+    hessian.gamma_by_chi_3_velocity = d2_force_turn_d_velocity_d_chi_3;
+    hessian.gamma_by_chi_3_altitude = d2_force_turn_d_altitude_d_chi_3;
+    hessian.gamma_by_chi_3_alpha = m.d2_force_turn_d_alpha_d_chi_3;
+    hessian.alpha_by_chi_3_velocity = -d2_force_turn_d_velocity_d_chi_3;
+    hessian.alpha_by_chi_3_altitude = -d2_force_turn_d_altitude_d_chi_3;
+    hessian.alpha_by_chi_3_alpha = -m.d2_force_turn_d_alpha_d_chi_3;
+    hessian.pitch_rate_by_chi_3_velocity = d2_pitch_acceleration_d_velocity_d_chi_3;
+    hessian.pitch_rate_by_chi_3_altitude = d2_pitch_acceleration_d_altitude_d_chi_3;
+}
 
-    [
-        d2_velocity_rate_d_velocity_d_velocity,
-        d2_velocity_rate_d_velocity_d_altitude,
-        d2_velocity_rate_d_altitude_d_altitude,
-        d2_velocity_rate_d_altitude_d_gamma,
-        d2_velocity_rate_d_gamma_d_gamma,
-        d2_velocity_rate_d_velocity_d_alpha,
-        d2_velocity_rate_d_altitude_d_alpha,
-        d2_velocity_rate_d_alpha_d_alpha,
-        d2_velocity_rate_d_velocity_d_chi_1,
-        d2_velocity_rate_d_altitude_d_chi_1,
-        d2_velocity_rate_d_alpha_d_chi_1,
-        d2_velocity_rate_d_velocity_d_chi_2,
-        d2_velocity_rate_d_altitude_d_chi_2,
-        d2_velocity_rate_d_alpha_d_chi_2,
-        d2_velocity_rate_d_velocity_d_chi_3,
-        d2_velocity_rate_d_altitude_d_chi_3,
-        d2_velocity_rate_d_alpha_d_chi_3,
-        i.cos_gamma,
-        d2_altitude_rate_d_gamma_d_gamma,
-        d2_gamma_rate_d_velocity_d_velocity,
-        d2_gamma_rate_d_velocity_d_altitude,
-        d2_gamma_rate_d_altitude_d_altitude,
-        d2_gamma_rate_d_velocity_d_gamma,
-        d2_gamma_rate_d_altitude_d_gamma,
-        d2_gamma_rate_d_gamma_d_gamma,
-        d2_force_turn_d_velocity_d_alpha,
-        d2_force_turn_d_altitude_d_alpha,
-        d2_force_turn_d_alpha_d_alpha,
-        d2_force_turn_d_velocity_d_chi_1,
-        d2_force_turn_d_altitude_d_chi_1,
-        d2_force_turn_d_alpha_d_chi_1,
-        d2_force_turn_d_velocity_d_chi_2,
-        d2_force_turn_d_altitude_d_chi_2,
-        d2_force_turn_d_alpha_d_chi_2,
-        d2_force_turn_d_velocity_d_chi_3,
-        d2_force_turn_d_altitude_d_chi_3,
-        d2_force_turn_d_alpha_d_chi_3,
-        -d2_gamma_rate_d_velocity_d_velocity,
-        -d2_gamma_rate_d_velocity_d_altitude,
-        -d2_gamma_rate_d_altitude_d_altitude,
-        -d2_gamma_rate_d_velocity_d_gamma,
-        -d2_gamma_rate_d_altitude_d_gamma,
-        -d2_gamma_rate_d_gamma_d_gamma,
-        -d2_force_turn_d_velocity_d_alpha,
-        -d2_force_turn_d_altitude_d_alpha,
-        -d2_force_turn_d_alpha_d_alpha,
-        -d2_force_turn_d_velocity_d_chi_1,
-        -d2_force_turn_d_altitude_d_chi_1,
-        -d2_force_turn_d_alpha_d_chi_1,
-        -d2_force_turn_d_velocity_d_chi_2,
-        -d2_force_turn_d_altitude_d_chi_2,
-        -d2_force_turn_d_alpha_d_chi_2,
-        -d2_force_turn_d_velocity_d_chi_3,
-        -d2_force_turn_d_altitude_d_chi_3,
-        -d2_force_turn_d_alpha_d_chi_3,
-        d2_pitch_acceleration_d_velocity_d_velocity,
-        d2_pitch_acceleration_d_velocity_d_altitude,
-        d2_pitch_acceleration_d_altitude_d_altitude,
-        d2_pitch_acceleration_d_velocity_d_alpha,
-        d2_pitch_acceleration_d_altitude_d_alpha,
-        d2_pitch_acceleration_d_alpha_d_alpha,
-        d2_pitch_acceleration_d_velocity_d_chi_1,
-        d2_pitch_acceleration_d_altitude_d_chi_1,
-        d2_pitch_acceleration_d_velocity_d_chi_2,
-        d2_pitch_acceleration_d_altitude_d_chi_2,
-        d2_pitch_acceleration_d_velocity_d_chi_3,
-        d2_pitch_acceleration_d_altitude_d_chi_3,
-    ]
+/// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 740 operations: 235 additions, 500 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn hessian_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> HessianEntries<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let m = noise_slopes(x, u, p, &i, &s);
+    let mut hessian = HessianEntries::splat(R::ZERO);
+    hessian_by_velocity(&mut hessian, p, &i, &s);
+    hessian_by_altitude_of_velocity(&mut hessian, x, p, &i, &s);
+    hessian_by_altitude_of_gamma(&mut hessian, x, p, &i, &s);
+    hessian_by_altitude_of_alpha(&mut hessian, x, p, &i, &s);
+    hessian_by_altitude_of_pitch_rate_to_alpha(&mut hessian, x, p, &i, &s, &m);
+    hessian_by_chi_1_chi_2(&mut hessian, p, &i, &s, &m);
+    hessian_by_chi_3(&mut hessian, p, &i, &s, &m);
+    hessian
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
 #[inline(always)]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
-    HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
+    hessian_values(x, u, p).dense()
 }

@@ -7,175 +7,63 @@ use super::{
     drift_from, intermediates, slopes,
 };
 
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`StateJacobian`] stand.
-pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma),
-        ahv_core::at!(State.velocity, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_1),
-        ahv_core::at!(State.velocity, State.chi_2),
-        ahv_core::at!(State.velocity, State.chi_3),
-        ahv_core::at!(State.altitude, State.velocity),
-        ahv_core::at!(State.altitude, State.gamma),
-        ahv_core::at!(State.gamma, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_1),
-        ahv_core::at!(State.gamma, State.chi_2),
-        ahv_core::at!(State.gamma, State.chi_3),
-        ahv_core::at!(State.alpha, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma),
-        ahv_core::at!(State.alpha, State.alpha),
-        ahv_core::at!(State.alpha, State.pitch_rate),
-        ahv_core::at!(State.alpha, State.chi_1),
-        ahv_core::at!(State.alpha, State.chi_2),
-        ahv_core::at!(State.alpha, State.chi_3),
-        ahv_core::at!(State.pitch_rate, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.chi_1),
-        ahv_core::at!(State.pitch_rate, State.chi_2),
-        ahv_core::at!(State.pitch_rate, State.chi_3),
-        ahv_core::at!(State.chi_1, State.chi_1),
-        ahv_core::at!(State.chi_2, State.chi_2),
-        ahv_core::at!(State.chi_3, State.chi_3),
-    ],
-);
-
-/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_state_jacobian<R: Real>(values: &[R; 33]) -> StateJacobian<R> {
-    let no_state = State::splat(R::ZERO);
-    State {
-        velocity: State {
-            velocity: values[0],
-            altitude: values[1],
-            gamma: values[2],
-            alpha: values[3],
-            chi_1: values[4],
-            chi_2: values[5],
-            chi_3: values[6],
-            ..no_state
-        },
-        altitude: State {
-            velocity: values[7],
-            gamma: values[8],
-            ..no_state
-        },
-        gamma: State {
-            velocity: values[9],
-            altitude: values[10],
-            gamma: values[11],
-            alpha: values[12],
-            chi_1: values[13],
-            chi_2: values[14],
-            chi_3: values[15],
-            ..no_state
-        },
-        alpha: State {
-            velocity: values[16],
-            altitude: values[17],
-            gamma: values[18],
-            alpha: values[19],
-            pitch_rate: values[20],
-            chi_1: values[21],
-            chi_2: values[22],
-            chi_3: values[23],
-        },
-        pitch_rate: State {
-            velocity: values[24],
-            altitude: values[25],
-            alpha: values[26],
-            chi_1: values[27],
-            chi_2: values[28],
-            chi_3: values[29],
-            ..no_state
-        },
-        chi_1: State {
-            chi_1: values[30],
-            ..no_state
-        },
-        chi_2: State {
-            chi_2: values[31],
-            ..no_state
-        },
-        chi_3: State {
-            chi_3: values[32],
-            ..no_state
-        },
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`StateJacobian`].
+    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity_by_velocity: velocity.velocity,
+        velocity_by_altitude: velocity.altitude,
+        velocity_by_gamma: velocity.gamma,
+        velocity_by_alpha: velocity.alpha,
+        velocity_by_chi_1: velocity.chi_1,
+        velocity_by_chi_2: velocity.chi_2,
+        velocity_by_chi_3: velocity.chi_3,
+        altitude_by_velocity: altitude.velocity,
+        altitude_by_gamma: altitude.gamma,
+        gamma_by_velocity: gamma.velocity,
+        gamma_by_altitude: gamma.altitude,
+        gamma_by_gamma: gamma.gamma,
+        gamma_by_alpha: gamma.alpha,
+        gamma_by_chi_1: gamma.chi_1,
+        gamma_by_chi_2: gamma.chi_2,
+        gamma_by_chi_3: gamma.chi_3,
+        alpha_by_velocity: alpha.velocity,
+        alpha_by_altitude: alpha.altitude,
+        alpha_by_gamma: alpha.gamma,
+        alpha_by_alpha: alpha.alpha,
+        alpha_by_pitch_rate: alpha.pitch_rate,
+        alpha_by_chi_1: alpha.chi_1,
+        alpha_by_chi_2: alpha.chi_2,
+        alpha_by_chi_3: alpha.chi_3,
+        pitch_rate_by_velocity: pitch_rate.velocity,
+        pitch_rate_by_altitude: pitch_rate.altitude,
+        pitch_rate_by_alpha: pitch_rate.alpha,
+        pitch_rate_by_chi_1: pitch_rate.chi_1,
+        pitch_rate_by_chi_2: pitch_rate.chi_2,
+        pitch_rate_by_chi_3: pitch_rate.chi_3,
+        chi_1_by_chi_1: chi_1.chi_1,
+        chi_2_by_chi_2: chi_2.chi_2,
+        chi_3_by_chi_3: chi_3.chi_3,
     }
 }
 
-/// Where the entries of the compressed [`InputJacobian`] stand.
-pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Input::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Input.phi),
-        ahv_core::at!(State.velocity, Input.delta_e),
-        ahv_core::at!(State.velocity, Input.delta_c),
-        ahv_core::at!(State.gamma, Input.phi),
-        ahv_core::at!(State.gamma, Input.delta_e),
-        ahv_core::at!(State.gamma, Input.delta_c),
-        ahv_core::at!(State.alpha, Input.phi),
-        ahv_core::at!(State.alpha, Input.delta_e),
-        ahv_core::at!(State.alpha, Input.delta_c),
-        ahv_core::at!(State.pitch_rate, Input.phi),
-        ahv_core::at!(State.pitch_rate, Input.delta_e),
-        ahv_core::at!(State.pitch_rate, Input.delta_c),
-    ],
-);
-
-/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_input_jacobian<R: Real>(values: &[R; 12]) -> InputJacobian<R> {
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    State {
-        velocity: Input {
-            phi: values[0],
-            delta_e: values[1],
-            delta_c: values[2],
-        },
-        gamma: Input {
-            phi: values[3],
-            delta_e: values[4],
-            delta_c: values[5],
-        },
-        alpha: Input {
-            phi: values[6],
-            delta_e: values[7],
-            delta_c: values[8],
-        },
-        pitch_rate: Input {
-            phi: values[9],
-            delta_e: values[10],
-            delta_c: values[11],
-        },
-        ..no_state_input
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`InputJacobian`].
+    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity_by_phi: velocity.phi,
+        velocity_by_delta_e: velocity.delta_e,
+        velocity_by_delta_c: velocity.delta_c,
+        gamma_by_phi: gamma.phi,
+        gamma_by_delta_e: gamma.delta_e,
+        gamma_by_delta_c: gamma.delta_c,
+        alpha_by_phi: alpha.phi,
+        alpha_by_delta_e: alpha.delta_e,
+        alpha_by_delta_c: alpha.delta_c,
+        pitch_rate_by_phi: pitch_rate.phi,
+        pitch_rate_by_delta_e: pitch_rate.delta_e,
+        pitch_rate_by_delta_c: pitch_rate.delta_c,
     }
-}
-
-/// Derivatives of the drift with respect to the state and to the input, eq. (27).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 445 operations: 151 additions, 289 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline(always)]
-pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ([R; 33], [R; 12]) {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    jacobians_values_from(x, u, p, &i, &s)
 }
 
 /// [`jacobians_values`] from what is computed once.
@@ -186,7 +74,7 @@ pub fn jacobians_values_from<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) -> ([R; 33], [R; 12]) {
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_d_d_velocity; // lb*s/ft^2
@@ -245,56 +133,72 @@ pub fn jacobians_values_from<R: Real>(
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
 
     // Result
-    let state = [
-        d_velocity_rate_d_velocity,
-        d_velocity_rate_d_altitude,
-        s.d_velocity_rate_d_gamma,
-        s.d_velocity_rate_d_alpha,
-        s.d_velocity_rate_d_chi_1,
-        s.d_velocity_rate_d_chi_2,
-        s.d_velocity_rate_d_chi_3,
-        i.sin_gamma,
-        s.d_altitude_rate_d_gamma,
-        d_gamma_rate_d_velocity,
-        d_gamma_rate_d_altitude,
-        s.d_gamma_rate_d_gamma,
-        s.d_force_turn_d_alpha,
-        s.d_force_turn_d_chi_1,
-        s.d_force_turn_d_chi_2,
-        s.d_force_turn_d_chi_3,
-        -d_gamma_rate_d_velocity,
-        -d_gamma_rate_d_altitude,
-        -s.d_gamma_rate_d_gamma,
-        -s.d_force_turn_d_alpha,
-        R::ONE,
-        -s.d_force_turn_d_chi_1,
-        -s.d_force_turn_d_chi_2,
-        -s.d_force_turn_d_chi_3,
-        d_pitch_acceleration_d_velocity,
-        d_pitch_acceleration_d_altitude,
-        s.d_pitch_acceleration_d_alpha,
-        s.d_pitch_acceleration_d_chi_1,
-        s.d_pitch_acceleration_d_chi_2,
-        s.d_pitch_acceleration_d_chi_3,
-        p.minus_chi_decay_1,
-        p.minus_chi_decay_2,
-        p.minus_chi_decay_3,
-    ];
-    let input = [
-        s.d_velocity_rate_d_phi,
-        s.d_velocity_rate_d_delta_e,
-        s.d_velocity_rate_d_delta_c,
-        s.d_force_turn_d_phi,
-        s.d_force_turn_d_delta_e,
-        s.d_force_turn_d_delta_c,
-        -s.d_force_turn_d_phi,
-        -s.d_force_turn_d_delta_e,
-        -s.d_force_turn_d_delta_c,
-        d_pitch_acceleration_d_phi,
-        s.d_pitch_acceleration_d_delta_e,
-        d_pitch_acceleration_d_delta_c,
-    ];
+    let state = StateJacobianEntries {
+        velocity_by_velocity: d_velocity_rate_d_velocity,
+        velocity_by_altitude: d_velocity_rate_d_altitude,
+        velocity_by_gamma: s.d_velocity_rate_d_gamma,
+        velocity_by_alpha: s.d_velocity_rate_d_alpha,
+        velocity_by_chi_1: s.d_velocity_rate_d_chi_1,
+        velocity_by_chi_2: s.d_velocity_rate_d_chi_2,
+        velocity_by_chi_3: s.d_velocity_rate_d_chi_3,
+        altitude_by_velocity: i.sin_gamma,
+        altitude_by_gamma: s.d_altitude_rate_d_gamma,
+        gamma_by_velocity: d_gamma_rate_d_velocity,
+        gamma_by_altitude: d_gamma_rate_d_altitude,
+        gamma_by_gamma: s.d_gamma_rate_d_gamma,
+        gamma_by_alpha: s.d_force_turn_d_alpha,
+        gamma_by_chi_1: s.d_force_turn_d_chi_1,
+        gamma_by_chi_2: s.d_force_turn_d_chi_2,
+        gamma_by_chi_3: s.d_force_turn_d_chi_3,
+        alpha_by_velocity: -d_gamma_rate_d_velocity,
+        alpha_by_altitude: -d_gamma_rate_d_altitude,
+        alpha_by_gamma: -s.d_gamma_rate_d_gamma,
+        alpha_by_alpha: -s.d_force_turn_d_alpha,
+        alpha_by_pitch_rate: R::ONE,
+        alpha_by_chi_1: -s.d_force_turn_d_chi_1,
+        alpha_by_chi_2: -s.d_force_turn_d_chi_2,
+        alpha_by_chi_3: -s.d_force_turn_d_chi_3,
+        pitch_rate_by_velocity: d_pitch_acceleration_d_velocity,
+        pitch_rate_by_altitude: d_pitch_acceleration_d_altitude,
+        pitch_rate_by_alpha: s.d_pitch_acceleration_d_alpha,
+        pitch_rate_by_chi_1: s.d_pitch_acceleration_d_chi_1,
+        pitch_rate_by_chi_2: s.d_pitch_acceleration_d_chi_2,
+        pitch_rate_by_chi_3: s.d_pitch_acceleration_d_chi_3,
+        chi_1_by_chi_1: p.minus_chi_decay_1,
+        chi_2_by_chi_2: p.minus_chi_decay_2,
+        chi_3_by_chi_3: p.minus_chi_decay_3,
+    };
+    let input = InputJacobianEntries {
+        velocity_by_phi: s.d_velocity_rate_d_phi,
+        velocity_by_delta_e: s.d_velocity_rate_d_delta_e,
+        velocity_by_delta_c: s.d_velocity_rate_d_delta_c,
+        gamma_by_phi: s.d_force_turn_d_phi,
+        gamma_by_delta_e: s.d_force_turn_d_delta_e,
+        gamma_by_delta_c: s.d_force_turn_d_delta_c,
+        alpha_by_phi: -s.d_force_turn_d_phi,
+        alpha_by_delta_e: -s.d_force_turn_d_delta_e,
+        alpha_by_delta_c: -s.d_force_turn_d_delta_c,
+        pitch_rate_by_phi: d_pitch_acceleration_d_phi,
+        pitch_rate_by_delta_e: s.d_pitch_acceleration_d_delta_e,
+        pitch_rate_by_delta_c: d_pitch_acceleration_d_delta_c,
+    };
     (state, input)
+}
+
+/// Derivatives of the drift with respect to the state and to the input, eq. (27).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 445 operations: 151 additions, 289 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn jacobians_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    jacobians_values_from(x, u, p, &i, &s)
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
@@ -305,7 +209,7 @@ pub fn jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (state.dense(), input.dense())
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
@@ -319,7 +223,7 @@ pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, [R; 33], [R; 12]) {
+) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let drift = drift_from(x, u, p, &i);
@@ -336,5 +240,5 @@ pub fn drift_and_jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
-    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (drift, state.dense(), input.dense())
 }

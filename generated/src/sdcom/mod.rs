@@ -430,7 +430,10 @@ impl<R: Real> ahv_core::DifferentiableNoise for Model<R> {
     ) -> State<R> {
         let values = noise_derivatives_values(x, u, &self.prepared);
         let mut sum = State::splat(R::ZERO).to_array();
-        for (value, &[row, j, k]) in values.into_iter().zip(NOISE_DERIVATIVES_PATTERN.at)
+        for (value, &[row, j, k]) in values
+            .to_array()
+            .into_iter()
+            .zip(NOISE_DERIVATIVES_PATTERN.at)
         {
             if let Some(component) = sum.get_mut(row) {
                 *component = *component + value * integral(j, k);

@@ -2,44 +2,46 @@
 
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
-use super::{Input, Noise, NoiseDerivatives, Prepared, State, intermediates, slopes};
-use ahv_core::{Pattern, Real};
+use super::{
+    Input, Noise, NoiseDerivatives, Prepared, State, intermediates, noise_slopes, slopes,
+};
 
-/// Where the entries of the compressed [`NoiseDerivatives`] stand.
-pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
-    [State::<u8>::LEN, Noise::<u8>::LEN, Noise::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Noise.w_gamma, Noise.w_gamma),
-        ahv_core::at!(State.velocity, Noise.w_gamma, Noise.w_alpha),
-        ahv_core::at!(State.velocity, Noise.w_alpha, Noise.w_gamma),
-        ahv_core::at!(State.velocity, Noise.w_alpha, Noise.w_alpha),
-        ahv_core::at!(State.velocity, Noise.w_q, Noise.w_alpha),
-        ahv_core::at!(State.velocity, Noise.xi_1, Noise.w_alpha),
-        ahv_core::at!(State.velocity, Noise.xi_2, Noise.w_alpha),
-        ahv_core::at!(State.velocity, Noise.xi_3, Noise.w_alpha),
-        ahv_core::at!(State.altitude, Noise.w_gamma, Noise.w_gamma),
-        ahv_core::at!(State.altitude, Noise.w_alpha, Noise.w_gamma),
-        ahv_core::at!(State.gamma, Noise.w_gamma, Noise.w_gamma),
-        ahv_core::at!(State.gamma, Noise.w_gamma, Noise.w_alpha),
-        ahv_core::at!(State.gamma, Noise.w_alpha, Noise.w_gamma),
-        ahv_core::at!(State.gamma, Noise.w_alpha, Noise.w_alpha),
-        ahv_core::at!(State.gamma, Noise.w_q, Noise.w_alpha),
-        ahv_core::at!(State.gamma, Noise.xi_1, Noise.w_alpha),
-        ahv_core::at!(State.gamma, Noise.xi_2, Noise.w_alpha),
-        ahv_core::at!(State.gamma, Noise.xi_3, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_gamma, Noise.w_gamma),
-        ahv_core::at!(State.alpha, Noise.w_gamma, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_alpha, Noise.w_gamma),
-        ahv_core::at!(State.alpha, Noise.w_alpha, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_q, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.xi_1, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.xi_2, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.xi_3, Noise.w_alpha),
-        ahv_core::at!(State.pitch_rate, Noise.w_gamma, Noise.w_alpha),
-        ahv_core::at!(State.pitch_rate, Noise.w_alpha, Noise.w_alpha),
-        ahv_core::at!(State.pitch_rate, Noise.w_q, Noise.w_alpha),
-    ],
-);
+use ahv_core::Real;
+
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`NoiseDerivatives`].
+    pub struct NoiseDerivativesEntries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
+        velocity_by_w_gamma_w_gamma: velocity.w_gamma.w_gamma,
+        velocity_by_w_gamma_w_alpha: velocity.w_gamma.w_alpha,
+        velocity_by_w_alpha_w_gamma: velocity.w_alpha.w_gamma,
+        velocity_by_w_alpha_w_alpha: velocity.w_alpha.w_alpha,
+        velocity_by_w_q_w_alpha: velocity.w_q.w_alpha,
+        velocity_by_xi_1_w_alpha: velocity.xi_1.w_alpha,
+        velocity_by_xi_2_w_alpha: velocity.xi_2.w_alpha,
+        velocity_by_xi_3_w_alpha: velocity.xi_3.w_alpha,
+        altitude_by_w_gamma_w_gamma: altitude.w_gamma.w_gamma,
+        altitude_by_w_alpha_w_gamma: altitude.w_alpha.w_gamma,
+        gamma_by_w_gamma_w_gamma: gamma.w_gamma.w_gamma,
+        gamma_by_w_gamma_w_alpha: gamma.w_gamma.w_alpha,
+        gamma_by_w_alpha_w_gamma: gamma.w_alpha.w_gamma,
+        gamma_by_w_alpha_w_alpha: gamma.w_alpha.w_alpha,
+        gamma_by_w_q_w_alpha: gamma.w_q.w_alpha,
+        gamma_by_xi_1_w_alpha: gamma.xi_1.w_alpha,
+        gamma_by_xi_2_w_alpha: gamma.xi_2.w_alpha,
+        gamma_by_xi_3_w_alpha: gamma.xi_3.w_alpha,
+        alpha_by_w_gamma_w_gamma: alpha.w_gamma.w_gamma,
+        alpha_by_w_gamma_w_alpha: alpha.w_gamma.w_alpha,
+        alpha_by_w_alpha_w_gamma: alpha.w_alpha.w_gamma,
+        alpha_by_w_alpha_w_alpha: alpha.w_alpha.w_alpha,
+        alpha_by_w_q_w_alpha: alpha.w_q.w_alpha,
+        alpha_by_xi_1_w_alpha: alpha.xi_1.w_alpha,
+        alpha_by_xi_2_w_alpha: alpha.xi_2.w_alpha,
+        alpha_by_xi_3_w_alpha: alpha.xi_3.w_alpha,
+        pitch_rate_by_w_gamma_w_alpha: pitch_rate.w_gamma.w_alpha,
+        pitch_rate_by_w_alpha_w_alpha: pitch_rate.w_alpha.w_alpha,
+        pitch_rate_by_w_q_w_alpha: pitch_rate.w_q.w_alpha,
+    }
+}
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 ///
@@ -51,284 +53,94 @@ pub fn noise_derivatives_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> [R; 29] {
+) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_1_d_alpha_d_alpha = d2_generalized_force_1_d_alpha_d_alpha
-        * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_2_d_alpha_d_alpha = d2_generalized_force_2_d_alpha_d_alpha
-        * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_3_d_alpha_d_alpha = d2_generalized_force_3_d_alpha_d_alpha
-        * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
-    let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
-        + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
-    let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
-        + R::TWO * p.c_t_alpha_2
-        + p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_alpha
-        + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
-        + p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
-        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
-        - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
-
-    // Derivatives with respect to chi_1
-    let d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_1 = d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_2 = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_3 = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
-        + i.c_t * s.d_cos_alpha_d_alpha
-        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    let d2_force_turn_d_alpha_d_alpha = i.turn_factor
-        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
-
-    // Derivatives with respect to chi_1
-    let d2_force_turn_d_alpha_d_chi_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_force_turn_d_alpha_d_chi_2 = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_force_turn_d_alpha_d_chi_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to alpha
-    let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
-        + p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.c_bar * i.reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
-    let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
-        * p.inv_i_yy; // 1/s^2/rad
-
-    // Derivatives with respect to altitude
-    let d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_1_d_alpha_d_velocity = d2_generalized_force_1_d_alpha_d_velocity
-        * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_2_d_alpha_d_velocity = d2_generalized_force_2_d_alpha_d_velocity
-        * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_3_d_alpha_d_velocity = d2_generalized_force_3_d_alpha_d_velocity
-        * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
-    let d2_c_t_d_alpha_d_velocity = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
-        + i.reference_force * d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_c_d_d_alpha_d_velocity = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
-        - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to altitude
-    let d2_generalized_force_1_d_alpha_d_altitude = s.d_reference_force_d_altitude
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_1_d_alpha_d_altitude = d2_generalized_force_1_d_alpha_d_altitude
-        * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
-    let d2_generalized_force_2_d_alpha_d_altitude = s.d_reference_force_d_altitude
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_2_d_alpha_d_altitude = d2_generalized_force_2_d_alpha_d_altitude
-        * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
-    let d2_generalized_force_3_d_alpha_d_altitude = s.d_reference_force_d_altitude
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_3_d_alpha_d_altitude = d2_generalized_force_3_d_alpha_d_altitude
-        * p.inv_omega_3_2; // slug^0.5/ft^0.5/rad
-    let d2_c_t_d_alpha_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_thrust_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
-        + i.reference_force * d2_c_t_d_alpha_d_altitude; // lb/ft^2/rad
-    let d2_c_d_d_alpha_d_altitude = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_altitude
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_altitude
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_drag_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_alpha_d_altitude; // lb/ft^2/rad
-    let d2_path_force_d_alpha_d_altitude = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_altitude
-        - d2_drag_d_alpha_d_altitude; // lb/ft^2/rad
-    let d2_velocity_rate_d_alpha_d_altitude = d2_path_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d2_gamma_rate_d_gamma_d_altitude = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to velocity
-    let d2_c_l_d_alpha_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_normal_coefficient_d_alpha_d_velocity = s.d_c_t_d_velocity * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_velocity
-        + d2_c_l_d_alpha_d_velocity; // s/rad/ft
-    let d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d2_c_l_d_alpha_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_altitude
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_altitude
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_normal_coefficient_d_alpha_d_altitude = s.d_c_t_d_altitude * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_altitude
-        + d2_c_l_d_alpha_d_altitude; // 1/rad/ft
-    let d2_force_turn_d_alpha_d_altitude = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * d2_normal_coefficient_d_alpha_d_altitude; // 1/s/ft
-
-    // Derivatives with respect to velocity
-    let d2_c_m_d_alpha_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_pitching_moment_d_alpha_d_velocity = p.c_bar
-        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
-            + i.reference_force * d2_c_m_d_alpha_d_velocity)
-        + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
-    let d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
-        * p.inv_i_yy; // 1/s/ft
-
-    // Derivatives with respect to altitude
-    let d2_c_m_d_alpha_d_altitude = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_altitude
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_altitude
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_pitching_moment_d_alpha_d_altitude = p.c_bar
-        * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
-            + i.reference_force * d2_c_m_d_alpha_d_altitude)
-        + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
-    let d2_pitch_acceleration_d_alpha_d_altitude = d2_pitching_moment_d_alpha_d_altitude
-        * p.inv_i_yy; // 1/s^2/ft
-    let noise_derivatives_term_1 = d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
-        + d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
-        + d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
-    let noise_derivatives_term_2 = d2_force_turn_d_alpha_d_velocity
+    let m = noise_slopes(x, u, p, &i, &s);
+    let noise_derivatives_term_1 = m.d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
+        + m.d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+        + m.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
+    let noise_derivatives_term_2 = m.d2_force_turn_d_alpha_d_velocity
         * s.d_velocity_rate_d_gamma;
-    let noise_derivatives_term_3 = d2_force_turn_d_alpha_d_altitude
+    let noise_derivatives_term_3 = m.d2_force_turn_d_alpha_d_altitude
         * s.d_altitude_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = d2_force_turn_d_alpha_d_alpha
-        * s.d_gamma_rate_d_gamma;
-    let noise_derivatives_term_4 = d2_gamma_rate_d_gamma_d_velocity
+    let noise_derivatives_term_4 = m.d2_gamma_rate_d_gamma_d_velocity
         * s.d_velocity_rate_d_alpha
-        + d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
-    let noise_derivatives_term_5 = d2_force_turn_d_alpha_d_velocity
+        + m.d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
+    let noise_derivatives_term_5 = m.d2_force_turn_d_alpha_d_velocity
         * s.d_velocity_rate_d_alpha;
-    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
-        * s.d_force_turn_d_alpha;
     let noise_derivatives_term_6 = p.shared_noise
-        * (p.chi_diffusion_2 * d2_force_turn_d_alpha_d_chi_2
-            + p.chi_diffusion_3 * d2_force_turn_d_alpha_d_chi_3)
-        + p.chi_diffusion_1 * d2_force_turn_d_alpha_d_chi_1;
+        * (p.chi_diffusion_2 * m.d2_force_turn_d_alpha_d_chi_2
+            + p.chi_diffusion_3 * m.d2_force_turn_d_alpha_d_chi_3)
+        + p.chi_diffusion_1 * m.d2_force_turn_d_alpha_d_chi_1;
 
-    [
-        p.w_gamma_2
-            * (d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
-                + d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
-        p.w_alpha_w_gamma
-            * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
-                + d2_velocity_rate_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
-                - d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        p.w_alpha_w_gamma * d2_velocity_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha,
-        p.w_alpha_2
-            * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        p.w_alpha_w_q * d2_velocity_rate_d_alpha_d_alpha,
-        p.w_alpha
+    NoiseDerivativesEntries {
+        velocity_by_w_gamma_w_gamma: p.w_gamma_2
+            * (m.d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+                + m.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
+        velocity_by_w_gamma_w_alpha: p.w_alpha_w_gamma
+            * (m.d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + m.d2_velocity_rate_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - m.d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+        velocity_by_w_alpha_w_gamma: p.w_alpha_w_gamma
+            * m.d2_velocity_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha,
+        velocity_by_w_alpha_w_alpha: p.w_alpha_2
+            * (m.d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - m.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+        velocity_by_w_q_w_alpha: p.w_alpha_w_q * m.d2_velocity_rate_d_alpha_d_alpha,
+        velocity_by_xi_1_w_alpha: p.w_alpha
             * (p.shared_noise
-                * (p.chi_diffusion_2 * d2_velocity_rate_d_alpha_d_chi_2
-                    + p.chi_diffusion_3 * d2_velocity_rate_d_alpha_d_chi_3)
-                + p.chi_diffusion_1 * d2_velocity_rate_d_alpha_d_chi_1),
-        p.w_alpha_chi_diffusion_2_own_noise * d2_velocity_rate_d_alpha_d_chi_2,
-        p.w_alpha_chi_diffusion_3_own_noise * d2_velocity_rate_d_alpha_d_chi_3,
-        p.w_gamma_2
+                * (p.chi_diffusion_2 * m.d2_velocity_rate_d_alpha_d_chi_2
+                    + p.chi_diffusion_3 * m.d2_velocity_rate_d_alpha_d_chi_3)
+                + p.chi_diffusion_1 * m.d2_velocity_rate_d_alpha_d_chi_1),
+        velocity_by_xi_2_w_alpha: p.w_alpha_chi_diffusion_2_own_noise
+            * m.d2_velocity_rate_d_alpha_d_chi_2,
+        velocity_by_xi_3_w_alpha: p.w_alpha_chi_diffusion_3_own_noise
+            * m.d2_velocity_rate_d_alpha_d_chi_3,
+        altitude_by_w_gamma_w_gamma: p.w_gamma_2
             * (i.cos_gamma * s.d_velocity_rate_d_gamma
-                + d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
-        p.w_alpha_w_gamma
+                + m.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
+        altitude_by_w_alpha_w_gamma: p.w_alpha_w_gamma
             * (i.cos_gamma * s.d_velocity_rate_d_alpha
-                + d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
-        p.w_gamma_2 * noise_derivatives_term_1,
-        p.w_alpha_w_gamma
+                + m.d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
+        gamma_by_w_gamma_w_gamma: p.w_gamma_2 * noise_derivatives_term_1,
+        gamma_by_w_gamma_w_alpha: p.w_alpha_w_gamma
             * (noise_derivatives_term_2 + noise_derivatives_term_3
-                - d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma),
-        p.w_alpha_w_gamma * noise_derivatives_term_4,
-        p.w_alpha_2
+                - m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma),
+        gamma_by_w_alpha_w_gamma: p.w_alpha_w_gamma * noise_derivatives_term_4,
+        gamma_by_w_alpha_w_alpha: p.w_alpha_2
             * (noise_derivatives_term_5
-                - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
-        p.w_alpha_w_q * d2_force_turn_d_alpha_d_alpha,
-        p.w_alpha * noise_derivatives_term_6,
-        p.w_alpha_chi_diffusion_2_own_noise * d2_force_turn_d_alpha_d_chi_2,
-        p.w_alpha_chi_diffusion_3_own_noise * d2_force_turn_d_alpha_d_chi_3,
-        -p.w_gamma_2 * noise_derivatives_term_1,
-        p.w_alpha_w_gamma
-            * (d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
+                - m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
+        gamma_by_w_q_w_alpha: p.w_alpha_w_q * m.d2_force_turn_d_alpha_d_alpha,
+        gamma_by_xi_1_w_alpha: p.w_alpha * noise_derivatives_term_6,
+        gamma_by_xi_2_w_alpha: p.w_alpha_chi_diffusion_2_own_noise
+            * m.d2_force_turn_d_alpha_d_chi_2,
+        gamma_by_xi_3_w_alpha: p.w_alpha_chi_diffusion_3_own_noise
+            * m.d2_force_turn_d_alpha_d_chi_3,
+        alpha_by_w_gamma_w_gamma: -p.w_gamma_2 * noise_derivatives_term_1,
+        alpha_by_w_gamma_w_alpha: p.w_alpha_w_gamma
+            * (m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
                 - noise_derivatives_term_2 - noise_derivatives_term_3),
-        -p.w_alpha_w_gamma * noise_derivatives_term_4,
-        p.w_alpha_2
-            * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
+        alpha_by_w_alpha_w_gamma: -p.w_alpha_w_gamma * noise_derivatives_term_4,
+        alpha_by_w_alpha_w_alpha: p.w_alpha_2
+            * (m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
                 - noise_derivatives_term_5),
-        -p.w_alpha_w_q * d2_force_turn_d_alpha_d_alpha,
-        -p.w_alpha * noise_derivatives_term_6,
-        -p.w_alpha_chi_diffusion_2_own_noise * d2_force_turn_d_alpha_d_chi_2,
-        -p.w_alpha_chi_diffusion_3_own_noise * d2_force_turn_d_alpha_d_chi_3,
-        p.w_alpha_w_gamma
-            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
-                + d2_pitch_acceleration_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
-                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        p.w_alpha_2
-            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        p.w_alpha_w_q * d2_pitch_acceleration_d_alpha_d_alpha,
-    ]
+        alpha_by_w_q_w_alpha: -p.w_alpha_w_q * m.d2_force_turn_d_alpha_d_alpha,
+        alpha_by_xi_1_w_alpha: -p.w_alpha * noise_derivatives_term_6,
+        alpha_by_xi_2_w_alpha: -p.w_alpha_chi_diffusion_2_own_noise
+            * m.d2_force_turn_d_alpha_d_chi_2,
+        alpha_by_xi_3_w_alpha: -p.w_alpha_chi_diffusion_3_own_noise
+            * m.d2_force_turn_d_alpha_d_chi_3,
+        pitch_rate_by_w_gamma_w_alpha: p.w_alpha_w_gamma
+            * (m.d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
+                + m.d2_pitch_acceleration_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
+                - m.d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+        pitch_rate_by_w_alpha_w_alpha: p.w_alpha_2
+            * (m.d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - m.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+        pitch_rate_by_w_q_w_alpha: p.w_alpha_w_q
+            * m.d2_pitch_acceleration_d_alpha_d_alpha,
+    }
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
@@ -338,7 +150,7 @@ pub fn noise_derivatives<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> NoiseDerivatives<R> {
-    NOISE_DERIVATIVES_PATTERN.dense(&noise_derivatives_values(x, u, p))
+    noise_derivatives_values(x, u, p).dense()
 }
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
@@ -348,150 +160,34 @@ pub fn noise_derivatives<R: Real>(
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_1_d_alpha_d_alpha = d2_generalized_force_1_d_alpha_d_alpha
-        * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_2_d_alpha_d_alpha = d2_generalized_force_2_d_alpha_d_alpha
-        * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_3_d_alpha_d_alpha = d2_generalized_force_3_d_alpha_d_alpha
-        * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
-    let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
-        + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
-    let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
-        + R::TWO * p.c_t_alpha_2
-        + p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_alpha
-        + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
-        + p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
-        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
-        - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
-
-    // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
-        + i.c_t * s.d_cos_alpha_d_alpha
-        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    let d2_force_turn_d_alpha_d_alpha = i.turn_factor
-        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
-    let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
-        + p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.c_bar * i.reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
-    let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
-        * p.inv_i_yy; // 1/s^2/rad
-
-    // Derivatives with respect to altitude
-    let d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_1_d_alpha_d_velocity = d2_generalized_force_1_d_alpha_d_velocity
-        * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_2_d_alpha_d_velocity = d2_generalized_force_2_d_alpha_d_velocity
-        * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_3_d_alpha_d_velocity = d2_generalized_force_3_d_alpha_d_velocity
-        * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
-    let d2_c_t_d_alpha_d_velocity = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
-        + i.reference_force * d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_c_d_d_alpha_d_velocity = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
-        - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
-    let d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d2_gamma_rate_d_gamma_d_altitude = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to velocity
-    let d2_c_l_d_alpha_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_normal_coefficient_d_alpha_d_velocity = s.d_c_t_d_velocity * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_velocity
-        + d2_c_l_d_alpha_d_velocity; // s/rad/ft
-    let d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
-    let d2_c_m_d_alpha_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_pitching_moment_d_alpha_d_velocity = p.c_bar
-        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
-            + i.reference_force * d2_c_m_d_alpha_d_velocity)
-        + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
-    let d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
-        * p.inv_i_yy; // 1/s/ft
+    let m = noise_slopes(x, u, p, &i, &s);
     let ito_correction_term_1 = p.half_w_gamma_2
-        * (d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
-            + d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
-            + d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
-    let ito_correction_term_2 = d2_force_turn_d_alpha_d_velocity
+        * (m.d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
+            + m.d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+            + m.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
+    let ito_correction_term_2 = m.d2_force_turn_d_alpha_d_velocity
         * s.d_velocity_rate_d_alpha;
-    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = d2_force_turn_d_alpha_d_alpha
-        * s.d_force_turn_d_alpha;
 
     State {
         velocity: p.half_w_gamma_2
-            * (d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
-                + d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma)
+            * (m.d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
+                + m.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma)
             + p.half_w_alpha_2
-                * (d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                    - d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+                * (m.d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                    - m.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         altitude: p.half_w_gamma_2
             * (i.cos_gamma * s.d_velocity_rate_d_gamma
-                + d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
+                + m.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         gamma: ito_correction_term_1
             + p.half_w_alpha_2
                 * (ito_correction_term_2
-                    - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
+                    - m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
         alpha: p.half_w_alpha_2
-            * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
+            * (m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
                 - ito_correction_term_2) - ito_correction_term_1,
         pitch_rate: p.half_w_alpha_2
-            * (d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (m.d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
+                - m.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         chi_1: R::ZERO,
         chi_2: R::ZERO,
         chi_3: R::ZERO,

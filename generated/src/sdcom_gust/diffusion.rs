@@ -3,51 +3,18 @@
 //! Functions of SDCOM_GUST. Units are foot, slug, second and radian.
 
 use super::{Diffusion, Input, Noise, Prepared, State, drift_from, intermediates};
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`Diffusion`] stand.
-pub const DIFFUSION_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Noise::<u8>::LEN],
-    &[
-        ahv_core::at!(State.alpha, Noise.w_q),
-        ahv_core::at!(State.chi_1, Noise.xi_1),
-        ahv_core::at!(State.chi_2, Noise.xi_1),
-        ahv_core::at!(State.chi_2, Noise.xi_2),
-        ahv_core::at!(State.chi_3, Noise.xi_1),
-        ahv_core::at!(State.chi_3, Noise.xi_3),
-        ahv_core::at!(State.alpha_gust, Noise.w_gust),
-    ],
-);
-
-/// The [`Diffusion`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_diffusion<R: Real>(values: &[R; 7]) -> Diffusion<R> {
-    let no_noise = Noise::splat(R::ZERO);
-    let no_state_noise = State::splat(no_noise);
-    State {
-        alpha: Noise {
-            w_q: values[0],
-            ..no_noise
-        },
-        chi_1: Noise {
-            xi_1: values[1],
-            ..no_noise
-        },
-        chi_2: Noise {
-            xi_1: values[2],
-            xi_2: values[3],
-            ..no_noise
-        },
-        chi_3: Noise {
-            xi_1: values[4],
-            xi_3: values[5],
-            ..no_noise
-        },
-        alpha_gust: Noise {
-            w_gust: values[6],
-            ..no_noise
-        },
-        ..no_state_noise
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`Diffusion`].
+    pub struct DiffusionEntries, DIFFUSION_PATTERN: State<Noise> {
+        alpha_by_w_q: alpha.w_q,
+        chi_1_by_xi_1: chi_1.xi_1,
+        chi_2_by_xi_1: chi_2.xi_1,
+        chi_2_by_xi_2: chi_2.xi_2,
+        chi_3_by_xi_1: chi_3.xi_1,
+        chi_3_by_xi_3: chi_3.xi_3,
+        alpha_gust_by_w_gust: alpha_gust.w_gust,
     }
 }
 
@@ -62,23 +29,23 @@ pub fn diffusion_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
     p: &Prepared<R>,
-) -> [R; 7] {
-    [
-        p.w_q,
-        p.chi_diffusion_1,
-        p.chi_diffusion_2_shared_noise,
-        p.chi_diffusion_2_own_noise,
-        p.chi_diffusion_3_shared_noise,
-        p.chi_diffusion_3_own_noise,
-        p.gust_rms_sqrt_two_over_gust_time,
-    ]
+) -> DiffusionEntries<R> {
+    DiffusionEntries {
+        alpha_by_w_q: p.w_q,
+        chi_1_by_xi_1: p.chi_diffusion_1,
+        chi_2_by_xi_1: p.chi_diffusion_2_shared_noise,
+        chi_2_by_xi_2: p.chi_diffusion_2_own_noise,
+        chi_3_by_xi_1: p.chi_diffusion_3_shared_noise,
+        chi_3_by_xi_3: p.chi_diffusion_3_own_noise,
+        alpha_gust_by_w_gust: p.gust_rms_sqrt_two_over_gust_time,
+    }
 }
 
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the gust is an Ornstein-Uhlenbeck
 /// process of rms gust_rms, eq. (27).
 #[inline(always)]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    dense_diffusion(&diffusion_values(x, u, p))
+    diffusion_values(x, u, p).dense()
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (27).
@@ -93,7 +60,7 @@ pub fn drift_and_diffusion<R: Real>(
     let i = intermediates(x, u, p);
     let drift = drift_from(x, u, p, &i);
     let diffusion = diffusion_values(x, u, p);
-    (drift, dense_diffusion(&diffusion))
+    (drift, diffusion.dense())
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).

@@ -5,15 +5,6 @@
 use super::{Input, Intermediates, Prepared, State, intermediates};
 use ahv_core::Real;
 
-/// Time derivative of the state, eq. (27).
-///
-/// 150 operations: 58 additions, 87 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline(always)]
-pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
-    let i = intermediates(x, u, p);
-    drift_from(x, u, p, &i)
-}
-
 /// [`drift`] from what is computed once.
 #[inline(always)]
 pub fn drift_from<R: Real>(
@@ -41,4 +32,13 @@ pub fn drift_from<R: Real>(
         chi_3: chi_rate_3,
         alpha_gust: -x.alpha_gust * p.inv_gust_time,
     }
+}
+
+/// Time derivative of the state, eq. (27).
+///
+/// 150 operations: 58 additions, 87 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
+    let i = intermediates(x, u, p);
+    drift_from(x, u, p, &i)
 }

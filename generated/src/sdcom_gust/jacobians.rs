@@ -7,199 +7,78 @@ use super::{
     drift_from, intermediates, slopes,
 };
 
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`StateJacobian`] stand.
-pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma),
-        ahv_core::at!(State.velocity, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_1),
-        ahv_core::at!(State.velocity, State.chi_2),
-        ahv_core::at!(State.velocity, State.chi_3),
-        ahv_core::at!(State.velocity, State.alpha_gust),
-        ahv_core::at!(State.altitude, State.velocity),
-        ahv_core::at!(State.altitude, State.gamma),
-        ahv_core::at!(State.gamma, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_1),
-        ahv_core::at!(State.gamma, State.chi_2),
-        ahv_core::at!(State.gamma, State.chi_3),
-        ahv_core::at!(State.gamma, State.alpha_gust),
-        ahv_core::at!(State.alpha, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma),
-        ahv_core::at!(State.alpha, State.alpha),
-        ahv_core::at!(State.alpha, State.pitch_rate),
-        ahv_core::at!(State.alpha, State.chi_1),
-        ahv_core::at!(State.alpha, State.chi_2),
-        ahv_core::at!(State.alpha, State.chi_3),
-        ahv_core::at!(State.alpha, State.alpha_gust),
-        ahv_core::at!(State.pitch_rate, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.chi_1),
-        ahv_core::at!(State.pitch_rate, State.chi_2),
-        ahv_core::at!(State.pitch_rate, State.chi_3),
-        ahv_core::at!(State.pitch_rate, State.alpha_gust),
-        ahv_core::at!(State.chi_1, State.chi_1),
-        ahv_core::at!(State.chi_2, State.chi_2),
-        ahv_core::at!(State.chi_3, State.chi_3),
-        ahv_core::at!(State.alpha_gust, State.alpha_gust),
-    ],
-);
-
-/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_state_jacobian<R: Real>(values: &[R; 38]) -> StateJacobian<R> {
-    let no_state = State::splat(R::ZERO);
-    State {
-        velocity: State {
-            velocity: values[0],
-            altitude: values[1],
-            gamma: values[2],
-            alpha: values[3],
-            chi_1: values[4],
-            chi_2: values[5],
-            chi_3: values[6],
-            alpha_gust: values[7],
-            ..no_state
-        },
-        altitude: State {
-            velocity: values[8],
-            gamma: values[9],
-            ..no_state
-        },
-        gamma: State {
-            velocity: values[10],
-            altitude: values[11],
-            gamma: values[12],
-            alpha: values[13],
-            chi_1: values[14],
-            chi_2: values[15],
-            chi_3: values[16],
-            alpha_gust: values[17],
-            ..no_state
-        },
-        alpha: State {
-            velocity: values[18],
-            altitude: values[19],
-            gamma: values[20],
-            alpha: values[21],
-            pitch_rate: values[22],
-            chi_1: values[23],
-            chi_2: values[24],
-            chi_3: values[25],
-            alpha_gust: values[26],
-        },
-        pitch_rate: State {
-            velocity: values[27],
-            altitude: values[28],
-            alpha: values[29],
-            chi_1: values[30],
-            chi_2: values[31],
-            chi_3: values[32],
-            alpha_gust: values[33],
-            ..no_state
-        },
-        chi_1: State {
-            chi_1: values[34],
-            ..no_state
-        },
-        chi_2: State {
-            chi_2: values[35],
-            ..no_state
-        },
-        chi_3: State {
-            chi_3: values[36],
-            ..no_state
-        },
-        alpha_gust: State {
-            alpha_gust: values[37],
-            ..no_state
-        },
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`StateJacobian`].
+    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity_by_velocity: velocity.velocity,
+        velocity_by_altitude: velocity.altitude,
+        velocity_by_gamma: velocity.gamma,
+        velocity_by_alpha: velocity.alpha,
+        velocity_by_chi_1: velocity.chi_1,
+        velocity_by_chi_2: velocity.chi_2,
+        velocity_by_chi_3: velocity.chi_3,
+        velocity_by_alpha_gust: velocity.alpha_gust,
+        altitude_by_velocity: altitude.velocity,
+        altitude_by_gamma: altitude.gamma,
+        gamma_by_velocity: gamma.velocity,
+        gamma_by_altitude: gamma.altitude,
+        gamma_by_gamma: gamma.gamma,
+        gamma_by_alpha: gamma.alpha,
+        gamma_by_chi_1: gamma.chi_1,
+        gamma_by_chi_2: gamma.chi_2,
+        gamma_by_chi_3: gamma.chi_3,
+        gamma_by_alpha_gust: gamma.alpha_gust,
+        alpha_by_velocity: alpha.velocity,
+        alpha_by_altitude: alpha.altitude,
+        alpha_by_gamma: alpha.gamma,
+        alpha_by_alpha: alpha.alpha,
+        alpha_by_pitch_rate: alpha.pitch_rate,
+        alpha_by_chi_1: alpha.chi_1,
+        alpha_by_chi_2: alpha.chi_2,
+        alpha_by_chi_3: alpha.chi_3,
+        alpha_by_alpha_gust: alpha.alpha_gust,
+        pitch_rate_by_velocity: pitch_rate.velocity,
+        pitch_rate_by_altitude: pitch_rate.altitude,
+        pitch_rate_by_alpha: pitch_rate.alpha,
+        pitch_rate_by_chi_1: pitch_rate.chi_1,
+        pitch_rate_by_chi_2: pitch_rate.chi_2,
+        pitch_rate_by_chi_3: pitch_rate.chi_3,
+        pitch_rate_by_alpha_gust: pitch_rate.alpha_gust,
+        chi_1_by_chi_1: chi_1.chi_1,
+        chi_2_by_chi_2: chi_2.chi_2,
+        chi_3_by_chi_3: chi_3.chi_3,
+        alpha_gust_by_alpha_gust: alpha_gust.alpha_gust,
     }
 }
 
-/// Where the entries of the compressed [`InputJacobian`] stand.
-pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Input::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Input.phi),
-        ahv_core::at!(State.velocity, Input.delta_e),
-        ahv_core::at!(State.velocity, Input.delta_c),
-        ahv_core::at!(State.gamma, Input.phi),
-        ahv_core::at!(State.gamma, Input.delta_e),
-        ahv_core::at!(State.gamma, Input.delta_c),
-        ahv_core::at!(State.alpha, Input.phi),
-        ahv_core::at!(State.alpha, Input.delta_e),
-        ahv_core::at!(State.alpha, Input.delta_c),
-        ahv_core::at!(State.pitch_rate, Input.phi),
-        ahv_core::at!(State.pitch_rate, Input.delta_e),
-        ahv_core::at!(State.pitch_rate, Input.delta_c),
-    ],
-);
-
-/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_input_jacobian<R: Real>(values: &[R; 12]) -> InputJacobian<R> {
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    State {
-        velocity: Input {
-            phi: values[0],
-            delta_e: values[1],
-            delta_c: values[2],
-        },
-        gamma: Input {
-            phi: values[3],
-            delta_e: values[4],
-            delta_c: values[5],
-        },
-        alpha: Input {
-            phi: values[6],
-            delta_e: values[7],
-            delta_c: values[8],
-        },
-        pitch_rate: Input {
-            phi: values[9],
-            delta_e: values[10],
-            delta_c: values[11],
-        },
-        ..no_state_input
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`InputJacobian`].
+    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity_by_phi: velocity.phi,
+        velocity_by_delta_e: velocity.delta_e,
+        velocity_by_delta_c: velocity.delta_c,
+        gamma_by_phi: gamma.phi,
+        gamma_by_delta_e: gamma.delta_e,
+        gamma_by_delta_c: gamma.delta_c,
+        alpha_by_phi: alpha.phi,
+        alpha_by_delta_e: alpha.delta_e,
+        alpha_by_delta_c: alpha.delta_c,
+        pitch_rate_by_phi: pitch_rate.phi,
+        pitch_rate_by_delta_e: pitch_rate.delta_e,
+        pitch_rate_by_delta_c: pitch_rate.delta_c,
     }
 }
 
-/// Derivatives of the drift with respect to the state and to the input, eq. (27).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 450 operations: 154 additions, 291 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// Entries of [`jacobians_values`]: derivatives by velocity to chi_3.
 #[inline(always)]
-pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ([R; 38], [R; 12]) {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    jacobians_values_from(x, u, p, &i, &s)
-}
-
-/// [`jacobians_values`] from what is computed once.
-#[inline(always)]
-pub fn jacobians_values_from<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
+fn jacobians_by_velocity_to_chi_3<R: Real>(
+    state: &mut StateJacobianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) -> ([R; 38], [R; 12]) {
+) {
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_d_d_velocity; // lb*s/ft^2
@@ -237,15 +116,11 @@ pub fn jacobians_values_from<R: Real>(
 
     // Derivatives with respect to alpha
     let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
-    let cos_alpha_times_d_thrust_d_alpha = i.cos_alpha * s.d_thrust_d_alpha;
     let d_path_force_d_alpha = i.thrust * s.d_cos_alpha_d_alpha
-        + cos_alpha_times_d_thrust_d_alpha
+        + i.cos_alpha * s.d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_alpha = i.turn_factor * s.d_normal_coefficient_d_alpha; // 1/s
-    let d_pitching_moment_d_alpha = p.c_bar * i.reference_force * s.d_c_m_d_alpha
-        + p.z_t * s.d_thrust_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to chi_1
     let d_path_force_d_chi_1 = i.reference_force * (s.cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
@@ -271,8 +146,54 @@ pub fn jacobians_values_from<R: Real>(
         * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
+    state.velocity_by_velocity = d_velocity_rate_d_velocity;
+    state.altitude_by_velocity = i.sin_gamma;
+    state.gamma_by_velocity = d_gamma_rate_d_velocity;
+    state.alpha_by_velocity = -d_gamma_rate_d_velocity;
+    state.pitch_rate_by_velocity = d_pitch_acceleration_d_velocity;
+    state.velocity_by_altitude = d_velocity_rate_d_altitude;
+    state.gamma_by_altitude = d_gamma_rate_d_altitude;
+    state.alpha_by_altitude = -d_gamma_rate_d_altitude;
+    state.pitch_rate_by_altitude = d_pitch_acceleration_d_altitude;
+    state.velocity_by_gamma = d_velocity_rate_d_gamma;
+    state.altitude_by_gamma = s.d_altitude_rate_d_gamma;
+    state.gamma_by_gamma = d_gamma_rate_d_gamma;
+    state.alpha_by_gamma = -d_gamma_rate_d_gamma;
+    state.velocity_by_alpha = d_velocity_rate_d_alpha;
+    state.gamma_by_alpha = d_force_turn_d_alpha;
+    state.alpha_by_alpha = -d_force_turn_d_alpha;
+    state.pitch_rate_by_alpha = s.d_pitch_acceleration_d_alpha;
+    state.velocity_by_chi_1 = d_velocity_rate_d_chi_1;
+    state.gamma_by_chi_1 = d_force_turn_d_chi_1;
+    state.alpha_by_chi_1 = -d_force_turn_d_chi_1;
+    state.pitch_rate_by_chi_1 = d_pitch_acceleration_d_chi_1;
+    state.chi_1_by_chi_1 = p.minus_chi_decay_1;
+    state.velocity_by_chi_2 = d_velocity_rate_d_chi_2;
+    state.gamma_by_chi_2 = d_force_turn_d_chi_2;
+    state.alpha_by_chi_2 = -d_force_turn_d_chi_2;
+    state.pitch_rate_by_chi_2 = d_pitch_acceleration_d_chi_2;
+    state.chi_2_by_chi_2 = p.minus_chi_decay_2;
+    state.velocity_by_chi_3 = d_velocity_rate_d_chi_3;
+    state.gamma_by_chi_3 = d_force_turn_d_chi_3;
+    state.alpha_by_chi_3 = -d_force_turn_d_chi_3;
+    state.pitch_rate_by_chi_3 = d_pitch_acceleration_d_chi_3;
+    state.chi_3_by_chi_3 = p.minus_chi_decay_3;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by alpha_gust to delta_c.
+#[inline(always)]
+fn jacobians_by_alpha_gust_to_delta_c<R: Real>(
+    state: &mut StateJacobianEntries<R>,
+    input: &mut InputJacobianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to alpha
+    let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
+
     // Derivatives with respect to alpha_gust
-    let d_path_force_d_alpha_gust = cos_alpha_times_d_thrust_d_alpha - d_drag_d_alpha; // lb/ft/rad
+    let d_path_force_d_alpha_gust = i.cos_alpha * s.d_thrust_d_alpha - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha_gust = d_path_force_d_alpha_gust * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_alpha_gust = i.turn_factor * s.d_normal_coefficient_d_alpha_gust; // 1/s
 
@@ -322,62 +243,56 @@ pub fn jacobians_values_from<R: Real>(
         + p.z_t * d_thrust_d_delta_c; // lb/rad
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
 
-    // Result
-    let state = [
-        d_velocity_rate_d_velocity,
-        d_velocity_rate_d_altitude,
-        d_velocity_rate_d_gamma,
-        d_velocity_rate_d_alpha,
-        d_velocity_rate_d_chi_1,
-        d_velocity_rate_d_chi_2,
-        d_velocity_rate_d_chi_3,
-        d_velocity_rate_d_alpha_gust,
-        i.sin_gamma,
-        s.d_altitude_rate_d_gamma,
-        d_gamma_rate_d_velocity,
-        d_gamma_rate_d_altitude,
-        d_gamma_rate_d_gamma,
-        d_force_turn_d_alpha,
-        d_force_turn_d_chi_1,
-        d_force_turn_d_chi_2,
-        d_force_turn_d_chi_3,
-        d_force_turn_d_alpha_gust,
-        -d_gamma_rate_d_velocity,
-        -d_gamma_rate_d_altitude,
-        -d_gamma_rate_d_gamma,
-        -d_force_turn_d_alpha,
-        R::ONE,
-        -d_force_turn_d_chi_1,
-        -d_force_turn_d_chi_2,
-        -d_force_turn_d_chi_3,
-        -d_force_turn_d_alpha_gust,
-        d_pitch_acceleration_d_velocity,
-        d_pitch_acceleration_d_altitude,
-        d_pitch_acceleration_d_alpha,
-        d_pitch_acceleration_d_chi_1,
-        d_pitch_acceleration_d_chi_2,
-        d_pitch_acceleration_d_chi_3,
-        d_pitch_acceleration_d_alpha,
-        p.minus_chi_decay_1,
-        p.minus_chi_decay_2,
-        p.minus_chi_decay_3,
-        p.minus_over_gust_time,
-    ];
-    let input = [
-        s.d_velocity_rate_d_phi,
-        s.d_velocity_rate_d_delta_e,
-        s.d_velocity_rate_d_delta_c,
-        s.d_force_turn_d_phi,
-        s.d_force_turn_d_delta_e,
-        s.d_force_turn_d_delta_c,
-        -s.d_force_turn_d_phi,
-        -s.d_force_turn_d_delta_e,
-        -s.d_force_turn_d_delta_c,
-        d_pitch_acceleration_d_phi,
-        d_pitch_acceleration_d_delta_e,
-        d_pitch_acceleration_d_delta_c,
-    ];
+    state.velocity_by_alpha_gust = d_velocity_rate_d_alpha_gust;
+    state.gamma_by_alpha_gust = d_force_turn_d_alpha_gust;
+    state.alpha_by_alpha_gust = -d_force_turn_d_alpha_gust;
+    state.pitch_rate_by_alpha_gust = s.d_pitch_acceleration_d_alpha;
+    state.alpha_gust_by_alpha_gust = p.minus_over_gust_time;
+    state.alpha_by_pitch_rate = R::ONE;
+    input.velocity_by_phi = s.d_velocity_rate_d_phi;
+    input.gamma_by_phi = s.d_force_turn_d_phi;
+    input.alpha_by_phi = -s.d_force_turn_d_phi;
+    input.pitch_rate_by_phi = d_pitch_acceleration_d_phi;
+    input.velocity_by_delta_e = s.d_velocity_rate_d_delta_e;
+    input.gamma_by_delta_e = s.d_force_turn_d_delta_e;
+    input.alpha_by_delta_e = -s.d_force_turn_d_delta_e;
+    input.pitch_rate_by_delta_e = d_pitch_acceleration_d_delta_e;
+    input.velocity_by_delta_c = s.d_velocity_rate_d_delta_c;
+    input.gamma_by_delta_c = s.d_force_turn_d_delta_c;
+    input.alpha_by_delta_c = -s.d_force_turn_d_delta_c;
+    input.pitch_rate_by_delta_c = d_pitch_acceleration_d_delta_c;
+}
+
+/// [`jacobians_values`] from what is computed once.
+#[inline(always)]
+pub fn jacobians_values_from<R: Real>(
+    _x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+    jacobians_by_velocity_to_chi_3(&mut state, p, i, s);
+    jacobians_by_alpha_gust_to_delta_c(&mut state, &mut input, p, i, s);
     (state, input)
+}
+
+/// Derivatives of the drift with respect to the state and to the input, eq. (27).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 450 operations: 154 additions, 291 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn jacobians_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    jacobians_values_from(x, u, p, &i, &s)
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
@@ -388,7 +303,7 @@ pub fn jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (state.dense(), input.dense())
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
@@ -402,7 +317,7 @@ pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, [R; 38], [R; 12]) {
+) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let drift = drift_from(x, u, p, &i);
@@ -419,5 +334,5 @@ pub fn drift_and_jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
-    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (drift, state.dense(), input.dense())
 }

@@ -3,13 +3,14 @@
 //! Functions of SDCOM_GUST. Units are foot, slug, second and radian.
 
 use super::{Input, Noise, NoiseDerivatives, Prepared, State};
-use ahv_core::{Pattern, Real};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`NoiseDerivatives`] stand.
-pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
-    [State::<u8>::LEN, Noise::<u8>::LEN, Noise::<u8>::LEN],
-    &[],
-);
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`NoiseDerivatives`].
+    pub struct NoiseDerivativesEntries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
+        
+    }
+}
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 ///
@@ -21,8 +22,8 @@ pub fn noise_derivatives_values<R: Real>(
     _x: &State<R>,
     _u: &Input<R>,
     _p: &Prepared<R>,
-) -> [R; 0] {
-    []
+) -> NoiseDerivativesEntries<R> {
+    NoiseDerivativesEntries::splat(R::ZERO)
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
@@ -32,7 +33,7 @@ pub fn noise_derivatives<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> NoiseDerivatives<R> {
-    NOISE_DERIVATIVES_PATTERN.dense(&noise_derivatives_values(x, u, p))
+    noise_derivatives_values(x, u, p).dense()
 }
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).

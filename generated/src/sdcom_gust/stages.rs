@@ -5,105 +5,240 @@
 use super::{Input, Prepared, State};
 use ahv_core::Real;
 
-/// Quantities of the drift that other functions need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Intermediates<R> {
-    /// Air density over its reference, dimensionless.
-    pub density_ratio: R,
-    /// Air density, slug/ft^3.
-    pub density: R,
-    /// `x.velocity * x.velocity`.
-    pub velocity_2: R,
-    /// Dynamic pressure, lb/ft^2.
-    pub dynamic_pressure: R,
-    /// Dynamic pressure times reference area, lb/ft.
-    pub reference_force: R,
-    /// Sin of the angle of attack, dimensionless.
-    pub sin_alpha: R,
-    /// Cos of the angle of attack, dimensionless.
-    pub cos_alpha: R,
-    /// Sin of the flight-path angle, dimensionless.
-    pub sin_gamma: R,
-    /// Cos of the flight-path angle, dimensionless.
-    pub cos_gamma: R,
-    /// Radius of the Earth over the distance to its centre, dimensionless.
-    pub radius_ratio: R,
-    /// `radius_ratio * radius_ratio`.
-    pub radius_ratio_2: R,
-    /// Acceleration of gravity at altitude, ft/s^2.
-    pub gravity: R,
-    /// `1 / x.velocity`.
-    pub inv_velocity: R,
-    /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
-    pub gravity_turn: R,
-    /// Turn rate per force coefficient across the flight path, 1/s.
-    pub turn_factor: R,
-    /// Canard deflection as commanded, rad.
-    pub canard_commanded: R,
-    /// Canard deflection, commanded and slaved, rad.
-    pub canard_deflection: R,
-    /// Angle of attack against the air, which moves with the gust, rad.
-    pub incidence: R,
-    /// `incidence * incidence`.
-    pub incidence_2: R,
-    /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
-    pub c_n_1: R,
-    /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
-    pub c_n_2: R,
-    /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
-    pub c_n_3: R,
-    /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
-    pub generalized_force_1: R,
-    /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
-    pub generalized_force_2: R,
-    /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
-    pub generalized_force_3: R,
-    /// Static flexible coordinate of mode 1, (ft*slug)^0.5.
-    pub eta_static_1: R,
-    /// Reduced flexible coordinate of mode 1, (ft*slug)^0.5.
-    pub eta_1: R,
-    /// Static flexible coordinate of mode 2, (ft*slug)^0.5.
-    pub eta_static_2: R,
-    /// Reduced flexible coordinate of mode 2, (ft*slug)^0.5.
-    pub eta_2: R,
-    /// Static flexible coordinate of mode 3, (ft*slug)^0.5.
-    pub eta_static_3: R,
-    /// Reduced flexible coordinate of mode 3, (ft*slug)^0.5.
-    pub eta_3: R,
-    /// `incidence * incidence_2`.
-    pub incidence_3: R,
-    /// Slope of the thrust coefficient in the fuel equivalence ratio, dimensionless.
-    pub c_t_phi: R,
-    /// Thrust coefficient, dimensionless.
-    pub c_t: R,
-    /// Lift coefficient, dimensionless.
-    pub c_l: R,
-    /// `u.delta_e * u.delta_e`.
-    pub delta_e_2: R,
-    /// `canard_deflection * canard_deflection`.
-    pub canard_deflection_2: R,
-    /// Drag coefficient, dimensionless.
-    pub c_d: R,
-    /// Pitching-moment coefficient, dimensionless.
-    pub c_m: R,
-    /// Thrust, lb/ft.
-    pub thrust: R,
-    /// Drag, lb/ft.
-    pub drag: R,
-    /// Pitching moment, lb.
-    pub pitching_moment: R,
-    /// Coefficient of the force across the flight path, dimensionless.
-    pub normal_coefficient: R,
-    /// Force along the flight path, lb/ft.
-    pub path_force: R,
-    /// Rate of the velocity, ft/s^2.
-    pub velocity_rate: R,
-    /// Rate of the altitude, ft/s.
-    pub altitude_rate: R,
-    /// Rate of the flight-path angle, rad/s.
-    pub gamma_rate: R,
-    /// Pitch acceleration, rad/s^2.
-    pub pitch_acceleration: R,
+ahv_core::record! {
+    /// Quantities of the drift that other functions need.
+    pub struct Intermediates<R> {
+        /// Air density over its reference, dimensionless.
+        pub density_ratio: R,
+        /// Air density, slug/ft^3.
+        pub density: R,
+        /// `x.velocity * x.velocity`.
+        pub velocity_2: R,
+        /// Dynamic pressure, lb/ft^2.
+        pub dynamic_pressure: R,
+        /// Dynamic pressure times reference area, lb/ft.
+        pub reference_force: R,
+        /// Sin of the angle of attack, dimensionless.
+        pub sin_alpha: R,
+        /// Cos of the angle of attack, dimensionless.
+        pub cos_alpha: R,
+        /// Sin of the flight-path angle, dimensionless.
+        pub sin_gamma: R,
+        /// Cos of the flight-path angle, dimensionless.
+        pub cos_gamma: R,
+        /// Radius of the Earth over the distance to its centre, dimensionless.
+        pub radius_ratio: R,
+        /// `i.radius_ratio * i.radius_ratio`.
+        pub radius_ratio_2: R,
+        /// Acceleration of gravity at altitude, ft/s^2.
+        pub gravity: R,
+        /// `1 / x.velocity`.
+        pub inv_velocity: R,
+        /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
+        pub gravity_turn: R,
+        /// Turn rate per force coefficient across the flight path, 1/s.
+        pub turn_factor: R,
+        /// Canard deflection as commanded, rad.
+        pub canard_commanded: R,
+        /// Canard deflection, commanded and slaved, rad.
+        pub canard_deflection: R,
+        /// Angle of attack against the air, which moves with the gust, rad.
+        pub incidence: R,
+        /// `i.incidence * i.incidence`.
+        pub incidence_2: R,
+        /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
+        pub c_n_1: R,
+        /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
+        pub c_n_2: R,
+        /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
+        pub c_n_3: R,
+        /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
+        pub generalized_force_1: R,
+        /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
+        pub generalized_force_2: R,
+        /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
+        pub generalized_force_3: R,
+        /// Static flexible coordinate of mode 1, (ft*slug)^0.5.
+        pub eta_static_1: R,
+        /// Reduced flexible coordinate of mode 1, (ft*slug)^0.5.
+        pub eta_1: R,
+        /// Static flexible coordinate of mode 2, (ft*slug)^0.5.
+        pub eta_static_2: R,
+        /// Reduced flexible coordinate of mode 2, (ft*slug)^0.5.
+        pub eta_2: R,
+        /// Static flexible coordinate of mode 3, (ft*slug)^0.5.
+        pub eta_static_3: R,
+        /// Reduced flexible coordinate of mode 3, (ft*slug)^0.5.
+        pub eta_3: R,
+        /// `i.incidence * i.incidence_2`.
+        pub incidence_3: R,
+        /// Slope of the thrust coefficient in the fuel equivalence ratio, dimensionless.
+        pub c_t_phi: R,
+        /// Thrust coefficient, dimensionless.
+        pub c_t: R,
+        /// Lift coefficient, dimensionless.
+        pub c_l: R,
+        /// `u.delta_e * u.delta_e`.
+        pub delta_e_2: R,
+        /// `i.canard_deflection * i.canard_deflection`.
+        pub canard_deflection_2: R,
+        /// Drag coefficient, dimensionless.
+        pub c_d: R,
+        /// Pitching-moment coefficient, dimensionless.
+        pub c_m: R,
+        /// Thrust, lb/ft.
+        pub thrust: R,
+        /// Drag, lb/ft.
+        pub drag: R,
+        /// Pitching moment, lb.
+        pub pitching_moment: R,
+        /// Coefficient of the force across the flight path, dimensionless.
+        pub normal_coefficient: R,
+        /// Force along the flight path, lb/ft.
+        pub path_force: R,
+        /// Rate of the velocity, ft/s^2.
+        pub velocity_rate: R,
+        /// Rate of the altitude, ft/s.
+        pub altitude_rate: R,
+        /// Rate of the flight-path angle, rad/s.
+        pub gamma_rate: R,
+        /// Pitch acceleration, rad/s^2.
+        pub pitch_acceleration: R,
+    }
+}
+/// Fills a part of [`Intermediates`].
+#[inline(always)]
+fn intermediates_part_1<R: Real>(
+    i: &mut Intermediates<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) {
+    // Air, (2)
+    i.density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
+    i.density = p.rho_0 * i.density_ratio; // slug/ft^3
+    i.velocity_2 = x.velocity * x.velocity;
+    i.dynamic_pressure = R::HALF * i.density * i.velocity_2; // lb/ft^2
+    i.reference_force = i.dynamic_pressure * p.s; // lb/ft
+
+    // Angles, (1)
+    (i.sin_alpha, i.cos_alpha) = x.alpha.sin_cos();
+    (i.sin_gamma, i.cos_gamma) = x.gamma.sin_cos();
+
+    // Gravity, (1)
+    i.radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    i.radius_ratio_2 = i.radius_ratio * i.radius_ratio;
+    i.gravity = p.g * i.radius_ratio_2; // ft/s^2
+    i.inv_velocity = x.velocity.recip();
+    i.gravity_turn = i.gravity * i.inv_velocity
+        - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
+
+    // Motion, (1)
+    i.turn_factor = i.density * x.velocity * p.half_s_over_m; // 1/s
+
+    // Canard, (4)
+    i.canard_commanded = p.canard_command * u.delta_c; // rad
+    i.canard_deflection = i.canard_commanded + p.canard_gain * u.delta_e; // rad
+
+    // Gust, (3)
+    i.incidence = x.alpha + x.alpha_gust; // rad
+
+    // Curve fits, (3)
+    i.incidence_2 = i.incidence * i.incidence;
+    i.c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * i.incidence_2
+        + p.c_n_1_alpha * i.incidence
+        + p.c_n_1_delta_e * u.delta_e
+        + p.c_n_1_delta_c * i.canard_deflection; // (ft/slug)^0.5
+    i.c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * i.incidence_2
+        + p.c_n_2_alpha * i.incidence
+        + p.c_n_2_delta_e * u.delta_e
+        + p.c_n_2_delta_c * i.canard_deflection; // (ft/slug)^0.5
+    i.c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * i.incidence_2
+        + p.c_n_3_alpha * i.incidence
+        + p.c_n_3_delta_e * u.delta_e
+        + p.c_n_3_delta_c * i.canard_deflection; // (ft/slug)^0.5
+
+    // Generalized forces, (2)
+    i.generalized_force_1 = i.reference_force * i.c_n_1; // (ft*slug)^0.5/s^2
+    i.generalized_force_2 = i.reference_force * i.c_n_2; // (ft*slug)^0.5/s^2
+    i.generalized_force_3 = i.reference_force * i.c_n_3; // (ft*slug)^0.5/s^2
+
+    // Reduced flexible coordinates, (25)
+    i.eta_static_1 = i.generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
+    i.eta_1 = i.eta_static_1 + x.chi_1; // (ft*slug)^0.5
+    i.eta_static_2 = i.generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
+    i.eta_2 = i.eta_static_2 + x.chi_2; // (ft*slug)^0.5
+}
+
+/// Fills a part of [`Intermediates`].
+#[inline(always)]
+fn intermediates_part_2<R: Real>(
+    i: &mut Intermediates<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) {
+    i.eta_static_3 = i.generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
+    i.eta_3 = i.eta_static_3 + x.chi_3; // (ft*slug)^0.5
+
+    // Curve fits, (3)
+    i.incidence_3 = i.incidence * i.incidence_2;
+    i.c_t_phi = p.c_t_phi
+        + p.c_t_phi_alpha_3 * i.incidence_3
+        + p.c_t_phi_alpha_2 * i.incidence_2
+        + p.c_t_phi_alpha * i.incidence;
+    i.c_t = p.c_t_0
+        + i.c_t_phi * u.phi
+        + p.c_t_alpha_3 * i.incidence_3
+        + p.c_t_alpha_2 * i.incidence_2
+        + p.c_t_alpha * i.incidence
+        + p.c_t_eta_1 * i.eta_1
+        + p.c_t_eta_2 * i.eta_2
+        + p.c_t_eta_3 * i.eta_3;
+    i.c_l = p.c_l_0
+        + p.c_l_alpha * i.incidence
+        + p.elevator_lift * u.delta_e
+        + p.c_l_delta_c * i.canard_commanded
+        + p.c_l_eta_1 * i.eta_1
+        + p.c_l_eta_2 * i.eta_2
+        + p.c_l_eta_3 * i.eta_3;
+    i.delta_e_2 = u.delta_e * u.delta_e;
+    i.canard_deflection_2 = i.canard_deflection * i.canard_deflection;
+    i.c_d = p.c_d_0
+        + p.c_d_alpha_2 * i.incidence_2
+        + p.c_d_alpha * i.incidence
+        + p.c_d_delta_e_2 * i.delta_e_2
+        + p.c_d_delta_e * u.delta_e
+        + p.c_d_delta_c_2 * i.canard_deflection_2
+        + p.c_d_delta_c * i.canard_deflection
+        + p.c_d_eta_1 * i.eta_1
+        + p.c_d_eta_2 * i.eta_2
+        + p.c_d_eta_3 * i.eta_3;
+    i.c_m = p.c_m_0
+        + p.c_m_alpha_2 * i.incidence_2
+        + p.c_m_alpha * i.incidence
+        + p.c_m_delta_e * u.delta_e
+        + p.c_m_delta_c * i.canard_deflection
+        + p.c_m_eta_1 * i.eta_1
+        + p.c_m_eta_2 * i.eta_2
+        + p.c_m_eta_3 * i.eta_3;
+
+    // Forces and moment, (2)
+    i.thrust = i.reference_force * i.c_t; // lb/ft
+    i.drag = i.reference_force * i.c_d; // lb/ft
+    i.pitching_moment = p.z_t * i.thrust + i.reference_force * i.c_m * p.c_bar; // lb
+    i.normal_coefficient = i.c_l + i.c_t * i.sin_alpha;
+
+    // Motion, (1)
+    i.path_force = i.thrust * i.cos_alpha - i.drag; // lb/ft
+    let force_turn = i.turn_factor * i.normal_coefficient; // rad/s
+    i.velocity_rate = i.path_force * p.inv_m - i.gravity * i.sin_gamma; // ft/s^2
+    i.altitude_rate = x.velocity * i.sin_gamma; // ft/s
+    i.gamma_rate = force_turn - i.gravity_turn * i.cos_gamma; // rad/s
+    i.pitch_acceleration = i.pitching_moment * p.inv_i_yy; // rad/s^2
 }
 
 /// Computes [`Intermediates`].
@@ -113,379 +248,232 @@ pub fn intermediates<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> Intermediates<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
+    let mut i = Intermediates::splat(R::ZERO);
+    intermediates_part_1(&mut i, x, u, p);
+    intermediates_part_2(&mut i, x, u, p);
+    i
+}
 
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Gust, (3)
-    let incidence = x.alpha + x.alpha_gust; // rad
-
-    // Curve fits, (3)
-    let incidence_2 = incidence * incidence;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * incidence_2
-        + p.c_n_1_alpha * incidence
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * incidence_2
-        + p.c_n_2_alpha * incidence
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * incidence_2
-        + p.c_n_3_alpha * incidence
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Reduced flexible coordinates, (25)
-    let eta_static_1 = generalized_force_1 * p.inv_omega_1_2; // (ft*slug)^0.5
-    let eta_1 = eta_static_1 + x.chi_1; // (ft*slug)^0.5
-    let eta_static_2 = generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
-    let eta_2 = eta_static_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_static_3 = generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
-    let eta_3 = eta_static_3 + x.chi_3; // (ft*slug)^0.5
-
-    // Curve fits, (3)
-    let incidence_3 = incidence * incidence_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * incidence_3
-        + p.c_t_phi_alpha_2 * incidence_2
-        + p.c_t_phi_alpha * incidence;
-    let c_t = p.c_t_0
-        + c_t_phi * u.phi
-        + p.c_t_alpha_3 * incidence_3
-        + p.c_t_alpha_2 * incidence_2
-        + p.c_t_alpha * incidence
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
-    let c_l = p.c_l_0
-        + p.c_l_alpha * incidence
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * canard_commanded
-        + p.c_l_eta_1 * eta_1
-        + p.c_l_eta_2 * eta_2
-        + p.c_l_eta_3 * eta_3;
-    let delta_e_2 = u.delta_e * u.delta_e;
-    let canard_deflection_2 = canard_deflection * canard_deflection;
-    let c_d = p.c_d_0
-        + p.c_d_alpha_2 * incidence_2
-        + p.c_d_alpha * incidence
-        + p.c_d_delta_e_2 * delta_e_2
-        + p.c_d_delta_e * u.delta_e
-        + p.c_d_delta_c_2 * canard_deflection_2
-        + p.c_d_delta_c * canard_deflection
-        + p.c_d_eta_1 * eta_1
-        + p.c_d_eta_2 * eta_2
-        + p.c_d_eta_3 * eta_3;
-    let c_m = p.c_m_0
-        + p.c_m_alpha_2 * incidence_2
-        + p.c_m_alpha * incidence
-        + p.c_m_delta_e * u.delta_e
-        + p.c_m_delta_c * canard_deflection
-        + p.c_m_eta_1 * eta_1
-        + p.c_m_eta_2 * eta_2
-        + p.c_m_eta_3 * eta_3;
-
-    // Forces and moment, (2)
-    let thrust = reference_force * c_t; // lb/ft
-    let drag = reference_force * c_d; // lb/ft
-    let pitching_moment = p.z_t * thrust + reference_force * c_m * p.c_bar; // lb
-    let normal_coefficient = c_l + c_t * sin_alpha;
-
-    // Motion, (1)
-    let path_force = thrust * cos_alpha - drag; // lb/ft
-    let force_turn = turn_factor * normal_coefficient; // rad/s
-    let velocity_rate = path_force * p.inv_m - gravity * sin_gamma; // ft/s^2
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-    let gamma_rate = force_turn - gravity_turn * cos_gamma; // rad/s
-    let pitch_acceleration = pitching_moment * p.inv_i_yy; // rad/s^2
-
-    Intermediates {
-        density_ratio,
-        density,
-        velocity_2,
-        dynamic_pressure,
-        reference_force,
-        sin_alpha,
-        cos_alpha,
-        sin_gamma,
-        cos_gamma,
-        radius_ratio,
-        radius_ratio_2,
-        gravity,
-        inv_velocity,
-        gravity_turn,
-        turn_factor,
-        canard_commanded,
-        canard_deflection,
-        incidence,
-        incidence_2,
-        c_n_1,
-        c_n_2,
-        c_n_3,
-        generalized_force_1,
-        generalized_force_2,
-        generalized_force_3,
-        eta_static_1,
-        eta_1,
-        eta_static_2,
-        eta_2,
-        eta_static_3,
-        eta_3,
-        incidence_3,
-        c_t_phi,
-        c_t,
-        c_l,
-        delta_e_2,
-        canard_deflection_2,
-        c_d,
-        c_m,
-        thrust,
-        drag,
-        pitching_moment,
-        normal_coefficient,
-        path_force,
-        velocity_rate,
-        altitude_rate,
-        gamma_rate,
-        pitch_acceleration,
+ahv_core::record! {
+    /// Quantities of the Jacobians that other functions need.
+    pub struct Slopes<R> {
+        /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
+        pub d_dynamic_pressure_d_velocity: R,
+        /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
+        pub d_reference_force_d_velocity: R,
+        /// Derivative of thrust coefficient with respect to velocity, s/ft.
+        pub d_c_t_d_velocity: R,
+        /// Derivative of thrust with respect to velocity, lb*s/ft^2.
+        pub d_thrust_d_velocity: R,
+        /// Derivative of drag coefficient with respect to velocity, s/ft.
+        pub d_c_d_d_velocity: R,
+        /// `i.inv_velocity * i.inv_velocity`.
+        pub inv_velocity_2: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// velocity, 1/ft.
+        pub d_gravity_turn_d_velocity: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
+        pub d_turn_factor_d_velocity: R,
+        /// Derivative of coefficient of the force across the flight path with respect to velocity, s/ft.
+        pub d_normal_coefficient_d_velocity: R,
+        /// Derivative of pitching-moment coefficient with respect to velocity, s/ft.
+        pub d_c_m_d_velocity: R,
+        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
+        pub d_radius_ratio_d_altitude: R,
+        /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
+        pub d_gravity_d_altitude: R,
+        /// Derivative of air density with respect to altitude, slug/ft^4.
+        pub d_density_d_altitude: R,
+        /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
+        pub d_reference_force_d_altitude: R,
+        /// Derivative of thrust coefficient with respect to altitude, 1/ft.
+        pub d_c_t_d_altitude: R,
+        /// Derivative of thrust with respect to altitude, lb/ft^2.
+        pub d_thrust_d_altitude: R,
+        /// Derivative of drag coefficient with respect to altitude, 1/ft.
+        pub d_c_d_d_altitude: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// altitude, 1/s/ft.
+        pub d_gravity_turn_d_altitude: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
+        pub d_turn_factor_d_altitude: R,
+        /// Derivative of coefficient of the force across the flight path with respect to altitude, 1/ft.
+        pub d_normal_coefficient_d_altitude: R,
+        /// Derivative of pitching-moment coefficient with respect to altitude, 1/ft.
+        pub d_c_m_d_altitude: R,
+        /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
+        pub d_altitude_rate_d_gamma: R,
+        /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
+        pub d_cos_gamma_d_gamma: R,
+        /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
+        pub d_cos_alpha_d_alpha: R,
+        /// Partial derivative of generalized-force coefficient of mode 1 with respect to angle of attack against the air,
+        /// which moves with the gust, ft^0.5/slug^0.5/rad.
+        pub slope_of_c_n_1_in_incidence: R,
+        /// Partial derivative of generalized-force coefficient of mode 2 with respect to angle of attack against the air,
+        /// which moves with the gust, ft^0.5/slug^0.5/rad.
+        pub slope_of_c_n_2_in_incidence: R,
+        /// Partial derivative of generalized-force coefficient of mode 3 with respect to angle of attack against the air,
+        /// which moves with the gust, ft^0.5/slug^0.5/rad.
+        pub slope_of_c_n_3_in_incidence: R,
+        /// Derivative of thrust coefficient with respect to alpha, 1/rad.
+        pub d_c_t_d_alpha: R,
+        /// Derivative of thrust with respect to alpha, lb/ft/rad.
+        pub d_thrust_d_alpha: R,
+        /// Derivative of drag coefficient with respect to alpha, 1/rad.
+        pub d_c_d_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha, 1/rad.
+        pub d_normal_coefficient_d_alpha: R,
+        /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
+        pub d_c_m_d_alpha: R,
+        /// Derivative of pitch acceleration with respect to alpha, 1/s^2.
+        pub d_pitch_acceleration_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_1,
+        /// 1/rad/ft^0.5/slug^0.5.
+        pub cos_alpha_c_t_eta_1: R,
+        /// Derivative of coefficient of the force across the flight path with respect to chi_1, 1/ft^0.5/slug^0.5.
+        pub d_normal_coefficient_d_chi_1: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_2,
+        /// 1/rad/ft^0.5/slug^0.5.
+        pub cos_alpha_c_t_eta_2: R,
+        /// Derivative of coefficient of the force across the flight path with respect to chi_2, 1/ft^0.5/slug^0.5.
+        pub d_normal_coefficient_d_chi_2: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_3,
+        /// 1/rad/ft^0.5/slug^0.5.
+        pub cos_alpha_c_t_eta_3: R,
+        /// Derivative of coefficient of the force across the flight path with respect to chi_3, 1/ft^0.5/slug^0.5.
+        pub d_normal_coefficient_d_chi_3: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha_gust, 1/rad.
+        pub d_normal_coefficient_d_alpha_gust: R,
+        /// Derivative of rate of the velocity with respect to phi, ft/s^2.
+        pub d_velocity_rate_d_phi: R,
+        /// Derivative of turn rate by the force across the flight path with respect to phi, rad/s.
+        pub d_force_turn_d_phi: R,
+        /// Partial derivative of drag coefficient with respect to canard deflection, commanded and slaved, 1/rad.
+        pub slope_of_c_d_in_canard_deflection: R,
+        /// Derivative of rate of the velocity with respect to delta_e, ft/s^2/rad.
+        pub d_velocity_rate_d_delta_e: R,
+        /// Derivative of turn rate by the force across the flight path with respect to delta_e, 1/s.
+        pub d_force_turn_d_delta_e: R,
+        /// Derivative of rate of the velocity with respect to delta_c, ft/s^2/rad.
+        pub d_velocity_rate_d_delta_c: R,
+        /// Derivative of turn rate by the force across the flight path with respect to delta_c, 1/s.
+        pub d_force_turn_d_delta_c: R,
     }
 }
-
-/// Quantities of the Jacobians that other functions need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slopes<R> {
-    /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
-    pub d_dynamic_pressure_d_velocity: R,
-    /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
-    pub d_reference_force_d_velocity: R,
-    /// Derivative of thrust coefficient with respect to velocity, s/ft.
-    pub d_c_t_d_velocity: R,
-    /// Derivative of thrust with respect to velocity, lb*s/ft^2.
-    pub d_thrust_d_velocity: R,
-    /// Derivative of drag coefficient with respect to velocity, s/ft.
-    pub d_c_d_d_velocity: R,
-    /// `i.inv_velocity * i.inv_velocity`.
-    pub inv_velocity_2: R,
-    /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-    /// velocity, 1/ft.
-    pub d_gravity_turn_d_velocity: R,
-    /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
-    pub d_turn_factor_d_velocity: R,
-    /// Derivative of coefficient of the force across the flight path with respect to velocity, s/ft.
-    pub d_normal_coefficient_d_velocity: R,
-    /// Derivative of pitching-moment coefficient with respect to velocity, s/ft.
-    pub d_c_m_d_velocity: R,
-    /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
-    pub d_radius_ratio_d_altitude: R,
-    /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
-    pub d_gravity_d_altitude: R,
-    /// Derivative of air density with respect to altitude, slug/ft^4.
-    pub d_density_d_altitude: R,
-    /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
-    pub d_reference_force_d_altitude: R,
-    /// Derivative of thrust coefficient with respect to altitude, 1/ft.
-    pub d_c_t_d_altitude: R,
-    /// Derivative of thrust with respect to altitude, lb/ft^2.
-    pub d_thrust_d_altitude: R,
-    /// Derivative of drag coefficient with respect to altitude, 1/ft.
-    pub d_c_d_d_altitude: R,
-    /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-    /// altitude, 1/s/ft.
-    pub d_gravity_turn_d_altitude: R,
-    /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
-    pub d_turn_factor_d_altitude: R,
-    /// Derivative of coefficient of the force across the flight path with respect to altitude, 1/ft.
-    pub d_normal_coefficient_d_altitude: R,
-    /// Derivative of pitching-moment coefficient with respect to altitude, 1/ft.
-    pub d_c_m_d_altitude: R,
-    /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
-    pub d_altitude_rate_d_gamma: R,
-    /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
-    pub d_cos_gamma_d_gamma: R,
-    /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
-    pub d_cos_alpha_d_alpha: R,
-    /// Partial derivative of generalized-force coefficient of mode 1 with respect to angle of attack against the air,
-    /// which moves with the gust, ft^0.5/slug^0.5/rad.
-    pub slope_of_c_n_1_in_incidence: R,
-    /// Partial derivative of generalized-force coefficient of mode 2 with respect to angle of attack against the air,
-    /// which moves with the gust, ft^0.5/slug^0.5/rad.
-    pub slope_of_c_n_2_in_incidence: R,
-    /// Partial derivative of generalized-force coefficient of mode 3 with respect to angle of attack against the air,
-    /// which moves with the gust, ft^0.5/slug^0.5/rad.
-    pub slope_of_c_n_3_in_incidence: R,
-    /// Derivative of thrust coefficient with respect to alpha, 1/rad.
-    pub d_c_t_d_alpha: R,
-    /// Derivative of thrust with respect to alpha, lb/ft/rad.
-    pub d_thrust_d_alpha: R,
-    /// Derivative of drag coefficient with respect to alpha, 1/rad.
-    pub d_c_d_d_alpha: R,
-    /// Derivative of coefficient of the force across the flight path with respect to alpha, 1/rad.
-    pub d_normal_coefficient_d_alpha: R,
-    /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
-    pub d_c_m_d_alpha: R,
-    /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_1,
-    /// 1/rad/ft^0.5/slug^0.5.
-    pub cos_alpha_c_t_eta_1: R,
-    /// Derivative of coefficient of the force across the flight path with respect to chi_1, 1/ft^0.5/slug^0.5.
-    pub d_normal_coefficient_d_chi_1: R,
-    /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_2,
-    /// 1/rad/ft^0.5/slug^0.5.
-    pub cos_alpha_c_t_eta_2: R,
-    /// Derivative of coefficient of the force across the flight path with respect to chi_2, 1/ft^0.5/slug^0.5.
-    pub d_normal_coefficient_d_chi_2: R,
-    /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_3,
-    /// 1/rad/ft^0.5/slug^0.5.
-    pub cos_alpha_c_t_eta_3: R,
-    /// Derivative of coefficient of the force across the flight path with respect to chi_3, 1/ft^0.5/slug^0.5.
-    pub d_normal_coefficient_d_chi_3: R,
-    /// Derivative of coefficient of the force across the flight path with respect to alpha_gust, 1/rad.
-    pub d_normal_coefficient_d_alpha_gust: R,
-    /// Derivative of rate of the velocity with respect to phi, ft/s^2.
-    pub d_velocity_rate_d_phi: R,
-    /// Derivative of turn rate by the force across the flight path with respect to phi, rad/s.
-    pub d_force_turn_d_phi: R,
-    /// Partial derivative of drag coefficient with respect to canard deflection, commanded and slaved, 1/rad.
-    pub slope_of_c_d_in_canard_deflection: R,
-    /// Derivative of rate of the velocity with respect to delta_e, ft/s^2/rad.
-    pub d_velocity_rate_d_delta_e: R,
-    /// Derivative of turn rate by the force across the flight path with respect to delta_e, 1/s.
-    pub d_force_turn_d_delta_e: R,
-    /// Derivative of rate of the velocity with respect to delta_c, ft/s^2/rad.
-    pub d_velocity_rate_d_delta_c: R,
-    /// Derivative of turn rate by the force across the flight path with respect to delta_c, 1/s.
-    pub d_force_turn_d_delta_c: R,
-}
-
-/// Computes [`Slopes`].
+/// Fills a part of [`Slopes`].
 #[inline(always)]
-pub fn slopes<R: Real>(
+fn slopes_part_1<R: Real>(
+    s: &mut Slopes<R>,
     x: &State<R>,
-    u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
-) -> Slopes<R> {
+) {
     // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_generalized_force_1_d_velocity = i.c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    s.d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
+    s.d_reference_force_d_velocity = p.s * s.d_dynamic_pressure_d_velocity; // lb*s/ft^2
+    let d_generalized_force_1_d_velocity = i.c_n_1 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_eta_static_1_d_velocity = d_generalized_force_1_d_velocity * p.inv_omega_1_2; // slug^0.5*s/ft^0.5
-    let d_generalized_force_2_d_velocity = i.c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    let d_generalized_force_2_d_velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_eta_static_2_d_velocity = d_generalized_force_2_d_velocity * p.inv_omega_2_2; // slug^0.5*s/ft^0.5
-    let d_generalized_force_3_d_velocity = i.c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    let d_generalized_force_3_d_velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     let d_eta_static_3_d_velocity = d_generalized_force_3_d_velocity * p.inv_omega_3_2; // slug^0.5*s/ft^0.5
-    let d_c_t_d_velocity = p.c_t_eta_1 * d_eta_static_1_d_velocity
+    s.d_c_t_d_velocity = p.c_t_eta_1 * d_eta_static_1_d_velocity
         + p.c_t_eta_2 * d_eta_static_2_d_velocity
         + p.c_t_eta_3 * d_eta_static_3_d_velocity; // s/ft
-    let d_thrust_d_velocity = i.c_t * d_reference_force_d_velocity
-        + i.reference_force * d_c_t_d_velocity; // lb*s/ft^2
-    let d_c_d_d_velocity = p.c_d_eta_1 * d_eta_static_1_d_velocity
+    s.d_thrust_d_velocity = i.c_t * s.d_reference_force_d_velocity
+        + i.reference_force * s.d_c_t_d_velocity; // lb*s/ft^2
+    s.d_c_d_d_velocity = p.c_d_eta_1 * d_eta_static_1_d_velocity
         + p.c_d_eta_2 * d_eta_static_2_d_velocity
         + p.c_d_eta_3 * d_eta_static_3_d_velocity; // s/ft
-    let inv_velocity_2 = i.inv_velocity * i.inv_velocity;
-    let d_gravity_turn_d_velocity = -(i.gravity * inv_velocity_2
+    s.inv_velocity_2 = i.inv_velocity * i.inv_velocity;
+    s.d_gravity_turn_d_velocity = -(i.gravity * s.inv_velocity_2
         + p.earth_curvature * i.radius_ratio); // 1/ft
-    let d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
+    s.d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
     let d_c_l_d_velocity = p.c_l_eta_1 * d_eta_static_1_d_velocity
         + p.c_l_eta_2 * d_eta_static_2_d_velocity
         + p.c_l_eta_3 * d_eta_static_3_d_velocity; // s/ft
-    let d_normal_coefficient_d_velocity = i.sin_alpha * d_c_t_d_velocity
+    s.d_normal_coefficient_d_velocity = i.sin_alpha * s.d_c_t_d_velocity
         + d_c_l_d_velocity; // s/ft
-    let d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
+    s.d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
         + p.c_m_eta_2 * d_eta_static_2_d_velocity
         + p.c_m_eta_3 * d_eta_static_3_d_velocity; // s/ft
 
     // Derivatives with respect to altitude
-    let d_radius_ratio_d_altitude = -i.radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * i.radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
+    s.d_radius_ratio_d_altitude = -i.radius_ratio_2 * p.earth_curvature; // 1/ft
+    s.d_gravity_d_altitude = p.two_g * i.radius_ratio * s.d_radius_ratio_d_altitude; // 1/s^2
     let d_density_ratio_d_altitude = -i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_generalized_force_1_d_altitude = i.c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    s.d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
+    let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * s.d_density_d_altitude; // lb/ft^3
+    s.d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
+    let d_generalized_force_1_d_altitude = i.c_n_1 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     let d_eta_static_1_d_altitude = d_generalized_force_1_d_altitude * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_altitude = i.c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_2_d_altitude = i.c_n_2 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     let d_eta_static_2_d_altitude = d_generalized_force_2_d_altitude * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_altitude = i.c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    let d_generalized_force_3_d_altitude = i.c_n_3 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     let d_eta_static_3_d_altitude = d_generalized_force_3_d_altitude * p.inv_omega_3_2; // slug^0.5/ft^0.5
-    let d_c_t_d_altitude = p.c_t_eta_1 * d_eta_static_1_d_altitude
+    s.d_c_t_d_altitude = p.c_t_eta_1 * d_eta_static_1_d_altitude
         + p.c_t_eta_2 * d_eta_static_2_d_altitude
         + p.c_t_eta_3 * d_eta_static_3_d_altitude; // 1/ft
-    let d_thrust_d_altitude = i.c_t * d_reference_force_d_altitude
-        + i.reference_force * d_c_t_d_altitude; // lb/ft^2
-    let d_c_d_d_altitude = p.c_d_eta_1 * d_eta_static_1_d_altitude
+    s.d_thrust_d_altitude = i.c_t * s.d_reference_force_d_altitude
+        + i.reference_force * s.d_c_t_d_altitude; // lb/ft^2
+    s.d_c_d_d_altitude = p.c_d_eta_1 * d_eta_static_1_d_altitude
         + p.c_d_eta_2 * d_eta_static_2_d_altitude
         + p.c_d_eta_3 * d_eta_static_3_d_altitude; // 1/ft
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * i.inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
+    s.d_gravity_turn_d_altitude = s.d_gravity_d_altitude * i.inv_velocity
+        - x.velocity * p.earth_curvature * s.d_radius_ratio_d_altitude; // 1/s/ft
+    s.d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * s.d_density_d_altitude; // 1/s/ft
     let d_c_l_d_altitude = p.c_l_eta_1 * d_eta_static_1_d_altitude
         + p.c_l_eta_2 * d_eta_static_2_d_altitude
         + p.c_l_eta_3 * d_eta_static_3_d_altitude; // 1/ft
-    let d_normal_coefficient_d_altitude = i.sin_alpha * d_c_t_d_altitude
+    s.d_normal_coefficient_d_altitude = i.sin_alpha * s.d_c_t_d_altitude
         + d_c_l_d_altitude; // 1/ft
-    let d_c_m_d_altitude = p.c_m_eta_1 * d_eta_static_1_d_altitude
+    s.d_c_m_d_altitude = p.c_m_eta_1 * d_eta_static_1_d_altitude
         + p.c_m_eta_2 * d_eta_static_2_d_altitude
         + p.c_m_eta_3 * d_eta_static_3_d_altitude; // 1/ft
 
     // Derivatives with respect to gamma
-    let d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
+    s.d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
+}
+
+/// Fills a part of [`Slopes`].
+#[inline(always)]
+fn slopes_part_2<R: Real>(
+    s: &mut Slopes<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) {
+    s.d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
 
     // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
+    s.d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
     let slope_of_c_t_in_incidence = p.three_c_t_alpha_3 * i.incidence_2
         + p.two_c_t_alpha_2 * i.incidence
         + p.c_t_alpha; // 1/rad
-    let slope_of_c_n_1_in_incidence = p.two_c_n_1_alpha_2 * i.incidence + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = i.reference_force * slope_of_c_n_1_in_incidence; // ft^0.5*slug^0.5/s^2/rad
+    s.slope_of_c_n_1_in_incidence = p.two_c_n_1_alpha_2 * i.incidence + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
+    let d_generalized_force_1_d_alpha = i.reference_force
+        * s.slope_of_c_n_1_in_incidence; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let slope_of_c_n_2_in_incidence = p.two_c_n_2_alpha_2 * i.incidence + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = i.reference_force * slope_of_c_n_2_in_incidence; // ft^0.5*slug^0.5/s^2/rad
+    s.slope_of_c_n_2_in_incidence = p.two_c_n_2_alpha_2 * i.incidence + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
+    let d_generalized_force_2_d_alpha = i.reference_force
+        * s.slope_of_c_n_2_in_incidence; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let slope_of_c_n_3_in_incidence = p.two_c_n_3_alpha_2 * i.incidence + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = i.reference_force * slope_of_c_n_3_in_incidence; // ft^0.5*slug^0.5/s^2/rad
+    s.slope_of_c_n_3_in_incidence = p.two_c_n_3_alpha_2 * i.incidence + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+    let d_generalized_force_3_d_alpha = i.reference_force
+        * s.slope_of_c_n_3_in_incidence; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
     let slope_of_c_t_phi_in_incidence = p.three_c_t_phi_alpha_3 * i.incidence_2
         + p.two_c_t_phi_alpha_2 * i.incidence
         + p.c_t_phi_alpha; // 1/rad
-    let d_c_t_d_alpha = slope_of_c_t_in_incidence
+    s.d_c_t_d_alpha = slope_of_c_t_in_incidence
         + p.c_t_eta_1 * d_eta_static_1_d_alpha
         + p.c_t_eta_2 * d_eta_static_2_d_alpha
         + p.c_t_eta_3 * d_eta_static_3_d_alpha
         + u.phi * slope_of_c_t_phi_in_incidence; // 1/rad
-    let d_thrust_d_alpha = i.reference_force * d_c_t_d_alpha; // lb/ft/rad
+    s.d_thrust_d_alpha = i.reference_force * s.d_c_t_d_alpha; // lb/ft/rad
     let slope_of_c_d_in_incidence = p.two_c_d_alpha_2 * i.incidence + p.c_d_alpha; // 1/rad
-    let d_c_d_d_alpha = slope_of_c_d_in_incidence
+    s.d_c_d_d_alpha = slope_of_c_d_in_incidence
         + p.c_d_eta_1 * d_eta_static_1_d_alpha
         + p.c_d_eta_2 * d_eta_static_2_d_alpha
         + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
@@ -493,35 +481,47 @@ pub fn slopes<R: Real>(
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
         + p.c_l_eta_3 * d_eta_static_3_d_alpha; // 1/rad
-    let sin_alpha_times_d_c_t_d_alpha = i.sin_alpha * d_c_t_d_alpha;
-    let d_normal_coefficient_d_alpha = i.c_t * i.cos_alpha
+    let sin_alpha_times_d_c_t_d_alpha = i.sin_alpha * s.d_c_t_d_alpha;
+    s.d_normal_coefficient_d_alpha = i.c_t * i.cos_alpha
         + sin_alpha_times_d_c_t_d_alpha
         + d_c_l_d_alpha; // 1/rad
     let slope_of_c_m_in_incidence = p.two_c_m_alpha_2 * i.incidence + p.c_m_alpha; // 1/rad
-    let d_c_m_d_alpha = slope_of_c_m_in_incidence
+    s.d_c_m_d_alpha = slope_of_c_m_in_incidence
         + p.c_m_eta_1 * d_eta_static_1_d_alpha
         + p.c_m_eta_2 * d_eta_static_2_d_alpha
         + p.c_m_eta_3 * d_eta_static_3_d_alpha; // 1/rad
+    let d_pitching_moment_d_alpha = p.c_bar * i.reference_force * s.d_c_m_d_alpha
+        + p.z_t * s.d_thrust_d_alpha; // lb/rad
+    s.d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to chi_1
-    let d_normal_coefficient_d_chi_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_normal_coefficient_d_chi_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d_normal_coefficient_d_chi_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d_normal_coefficient_d_alpha_gust = sin_alpha_times_d_c_t_d_alpha
-        + d_c_l_d_alpha; // 1/rad
+    s.d_normal_coefficient_d_alpha_gust = sin_alpha_times_d_c_t_d_alpha + d_c_l_d_alpha; // 1/rad
 
     // Derivatives with respect to phi
     let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_path_force_d_phi = i.cos_alpha * d_thrust_d_phi; // lb/ft
-    let d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
+    s.d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
+}
+
+/// Fills a part of [`Slopes`].
+#[inline(always)]
+fn slopes_part_3<R: Real>(
+    s: &mut Slopes<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) {
     let d_normal_coefficient_d_phi = i.sin_alpha * i.c_t_phi;
-    let d_force_turn_d_phi = i.turn_factor * d_normal_coefficient_d_phi; // rad/s
+    s.d_force_turn_d_phi = i.turn_factor * d_normal_coefficient_d_phi; // rad/s
 
     // Derivatives with respect to delta_e
     let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
@@ -534,23 +534,23 @@ pub fn slopes<R: Real>(
         + p.c_t_eta_2 * d_eta_static_2_d_delta_e
         + p.c_t_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_thrust_d_delta_e = i.reference_force * d_c_t_d_delta_e; // lb/ft/rad
-    let slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * i.canard_deflection
+    s.slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * i.canard_deflection
         + p.c_d_delta_c; // 1/rad
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
-        + slope_of_c_d_in_canard_deflection * p.canard_gain
+        + s.slope_of_c_d_in_canard_deflection * p.canard_gain
         + p.c_d_eta_1 * d_eta_static_1_d_delta_e
         + p.c_d_eta_2 * d_eta_static_2_d_delta_e
         + p.c_d_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_drag_d_delta_e = i.reference_force * d_c_d_d_delta_e; // lb/ft/rad
     let d_path_force_d_delta_e = i.cos_alpha * d_thrust_d_delta_e - d_drag_d_delta_e; // lb/ft/rad
-    let d_velocity_rate_d_delta_e = d_path_force_d_delta_e * p.inv_m; // ft/s^2/rad
+    s.d_velocity_rate_d_delta_e = d_path_force_d_delta_e * p.inv_m; // ft/s^2/rad
     let d_c_l_d_delta_e = p.elevator_lift
         + p.c_l_eta_1 * d_eta_static_1_d_delta_e
         + p.c_l_eta_2 * d_eta_static_2_d_delta_e
         + p.c_l_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_normal_coefficient_d_delta_e = i.sin_alpha * d_c_t_d_delta_e + d_c_l_d_delta_e; // 1/rad
-    let d_force_turn_d_delta_e = i.turn_factor * d_normal_coefficient_d_delta_e; // 1/s
+    s.d_force_turn_d_delta_e = i.turn_factor * d_normal_coefficient_d_delta_e; // 1/s
 
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = i.reference_force
@@ -566,69 +566,607 @@ pub fn slopes<R: Real>(
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
         + p.c_t_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_thrust_d_delta_c = i.reference_force * d_c_t_d_delta_c; // lb/ft/rad
-    let d_c_d_d_delta_c = slope_of_c_d_in_canard_deflection * p.canard_command
+    let d_c_d_d_delta_c = s.slope_of_c_d_in_canard_deflection * p.canard_command
         + p.c_d_eta_1 * d_eta_static_1_d_delta_c
         + p.c_d_eta_2 * d_eta_static_2_d_delta_c
         + p.c_d_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_drag_d_delta_c = i.reference_force * d_c_d_d_delta_c; // lb/ft/rad
     let d_path_force_d_delta_c = i.cos_alpha * d_thrust_d_delta_c - d_drag_d_delta_c; // lb/ft/rad
-    let d_velocity_rate_d_delta_c = d_path_force_d_delta_c * p.inv_m; // ft/s^2/rad
+    s.d_velocity_rate_d_delta_c = d_path_force_d_delta_c * p.inv_m; // ft/s^2/rad
     let d_c_l_d_delta_c = p.c_l_delta_c_canard_command
         + p.c_l_eta_1 * d_eta_static_1_d_delta_c
         + p.c_l_eta_2 * d_eta_static_2_d_delta_c
         + p.c_l_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_normal_coefficient_d_delta_c = i.sin_alpha * d_c_t_d_delta_c + d_c_l_d_delta_c; // 1/rad
-    let d_force_turn_d_delta_c = i.turn_factor * d_normal_coefficient_d_delta_c; // 1/s
-    let cos_alpha_c_t_eta_1 = i.cos_alpha * p.c_t_eta_1;
-    let cos_alpha_c_t_eta_2 = i.cos_alpha * p.c_t_eta_2;
-    let cos_alpha_c_t_eta_3 = i.cos_alpha * p.c_t_eta_3;
+    s.d_force_turn_d_delta_c = i.turn_factor * d_normal_coefficient_d_delta_c; // 1/s
+    s.cos_alpha_c_t_eta_1 = i.cos_alpha * p.c_t_eta_1;
+    s.cos_alpha_c_t_eta_2 = i.cos_alpha * p.c_t_eta_2;
+    s.cos_alpha_c_t_eta_3 = i.cos_alpha * p.c_t_eta_3;
+}
 
-    Slopes {
-        d_dynamic_pressure_d_velocity,
-        d_reference_force_d_velocity,
-        d_c_t_d_velocity,
-        d_thrust_d_velocity,
-        d_c_d_d_velocity,
-        inv_velocity_2,
-        d_gravity_turn_d_velocity,
-        d_turn_factor_d_velocity,
-        d_normal_coefficient_d_velocity,
-        d_c_m_d_velocity,
-        d_radius_ratio_d_altitude,
-        d_gravity_d_altitude,
-        d_density_d_altitude,
-        d_reference_force_d_altitude,
-        d_c_t_d_altitude,
-        d_thrust_d_altitude,
-        d_c_d_d_altitude,
-        d_gravity_turn_d_altitude,
-        d_turn_factor_d_altitude,
-        d_normal_coefficient_d_altitude,
-        d_c_m_d_altitude,
-        d_altitude_rate_d_gamma,
-        d_cos_gamma_d_gamma,
-        d_cos_alpha_d_alpha,
-        slope_of_c_n_1_in_incidence,
-        slope_of_c_n_2_in_incidence,
-        slope_of_c_n_3_in_incidence,
-        d_c_t_d_alpha,
-        d_thrust_d_alpha,
-        d_c_d_d_alpha,
-        d_normal_coefficient_d_alpha,
-        d_c_m_d_alpha,
-        cos_alpha_c_t_eta_1,
-        d_normal_coefficient_d_chi_1,
-        cos_alpha_c_t_eta_2,
-        d_normal_coefficient_d_chi_2,
-        cos_alpha_c_t_eta_3,
-        d_normal_coefficient_d_chi_3,
-        d_normal_coefficient_d_alpha_gust,
-        d_velocity_rate_d_phi,
-        d_force_turn_d_phi,
-        slope_of_c_d_in_canard_deflection,
-        d_velocity_rate_d_delta_e,
-        d_force_turn_d_delta_e,
-        d_velocity_rate_d_delta_c,
-        d_force_turn_d_delta_c,
+/// Computes [`Slopes`].
+#[inline(always)]
+pub fn slopes<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) -> Slopes<R> {
+    let mut s = Slopes::splat(R::ZERO);
+    slopes_part_1(&mut s, x, p, i);
+    slopes_part_2(&mut s, u, p, i);
+    slopes_part_3(&mut s, u, p, i);
+    s
+}
+
+ahv_core::record! {
+    /// Quantities of the second derivatives that several parts of these need.
+    pub struct Curvatures<R> {
+        /// Derivative of air density over its reference with respect to h_0, 1/ft.
+        pub density_ratio_over_h_s: R,
+        /// Derivative of rate of the flight-path angle with respect to velocity and altitude, rad/ft^2.
+        pub d2_gamma_rate_d_velocity_d_altitude: R,
+        /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha, 1/ft.
+        pub d2_force_turn_d_velocity_d_alpha: R,
+        /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha_gust, 1/ft.
+        pub d2_force_turn_d_velocity_d_alpha_gust: R,
+        /// Derivative of rate of the flight-path angle with respect to altitude and altitude, rad/s/ft^2.
+        pub d2_gamma_rate_d_altitude_d_altitude: R,
+        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha, 1/s/ft.
+        pub d2_force_turn_d_altitude_d_alpha: R,
+        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha_gust, 1/s/ft.
+        pub d2_force_turn_d_altitude_d_alpha_gust: R,
+        /// Derivative of turn rate by the force across the flight path with respect to alpha and alpha, 1/s/rad.
+        pub d2_force_turn_d_alpha_d_alpha: R,
+        /// Derivative of turn rate by the force across the flight path with respect to alpha and alpha_gust, 1/s/rad.
+        pub d2_force_turn_d_alpha_d_alpha_gust: R,
+        /// Derivative of turn rate by the force across the flight path with respect to alpha_gust and alpha_gust,
+        /// 1/s/rad.
+        pub d2_force_turn_d_alpha_gust_d_alpha_gust: R,
+        /// Derivative of pitch acceleration with respect to velocity and alpha, 1/s/ft.
+        pub d2_pitch_acceleration_d_velocity_d_alpha: R,
+        /// Derivative of pitch acceleration with respect to altitude and alpha, 1/s^2/ft.
+        pub d2_pitch_acceleration_d_altitude_d_alpha: R,
+        /// Derivative of pitch acceleration with respect to alpha and alpha, 1/s^2/rad.
+        pub d2_pitch_acceleration_d_alpha_d_alpha: R,
+        /// Derivative of dynamic pressure with respect to velocity and altitude, lb*s/ft^4.
+        pub d2_dynamic_pressure_d_velocity_d_altitude: R,
+        /// Derivative of dynamic pressure times reference area with respect to velocity and altitude, lb*s/ft^3.
+        pub d2_reference_force_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_1_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and altitude, slug^0.5*s/ft^1.5.
+        pub d2_eta_static_1_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 2 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_2_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and altitude, slug^0.5*s/ft^1.5.
+        pub d2_eta_static_2_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 3 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_3_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and altitude, slug^0.5*s/ft^1.5.
+        pub d2_eta_static_3_d_velocity_d_altitude: R,
+        /// Derivative of thrust coefficient with respect to velocity and altitude, s/ft^2.
+        pub d2_c_t_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_1_d_velocity_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        pub d2_eta_static_1_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_2_d_velocity_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        pub d2_eta_static_2_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_3_d_velocity_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        pub d2_eta_static_3_d_velocity_d_alpha: R,
+        /// Derivative of thrust coefficient with respect to velocity and alpha, s/ft/rad.
+        pub d2_c_t_d_velocity_d_alpha: R,
+        /// Derivative of thrust with respect to velocity and alpha, lb*s/ft^2/rad.
+        pub d2_thrust_d_velocity_d_alpha: R,
+        /// `i.radius_ratio * i.radius_ratio_2`.
+        pub radius_ratio_3: R,
+        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude and altitude,
+        /// 1/ft^2.
+        pub d2_radius_ratio_d_altitude_d_altitude: R,
+        /// `s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude`.
+        pub power_2_of_d_radius_ratio_d_altitude: R,
+        /// Derivative of acceleration of gravity at altitude with respect to altitude and altitude, 1/s^2/ft.
+        pub d2_gravity_d_altitude_d_altitude: R,
+        /// Derivative of air density over its reference with respect to altitude and altitude, 1/ft^2.
+        pub d2_density_ratio_d_altitude_d_altitude: R,
+        /// Derivative of air density with respect to altitude and altitude, slug/ft^5.
+        pub d2_density_d_altitude_d_altitude: R,
+        /// Derivative of dynamic pressure with respect to altitude and altitude, lb/ft^4.
+        pub d2_dynamic_pressure_d_altitude_d_altitude: R,
+        /// Derivative of dynamic pressure times reference area with respect to altitude and altitude, lb/ft^3.
+        pub d2_reference_force_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_1_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_1_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_2_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_2_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_3_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_3_d_altitude_d_altitude: R,
+        /// Derivative of thrust coefficient with respect to altitude and altitude, 1/ft^2.
+        pub d2_c_t_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_1_d_altitude_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        pub d2_eta_static_1_d_altitude_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_2_d_altitude_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        pub d2_eta_static_2_d_altitude_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_3_d_altitude_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        pub d2_eta_static_3_d_altitude_d_alpha: R,
+        /// Derivative of thrust coefficient with respect to altitude and alpha, 1/ft/rad.
+        pub d2_c_t_d_altitude_d_alpha: R,
+        /// Derivative of thrust with respect to altitude and alpha, lb/ft^2/rad.
+        pub d2_thrust_d_altitude_d_alpha: R,
+        /// Derivative of partial derivative of thrust coefficient with respect to angle of attack against the air, which
+        /// moves with the gust with respect to alpha, 1/rad^2.
+        pub d_slope_of_c_t_in_incidence_d_alpha: R,
+        /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_1_d_alpha_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
+        pub d2_eta_static_1_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_2_d_alpha_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
+        pub d2_eta_static_2_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_3_d_alpha_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
+        pub d2_eta_static_3_d_alpha_d_alpha: R,
+        /// Derivative of partial derivative of slope of the thrust coefficient in the fuel equivalence ratio with respect
+        /// to angle of attack against the air, which moves with the gust with respect to alpha, 1/rad^2.
+        pub d_slope_of_c_t_phi_in_incidence_d_alpha: R,
+        /// Derivative of thrust coefficient with respect to alpha and alpha, 1/rad^2.
+        pub d2_c_t_d_alpha_d_alpha: R,
+        /// Derivative of thrust with respect to alpha and alpha, lb/ft/rad^2.
+        pub d2_thrust_d_alpha_d_alpha: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// velocity and altitude, 1/ft^2.
+        pub d2_gravity_turn_d_velocity_d_altitude: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity and altitude,
+        /// 1/ft^2.
+        pub d2_turn_factor_d_velocity_d_altitude: R,
+        /// Derivative of lift coefficient with respect to velocity and altitude, s/ft^2.
+        pub d2_c_l_d_velocity_d_altitude: R,
+        /// Derivative of coefficient of the force across the flight path with respect to velocity and altitude, s/ft^2.
+        pub d2_normal_coefficient_d_velocity_d_altitude: R,
+        /// Derivative of turn rate by the force across the flight path with respect to velocity and altitude, rad/ft^2.
+        pub d2_force_turn_d_velocity_d_altitude: R,
+        /// Derivative of lift coefficient with respect to velocity and alpha, s/ft/rad.
+        pub d2_c_l_d_velocity_d_alpha: R,
+        /// `i.sin_alpha * h.d2_c_t_d_velocity_d_alpha`.
+        pub sin_alpha_times_d2_c_t_d_velocity_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to velocity and alpha, s/ft/rad.
+        pub d2_normal_coefficient_d_velocity_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to velocity and alpha_gust,
+        /// s/ft/rad.
+        pub d2_normal_coefficient_d_velocity_d_alpha_gust: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// altitude and altitude, 1/s/ft^2.
+        pub d2_gravity_turn_d_altitude_d_altitude: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude and altitude,
+        /// 1/s/ft^2.
+        pub d2_turn_factor_d_altitude_d_altitude: R,
+        /// Derivative of lift coefficient with respect to altitude and altitude, 1/ft^2.
+        pub d2_c_l_d_altitude_d_altitude: R,
+        /// Derivative of coefficient of the force across the flight path with respect to altitude and altitude, 1/ft^2.
+        pub d2_normal_coefficient_d_altitude_d_altitude: R,
+        /// Derivative of turn rate by the force across the flight path with respect to altitude and altitude, rad/s/ft^2.
+        pub d2_force_turn_d_altitude_d_altitude: R,
+        /// Derivative of lift coefficient with respect to altitude and alpha, 1/ft/rad.
+        pub d2_c_l_d_altitude_d_alpha: R,
+        /// `i.sin_alpha * h.d2_c_t_d_altitude_d_alpha`.
+        pub sin_alpha_times_d2_c_t_d_altitude_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to altitude and alpha, 1/ft/rad.
+        pub d2_normal_coefficient_d_altitude_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to altitude and alpha_gust,
+        /// 1/ft/rad.
+        pub d2_normal_coefficient_d_altitude_d_alpha_gust: R,
+        /// Derivative of lift coefficient with respect to alpha and alpha, 1/rad^2.
+        pub d2_c_l_d_alpha_d_alpha: R,
+        /// `s.d_c_t_d_alpha * i.cos_alpha`.
+        pub d_c_t_d_alpha_times_cos_alpha: R,
+        /// `i.sin_alpha * h.d2_c_t_d_alpha_d_alpha`.
+        pub sin_alpha_times_d2_c_t_d_alpha_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and alpha, 1/rad^2.
+        pub d2_normal_coefficient_d_alpha_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and alpha_gust, 1/rad^2.
+        pub d2_normal_coefficient_d_alpha_d_alpha_gust: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha_gust and alpha_gust,
+        /// 1/rad^2.
+        pub d2_normal_coefficient_d_alpha_gust_d_alpha_gust: R,
+        /// Derivative of pitching-moment coefficient with respect to velocity and alpha, s/ft/rad.
+        pub d2_c_m_d_velocity_d_alpha: R,
+        /// Derivative of pitching moment with respect to velocity and alpha, lb*s/ft/rad.
+        pub d2_pitching_moment_d_velocity_d_alpha: R,
+        /// Derivative of pitching-moment coefficient with respect to altitude and alpha, 1/ft/rad.
+        pub d2_c_m_d_altitude_d_alpha: R,
+        /// Derivative of pitching moment with respect to altitude and alpha, lb/ft/rad.
+        pub d2_pitching_moment_d_altitude_d_alpha: R,
+        /// Derivative of pitching-moment coefficient with respect to alpha and alpha, 1/rad^2.
+        pub d2_c_m_d_alpha_d_alpha: R,
+        /// Derivative of pitching moment with respect to alpha and alpha, lb/rad^2.
+        pub d2_pitching_moment_d_alpha_d_alpha: R,
     }
+}
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_1<R: Real>(
+    h: &mut Curvatures<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to altitude
+    h.d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    h.d2_reference_force_d_velocity_d_altitude = p.s
+        * h.d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    h.d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    h.d2_eta_static_1_d_velocity_d_altitude = h
+        .d2_generalized_force_1_d_velocity_d_altitude * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
+    h.d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    h.d2_eta_static_2_d_velocity_d_altitude = h
+        .d2_generalized_force_2_d_velocity_d_altitude * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
+    h.d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    h.d2_eta_static_3_d_velocity_d_altitude = h
+        .d2_generalized_force_3_d_velocity_d_altitude * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
+    h.d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+
+    // Derivatives with respect to alpha
+    h.d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.slope_of_c_n_1_in_incidence; // slug^0.5/ft^0.5/s/rad
+    h.d2_eta_static_1_d_velocity_d_alpha = h.d2_generalized_force_1_d_velocity_d_alpha
+        * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
+    h.d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.slope_of_c_n_2_in_incidence; // slug^0.5/ft^0.5/s/rad
+    h.d2_eta_static_2_d_velocity_d_alpha = h.d2_generalized_force_2_d_velocity_d_alpha
+        * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
+    h.d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.slope_of_c_n_3_in_incidence; // slug^0.5/ft^0.5/s/rad
+    h.d2_eta_static_3_d_velocity_d_alpha = h.d2_generalized_force_3_d_velocity_d_alpha
+        * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
+    h.d2_c_t_d_velocity_d_alpha = p.c_t_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    h.d2_thrust_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
+        + i.reference_force * h.d2_c_t_d_velocity_d_alpha; // lb*s/ft^2/rad
+
+    // Derivatives with respect to altitude
+    h.radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * h.radius_ratio_3; // 1/ft^2
+    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
+    h.d2_gravity_d_altitude_d_altitude = p.g
+        * (R::TWO * h.power_2_of_d_radius_ratio_d_altitude
+            + R::TWO * i.radius_ratio * h.d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    h.d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    h.d2_density_d_altitude_d_altitude = p.rho_0
+        * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * h.d2_density_d_altitude_d_altitude; // lb/ft^4
+    h.d2_reference_force_d_altitude_d_altitude = p.s
+        * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    h.d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    h.d2_eta_static_1_d_altitude_d_altitude = h
+        .d2_generalized_force_1_d_altitude_d_altitude * p.inv_omega_1_2; // slug^0.5/ft^1.5
+    h.d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    h.d2_eta_static_2_d_altitude_d_altitude = h
+        .d2_generalized_force_2_d_altitude_d_altitude * p.inv_omega_2_2; // slug^0.5/ft^1.5
+    h.d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    h.d2_eta_static_3_d_altitude_d_altitude = h
+        .d2_generalized_force_3_d_altitude_d_altitude * p.inv_omega_3_2; // slug^0.5/ft^1.5
+    h.d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+
+    // Derivatives with respect to alpha
+    h.d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.slope_of_c_n_1_in_incidence; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_eta_static_1_d_altitude_d_alpha = h.d2_generalized_force_1_d_altitude_d_alpha
+        * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
+    h.d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.slope_of_c_n_2_in_incidence; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_eta_static_2_d_altitude_d_alpha = h.d2_generalized_force_2_d_altitude_d_alpha
+        * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
+    h.d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.slope_of_c_n_3_in_incidence; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_eta_static_3_d_altitude_d_alpha = h.d2_generalized_force_3_d_altitude_d_alpha
+        * p.inv_omega_3_2; // slug^0.5/ft^0.5/rad
+    h.d2_c_t_d_altitude_d_alpha = p.c_t_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_thrust_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
+        + i.reference_force * h.d2_c_t_d_altitude_d_alpha; // lb/ft^2/rad
+    h.d_slope_of_c_t_in_incidence_d_alpha = p.six_c_t_alpha_3 * i.incidence
+        + R::TWO * p.c_t_alpha_2; // 1/rad^2
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    h.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_eta_static_1_d_alpha_d_alpha = h.d2_generalized_force_1_d_alpha_d_alpha
+        * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
+    h.d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_eta_static_2_d_alpha_d_alpha = h.d2_generalized_force_2_d_alpha_d_alpha
+        * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
+    h.d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_eta_static_3_d_alpha_d_alpha = h.d2_generalized_force_3_d_alpha_d_alpha
+        * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
+    h.d_slope_of_c_t_phi_in_incidence_d_alpha = p.six_c_t_phi_alpha_3 * i.incidence
+        + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
+    h.d2_c_t_d_alpha_d_alpha = h.d_slope_of_c_t_in_incidence_d_alpha
+        + p.c_t_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
+        + u.phi * h.d_slope_of_c_t_phi_in_incidence_d_alpha; // 1/rad^2
+    h.d2_thrust_d_alpha_d_alpha = i.reference_force * h.d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+
+    // Derivatives with respect to altitude
+    h.d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    h.d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    h.d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    h.d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha
+        * h.d2_c_t_d_velocity_d_altitude + h.d2_c_l_d_velocity_d_altitude; // s/ft^2
+    h.d2_force_turn_d_velocity_d_altitude = s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
+        + s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_altitude
+        + i.normal_coefficient * h.d2_turn_factor_d_velocity_d_altitude
+        + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
+    h.d2_gamma_rate_d_velocity_d_altitude = h.d2_force_turn_d_velocity_d_altitude
+        - i.cos_gamma * h.d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
+
+    // Derivatives with respect to alpha
+    h.d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    h.sin_alpha_times_d2_c_t_d_velocity_d_alpha = i.sin_alpha
+        * h.d2_c_t_d_velocity_d_alpha;
+    h.d2_normal_coefficient_d_velocity_d_alpha = s.d_c_t_d_velocity * i.cos_alpha
+        + h.sin_alpha_times_d2_c_t_d_velocity_d_alpha
+        + h.d2_c_l_d_velocity_d_alpha; // s/ft/rad
+    h.d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha
+        + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_alpha; // 1/ft
+
+    // Derivatives with respect to alpha_gust
+    h.d2_normal_coefficient_d_velocity_d_alpha_gust = h
+        .sin_alpha_times_d2_c_t_d_velocity_d_alpha + h.d2_c_l_d_velocity_d_alpha; // s/ft/rad
+    h.d2_force_turn_d_velocity_d_alpha_gust = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha_gust
+        + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_alpha_gust; // 1/ft
+
+    // Derivatives with respect to altitude
+    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude
+        * i.inv_velocity
+        - x.velocity * p.earth_curvature * h.d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
+    h.d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
+        * h.d2_density_d_altitude_d_altitude; // 1/s/ft^2
+    h.d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    h.d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
+        * h.d2_c_t_d_altitude_d_altitude + h.d2_c_l_d_altitude_d_altitude; // 1/ft^2
+    h.d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
+        + i.normal_coefficient * h.d2_turn_factor_d_altitude_d_altitude
+        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
+    h.d2_gamma_rate_d_altitude_d_altitude = h.d2_force_turn_d_altitude_d_altitude
+        - i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_3<R: Real>(
+    h: &mut Curvatures<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to alpha
+    h.d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    h.sin_alpha_times_d2_c_t_d_altitude_d_alpha = i.sin_alpha
+        * h.d2_c_t_d_altitude_d_alpha;
+    h.d2_normal_coefficient_d_altitude_d_alpha = s.d_c_t_d_altitude * i.cos_alpha
+        + h.sin_alpha_times_d2_c_t_d_altitude_d_alpha
+        + h.d2_c_l_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_alpha
+        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_alpha; // 1/s/ft
+
+    // Derivatives with respect to alpha_gust
+    h.d2_normal_coefficient_d_altitude_d_alpha_gust = h
+        .sin_alpha_times_d2_c_t_d_altitude_d_alpha + h.d2_c_l_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_force_turn_d_altitude_d_alpha_gust = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_alpha_gust
+        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_alpha_gust; // 1/s/ft
+
+    // Derivatives with respect to alpha
+    h.d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    h.d_c_t_d_alpha_times_cos_alpha = s.d_c_t_d_alpha * i.cos_alpha;
+    h.sin_alpha_times_d2_c_t_d_alpha_d_alpha = i.sin_alpha * h.d2_c_t_d_alpha_d_alpha;
+    h.d2_normal_coefficient_d_alpha_d_alpha = R::TWO * h.d_c_t_d_alpha_times_cos_alpha
+        + h.sin_alpha_times_d2_c_t_d_alpha_d_alpha
+        + i.c_t * s.d_cos_alpha_d_alpha
+        + h.d2_c_l_d_alpha_d_alpha; // 1/rad^2
+    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor
+        * h.d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
+
+    // Derivatives with respect to alpha_gust
+    h.d2_normal_coefficient_d_alpha_d_alpha_gust = h.d_c_t_d_alpha_times_cos_alpha
+        + h.sin_alpha_times_d2_c_t_d_alpha_d_alpha
+        + h.d2_c_l_d_alpha_d_alpha; // 1/rad^2
+    h.d2_force_turn_d_alpha_d_alpha_gust = i.turn_factor
+        * h.d2_normal_coefficient_d_alpha_d_alpha_gust; // 1/s/rad
+    h.d2_normal_coefficient_d_alpha_gust_d_alpha_gust = h
+        .sin_alpha_times_d2_c_t_d_alpha_d_alpha + h.d2_c_l_d_alpha_d_alpha; // 1/rad^2
+    h.d2_force_turn_d_alpha_gust_d_alpha_gust = i.turn_factor
+        * h.d2_normal_coefficient_d_alpha_gust_d_alpha_gust; // 1/s/rad
+
+    // Derivatives with respect to alpha
+    h.d2_c_m_d_velocity_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    h.d2_pitching_moment_d_velocity_d_alpha = p.c_bar
+        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
+            + i.reference_force * h.d2_c_m_d_velocity_d_alpha)
+        + p.z_t * h.d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
+    h.d2_pitch_acceleration_d_velocity_d_alpha = h.d2_pitching_moment_d_velocity_d_alpha
+        * p.inv_i_yy; // 1/s/ft
+    h.d2_c_m_d_altitude_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_pitching_moment_d_altitude_d_alpha = p.c_bar
+        * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
+            + i.reference_force * h.d2_c_m_d_altitude_d_alpha)
+        + p.z_t * h.d2_thrust_d_altitude_d_alpha; // lb/ft/rad
+    h.d2_pitch_acceleration_d_altitude_d_alpha = h.d2_pitching_moment_d_altitude_d_alpha
+        * p.inv_i_yy; // 1/s^2/ft
+    h.d2_c_m_d_alpha_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
+        + R::TWO * p.c_m_alpha_2; // 1/rad^2
+    h.d2_pitching_moment_d_alpha_d_alpha = p.z_t * h.d2_thrust_d_alpha_d_alpha
+        + p.c_bar * i.reference_force * h.d2_c_m_d_alpha_d_alpha; // lb/rad^2
+    h.d2_pitch_acceleration_d_alpha_d_alpha = h.d2_pitching_moment_d_alpha_d_alpha
+        * p.inv_i_yy; // 1/s^2/rad
+}
+
+/// Computes [`Curvatures`].
+#[inline(always)]
+pub fn curvatures<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> Curvatures<R> {
+    let mut h = Curvatures::splat(R::ZERO);
+    curvatures_part_1(&mut h, x, p, i, s);
+    curvatures_part_2(&mut h, x, u, p, i, s);
+    curvatures_part_3(&mut h, p, i, s);
+    h
+}
+
+ahv_core::record! {
+    /// Quantities of the derivatives with respect to parameters that several parts of these need.
+    pub struct Sensitivities<R> {
+        /// Derivative of turn rate by the force across the flight path with respect to rho_0, rad*ft^3/s/slug.
+        pub d_force_turn_d_rho_0: R,
+        /// Derivative of turn rate by the force across the flight path with respect to h_0, rad/s/ft.
+        pub d_force_turn_d_h_0: R,
+        /// Derivative of turn rate by the force across the flight path with respect to h_s, rad/s/ft.
+        pub d_force_turn_d_h_s: R,
+        /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
+        /// Earth, 0 where it is flat, ft.
+        pub slope_of_radius_ratio_in_earth_curvature: R,
+        /// Derivative of rate of the flight-path angle with respect to r_e, rad/s/ft.
+        pub d_gamma_rate_d_r_e: R,
+    }
+}
+/// Computes [`Sensitivities`].
+#[inline(always)]
+pub fn sensitivities<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    h: &Curvatures<R>,
+) -> Sensitivities<R> {
+    let mut q = Sensitivities::splat(R::ZERO);
+
+    // Derivatives with respect to parameters
+    let d_c_t_d_rho_0 = p.s * i.density_ratio
+        * (p.half_c_t_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
+            + p.half_c_t_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
+            + p.half_c_t_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
+    let d_c_l_d_rho_0 = p.s * i.density_ratio
+        * (p.half_c_l_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
+            + p.half_c_l_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
+            + p.half_c_l_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
+    let d_normal_coefficient_d_rho_0 = i.sin_alpha * d_c_t_d_rho_0 + d_c_l_d_rho_0; // ft^3/slug
+    q.d_force_turn_d_rho_0 = i.normal_coefficient * p.half_s_over_m * x.velocity
+        * i.density_ratio + i.turn_factor * d_normal_coefficient_d_rho_0; // rad*ft^3/s/slug
+    let d_density_d_h_0 = p.rho_0 * h.density_ratio_over_h_s; // slug/ft^4
+    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
+    let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
+    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_eta_static_1_d_h_0 = d_generalized_force_1_d_h_0 * p.inv_omega_1_2; // slug^0.5/ft^0.5
+    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_eta_static_2_d_h_0 = d_generalized_force_2_d_h_0 * p.inv_omega_2_2; // slug^0.5/ft^0.5
+    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    let d_eta_static_3_d_h_0 = d_generalized_force_3_d_h_0 * p.inv_omega_3_2; // slug^0.5/ft^0.5
+    let d_c_t_d_h_0 = p.c_t_eta_1 * d_eta_static_1_d_h_0
+        + p.c_t_eta_2 * d_eta_static_2_d_h_0
+        + p.c_t_eta_3 * d_eta_static_3_d_h_0; // 1/ft
+    let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
+    let d_c_l_d_h_0 = p.c_l_eta_1 * d_eta_static_1_d_h_0
+        + p.c_l_eta_2 * d_eta_static_2_d_h_0
+        + p.c_l_eta_3 * d_eta_static_3_d_h_0; // 1/ft
+    let d_normal_coefficient_d_h_0 = i.sin_alpha * d_c_t_d_h_0 + d_c_l_d_h_0; // 1/ft
+    q.d_force_turn_d_h_0 = i.normal_coefficient * d_turn_factor_d_h_0
+        + i.turn_factor * d_normal_coefficient_d_h_0; // rad/s/ft
+    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
+    let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
+    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
+    let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
+    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_eta_static_1_d_h_s = d_generalized_force_1_d_h_s * p.inv_omega_1_2; // slug^0.5/ft^0.5
+    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_eta_static_2_d_h_s = d_generalized_force_2_d_h_s * p.inv_omega_2_2; // slug^0.5/ft^0.5
+    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let d_eta_static_3_d_h_s = d_generalized_force_3_d_h_s * p.inv_omega_3_2; // slug^0.5/ft^0.5
+    let d_c_t_d_h_s = p.c_t_eta_1 * d_eta_static_1_d_h_s
+        + p.c_t_eta_2 * d_eta_static_2_d_h_s
+        + p.c_t_eta_3 * d_eta_static_3_d_h_s; // 1/ft
+    let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
+    let d_c_l_d_h_s = p.c_l_eta_1 * d_eta_static_1_d_h_s
+        + p.c_l_eta_2 * d_eta_static_2_d_h_s
+        + p.c_l_eta_3 * d_eta_static_3_d_h_s; // 1/ft
+    let d_normal_coefficient_d_h_s = i.sin_alpha * d_c_t_d_h_s + d_c_l_d_h_s; // 1/ft
+    q.d_force_turn_d_h_s = i.normal_coefficient * d_turn_factor_d_h_s
+        + i.turn_factor * d_normal_coefficient_d_h_s; // rad/s/ft
+    q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+    let d_gravity_turn_d_r_e = p.inv_r_e
+        * (p.earth_curvature * i.radius_ratio
+            * (x.velocity
+                - p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
+            + x.velocity * p.earth_curvature_2
+                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
+    q.d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    q
 }

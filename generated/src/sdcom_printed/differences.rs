@@ -3,7 +3,7 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 #![allow(non_snake_case)]
 
-use super::{Input, Prepared, State, intermediates, noise_terms, slopes};
+use super::{Input, Prepared, State, intermediates, noise_terms, sensitivities, slopes};
 use ahv_core::Real;
 
 /// Delta f of (27): the velocity rate of the exact form less that of the printed one, eq. (27). Unit: ft/s^2.
@@ -12,11 +12,7 @@ use ahv_core::Real;
 #[inline(always)]
 pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Reduced flexible coordinates, (25)
-    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
-    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
+    let q = sensitivities(x, u, p, &i);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -29,9 +25,9 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * i.alpha_2
         + i.c_t_alpha_alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
+        + p.c_t_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_t_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_t_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
     let delta_e_2 = u.delta_e * u.delta_e;
     let canard_deflection_2 = i.canard_deflection * i.canard_deflection;
     let c_d = p.c_d_0
@@ -41,9 +37,9 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_d_delta_e * u.delta_e
         + p.c_d_delta_c_2 * canard_deflection_2
         + p.c_d_delta_c * i.canard_deflection
-        + p.c_d_eta_1 * eta_1
-        + p.c_d_eta_2 * eta_2
-        + p.c_d_eta_3 * eta_3;
+        + p.c_d_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_d_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_d_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
 
     // Forces and moment, (2)
     let thrust = i.reference_force * c_t; // lb/ft
@@ -62,11 +58,7 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Reduced flexible coordinates, (25)
-    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
-    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
+    let q = sensitivities(x, u, p, &i);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -79,16 +71,16 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * i.alpha_2
         + i.c_t_alpha_alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
+        + p.c_t_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_t_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_t_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
     let c_l = p.c_l_0
         + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * i.canard_commanded
-        + p.c_l_eta_1 * eta_1
-        + p.c_l_eta_2 * eta_2
-        + p.c_l_eta_3 * eta_3;
+        + p.c_l_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_l_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_l_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
 
     // Forces and moment, (1)
     let normal_coefficient = c_l + c_t * i.sin_alpha;
@@ -106,11 +98,7 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 #[inline(always)]
 pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Reduced flexible coordinates, (25)
-    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
-    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
+    let q = sensitivities(x, u, p, &i);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -123,16 +111,16 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * i.alpha_2
         + i.c_t_alpha_alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
+        + p.c_t_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_t_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_t_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
     let c_l = p.c_l_0
         + p.c_l_alpha * x.alpha
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * i.canard_commanded
-        + p.c_l_eta_1 * eta_1
-        + p.c_l_eta_2 * eta_2
-        + p.c_l_eta_3 * eta_3;
+        + p.c_l_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_l_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_l_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
 
     // Forces and moment, (1)
     let normal_coefficient = c_l + c_t * i.sin_alpha;
@@ -151,11 +139,7 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 #[inline(always)]
 pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Reduced flexible coordinates, (25)
-    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
-    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
+    let q = sensitivities(x, u, p, &i);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -168,17 +152,17 @@ pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * i.alpha_2
         + i.c_t_alpha_alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
+        + p.c_t_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_t_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_t_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
     let c_m = p.c_m_0
         + p.c_m_alpha_2 * i.alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_delta_e * u.delta_e
         + p.c_m_delta_c * i.canard_deflection
-        + p.c_m_eta_1 * eta_1
-        + p.c_m_eta_2 * eta_2
-        + p.c_m_eta_3 * eta_3;
+        + p.c_m_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_m_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_m_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
 
     // Forces and moment, (2)
     let thrust = i.reference_force * c_t; // lb/ft
@@ -198,11 +182,7 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let n = noise_terms(x, u, p, &i, &s);
-
-    // Reduced flexible coordinates, (25)
-    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
-    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
+    let q = sensitivities(x, u, p, &i);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -215,9 +195,9 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * i.alpha_2
         + i.c_t_alpha_alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
+        + p.c_t_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_t_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_t_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
 
     // Forces and moment, (2)
     let thrust = i.reference_force * c_t; // lb/ft
@@ -258,11 +238,7 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-
-    // Reduced flexible coordinates, (25)
-    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
-    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
+    let q = sensitivities(x, u, p, &i);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -275,9 +251,9 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * i.alpha_2
         + i.c_t_alpha_alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
+        + p.c_t_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_t_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_t_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
 
     // Derivatives with respect to alpha
     let d_eta_static_1_d_alpha = s.d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
@@ -313,11 +289,7 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let n = noise_terms(x, u, p, &i, &s);
-
-    // Reduced flexible coordinates, (25)
-    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
-    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
+    let q = sensitivities(x, u, p, &i);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -330,9 +302,9 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + p.c_t_alpha_3 * alpha_3
         + p.c_t_alpha_2 * i.alpha_2
         + i.c_t_alpha_alpha
-        + p.c_t_eta_1 * eta_1
-        + p.c_t_eta_2 * eta_2
-        + p.c_t_eta_3 * eta_3;
+        + p.c_t_eta_1 * q.generalized_force_1_inv_omega_1_2_plus_chi_1
+        + p.c_t_eta_2 * q.generalized_force_2_inv_omega_2_2_plus_chi_2
+        + p.c_t_eta_3 * q.generalized_force_3_inv_omega_3_2_plus_chi_3;
 
     // Derivatives with respect to alpha
     let d_eta_static_1_d_alpha = s.d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad

@@ -7,66 +7,47 @@ use super::{
     drift_from, intermediates, noise_terms, slopes,
 };
 
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`Diffusion`] stand.
-pub const DIFFUSION_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Noise::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Noise.w_alpha),
-        ahv_core::at!(State.altitude, Noise.w_gamma),
-        ahv_core::at!(State.gamma, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_q),
-        ahv_core::at!(State.pitch_rate, Noise.w_alpha),
-        ahv_core::at!(State.chi_1, Noise.xi_1),
-        ahv_core::at!(State.chi_2, Noise.xi_1),
-        ahv_core::at!(State.chi_2, Noise.xi_2),
-        ahv_core::at!(State.chi_3, Noise.xi_1),
-        ahv_core::at!(State.chi_3, Noise.xi_3),
-    ],
-);
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`Diffusion`].
+    pub struct DiffusionEntries, DIFFUSION_PATTERN: State<Noise> {
+        velocity_by_w_alpha: velocity.w_alpha,
+        altitude_by_w_gamma: altitude.w_gamma,
+        gamma_by_w_alpha: gamma.w_alpha,
+        alpha_by_w_alpha: alpha.w_alpha,
+        alpha_by_w_q: alpha.w_q,
+        pitch_rate_by_w_alpha: pitch_rate.w_alpha,
+        chi_1_by_xi_1: chi_1.xi_1,
+        chi_2_by_xi_1: chi_2.xi_1,
+        chi_2_by_xi_2: chi_2.xi_2,
+        chi_3_by_xi_1: chi_3.xi_1,
+        chi_3_by_xi_3: chi_3.xi_3,
+    }
+}
 
-/// The [`Diffusion`] whose structurally non-zero entries are `values`, in the order of the pattern.
+/// [`diffusion_values`] from what is computed once.
 #[inline(always)]
-pub fn dense_diffusion<R: Real>(values: &[R; 11]) -> Diffusion<R> {
-    let no_noise = Noise::splat(R::ZERO);
-    State {
-        velocity: Noise {
-            w_alpha: values[0],
-            ..no_noise
-        },
-        altitude: Noise {
-            w_gamma: values[1],
-            ..no_noise
-        },
-        gamma: Noise {
-            w_alpha: values[2],
-            ..no_noise
-        },
-        alpha: Noise {
-            w_alpha: values[3],
-            w_q: values[4],
-            ..no_noise
-        },
-        pitch_rate: Noise {
-            w_alpha: values[5],
-            ..no_noise
-        },
-        chi_1: Noise {
-            xi_1: values[6],
-            ..no_noise
-        },
-        chi_2: Noise {
-            xi_1: values[7],
-            xi_2: values[8],
-            ..no_noise
-        },
-        chi_3: Noise {
-            xi_1: values[9],
-            xi_3: values[10],
-            ..no_noise
-        },
+pub fn diffusion_values_from<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    _s: &Slopes<R>,
+    n: &NoiseTerms<R>,
+) -> DiffusionEntries<R> {
+    DiffusionEntries {
+        velocity_by_w_alpha: n.alpha_slope_velocity * p.w_alpha,
+        altitude_by_w_gamma: x.velocity * p.w_gamma,
+        gamma_by_w_alpha: i.g_gamma * p.w_alpha,
+        alpha_by_w_alpha: n.alpha_slope_alpha * p.w_alpha,
+        alpha_by_w_q: p.w_q,
+        pitch_rate_by_w_alpha: n.alpha_slope_pitch_rate * p.w_alpha,
+        chi_1_by_xi_1: p.chi_diffusion_1,
+        chi_2_by_xi_1: p.chi_diffusion_2_shared_noise,
+        chi_2_by_xi_2: p.chi_diffusion_2_own_noise,
+        chi_3_by_xi_1: p.chi_diffusion_3_shared_noise,
+        chi_3_by_xi_3: p.chi_diffusion_3_own_noise,
     }
 }
 
@@ -81,43 +62,18 @@ pub fn diffusion_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> [R; 11] {
+) -> DiffusionEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let n = noise_terms(x, u, p, &i, &s);
     diffusion_values_from(x, u, p, &i, &s, &n)
 }
 
-/// [`diffusion_values`] from what is computed once.
-#[inline(always)]
-pub fn diffusion_values_from<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    _s: &Slopes<R>,
-    n: &NoiseTerms<R>,
-) -> [R; 11] {
-    [
-        n.alpha_slope_velocity * p.w_alpha,
-        x.velocity * p.w_gamma,
-        i.g_gamma * p.w_alpha,
-        n.alpha_slope_alpha * p.w_alpha,
-        p.w_q,
-        n.alpha_slope_pitch_rate * p.w_alpha,
-        p.chi_diffusion_1,
-        p.chi_diffusion_2_shared_noise,
-        p.chi_diffusion_2_own_noise,
-        p.chi_diffusion_3_shared_noise,
-        p.chi_diffusion_3_own_noise,
-    ]
-}
-
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the column of w_alpha is H of
 /// (28)-(34), w_gamma drives the altitude alone, eq. (27).
 #[inline(always)]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
-    dense_diffusion(&diffusion_values(x, u, p))
+    diffusion_values(x, u, p).dense()
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (27).
@@ -134,23 +90,7 @@ pub fn drift_and_diffusion<R: Real>(
     let n = noise_terms(x, u, p, &i, &s);
     let drift = drift_from(x, u, p, &i);
     let diffusion = diffusion_values_from(x, u, p, &i, &s, &n);
-    (drift, dense_diffusion(&diffusion))
-}
-
-/// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
-///
-/// 44 operations: 8 additions, 34 multiplications, 1 sin_cos, 1 exp.
-#[inline(always)]
-pub fn noise_increment<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
-) -> State<R> {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    noise_increment_from(x, u, p, dw, &i, &s, &n)
+    (drift, diffusion.dense())
 }
 
 /// [`noise_increment`] from what is computed once.
@@ -176,6 +116,22 @@ pub fn noise_increment_from<R: Real>(
         chi_2: p.chi_diffusion_2 * (shared_noise_dxi_1 + p.own_noise * dw.xi_2),
         chi_3: p.chi_diffusion_3 * (shared_noise_dxi_1 + p.own_noise * dw.xi_3),
     }
+}
+
+/// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
+///
+/// 44 operations: 8 additions, 34 multiplications, 1 sin_cos, 1 exp.
+#[inline(always)]
+pub fn noise_increment<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    dw: &Noise<R>,
+) -> State<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
+    noise_increment_from(x, u, p, dw, &i, &s, &n)
 }
 
 /// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq. (27).

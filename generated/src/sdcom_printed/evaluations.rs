@@ -2,7 +2,7 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Input, Prepared, State, intermediates};
+use super::{Input, Prepared, State, intermediates, sensitivities};
 use ahv_core::Real;
 
 /// Air density, eq. (2). Unit: slug/ft^3.
@@ -56,9 +56,8 @@ pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Reduced flexible coordinates, (25)
-    i.generalized_force_1_inv_omega_1_2 + x.chi_1
+    let q = sensitivities(x, u, p, &i);
+    q.generalized_force_1_inv_omega_1_2_plus_chi_1
 }
 
 /// Generalized-force coefficient of mode 2, eq. (3). Unit: (ft/slug)^0.5.
@@ -94,9 +93,8 @@ pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Reduced flexible coordinates, (25)
-    i.generalized_force_2_inv_omega_2_2 + x.chi_2
+    let q = sensitivities(x, u, p, &i);
+    q.generalized_force_2_inv_omega_2_2_plus_chi_2
 }
 
 /// Generalized-force coefficient of mode 3, eq. (3). Unit: (ft/slug)^0.5.
@@ -132,7 +130,6 @@ pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn eta_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Reduced flexible coordinates, (25)
-    i.generalized_force_3_inv_omega_3_2 + x.chi_3
+    let q = sensitivities(x, u, p, &i);
+    q.generalized_force_3_inv_omega_3_2_plus_chi_3
 }

@@ -2,94 +2,96 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Hessian, Input, Prepared, State, intermediates, noise_terms, slopes};
-use ahv_core::{Pattern, Real};
+use super::{
+    Hessian, Input, Intermediates, NoiseSlopes, NoiseTerms, Prepared, Slopes, State,
+    intermediates, noise_slopes, noise_terms, slopes,
+};
 
-/// Where the entries of the compressed [`Hessian`] stand.
-pub const HESSIAN_PATTERN: Pattern<3> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, State.velocity, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma, State.gamma),
-        ahv_core::at!(State.velocity, State.alpha, State.velocity),
-        ahv_core::at!(State.velocity, State.alpha, State.altitude),
-        ahv_core::at!(State.velocity, State.alpha, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_1, State.velocity),
-        ahv_core::at!(State.velocity, State.chi_1, State.altitude),
-        ahv_core::at!(State.velocity, State.chi_1, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_2, State.velocity),
-        ahv_core::at!(State.velocity, State.chi_2, State.altitude),
-        ahv_core::at!(State.velocity, State.chi_2, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_3, State.velocity),
-        ahv_core::at!(State.velocity, State.chi_3, State.altitude),
-        ahv_core::at!(State.velocity, State.chi_3, State.alpha),
-        ahv_core::at!(State.altitude, State.gamma, State.velocity),
-        ahv_core::at!(State.altitude, State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.velocity, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma, State.velocity),
-        ahv_core::at!(State.gamma, State.gamma, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.alpha, State.velocity),
-        ahv_core::at!(State.gamma, State.alpha, State.altitude),
-        ahv_core::at!(State.gamma, State.alpha, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_1, State.velocity),
-        ahv_core::at!(State.gamma, State.chi_1, State.altitude),
-        ahv_core::at!(State.gamma, State.chi_1, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_2, State.velocity),
-        ahv_core::at!(State.gamma, State.chi_2, State.altitude),
-        ahv_core::at!(State.gamma, State.chi_2, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_3, State.velocity),
-        ahv_core::at!(State.gamma, State.chi_3, State.altitude),
-        ahv_core::at!(State.gamma, State.chi_3, State.alpha),
-        ahv_core::at!(State.alpha, State.velocity, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma, State.velocity),
-        ahv_core::at!(State.alpha, State.gamma, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma, State.gamma),
-        ahv_core::at!(State.alpha, State.alpha, State.velocity),
-        ahv_core::at!(State.alpha, State.alpha, State.altitude),
-        ahv_core::at!(State.alpha, State.alpha, State.alpha),
-        ahv_core::at!(State.alpha, State.chi_1, State.velocity),
-        ahv_core::at!(State.alpha, State.chi_1, State.altitude),
-        ahv_core::at!(State.alpha, State.chi_1, State.alpha),
-        ahv_core::at!(State.alpha, State.chi_2, State.velocity),
-        ahv_core::at!(State.alpha, State.chi_2, State.altitude),
-        ahv_core::at!(State.alpha, State.chi_2, State.alpha),
-        ahv_core::at!(State.alpha, State.chi_3, State.velocity),
-        ahv_core::at!(State.alpha, State.chi_3, State.altitude),
-        ahv_core::at!(State.alpha, State.chi_3, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.velocity, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.chi_1, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.chi_1, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.chi_2, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.chi_2, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.chi_3, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.chi_3, State.altitude),
-    ],
-);
+use ahv_core::Real;
 
-/// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 959 operations: 297 additions, 657 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`Hessian`].
+    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        velocity_by_velocity_velocity: velocity.velocity.velocity,
+        velocity_by_altitude_velocity: velocity.altitude.velocity,
+        velocity_by_altitude_altitude: velocity.altitude.altitude,
+        velocity_by_gamma_altitude: velocity.gamma.altitude,
+        velocity_by_gamma_gamma: velocity.gamma.gamma,
+        velocity_by_alpha_velocity: velocity.alpha.velocity,
+        velocity_by_alpha_altitude: velocity.alpha.altitude,
+        velocity_by_alpha_alpha: velocity.alpha.alpha,
+        velocity_by_chi_1_velocity: velocity.chi_1.velocity,
+        velocity_by_chi_1_altitude: velocity.chi_1.altitude,
+        velocity_by_chi_1_alpha: velocity.chi_1.alpha,
+        velocity_by_chi_2_velocity: velocity.chi_2.velocity,
+        velocity_by_chi_2_altitude: velocity.chi_2.altitude,
+        velocity_by_chi_2_alpha: velocity.chi_2.alpha,
+        velocity_by_chi_3_velocity: velocity.chi_3.velocity,
+        velocity_by_chi_3_altitude: velocity.chi_3.altitude,
+        velocity_by_chi_3_alpha: velocity.chi_3.alpha,
+        altitude_by_gamma_velocity: altitude.gamma.velocity,
+        altitude_by_gamma_gamma: altitude.gamma.gamma,
+        gamma_by_velocity_velocity: gamma.velocity.velocity,
+        gamma_by_altitude_velocity: gamma.altitude.velocity,
+        gamma_by_altitude_altitude: gamma.altitude.altitude,
+        gamma_by_gamma_velocity: gamma.gamma.velocity,
+        gamma_by_gamma_altitude: gamma.gamma.altitude,
+        gamma_by_gamma_gamma: gamma.gamma.gamma,
+        gamma_by_alpha_velocity: gamma.alpha.velocity,
+        gamma_by_alpha_altitude: gamma.alpha.altitude,
+        gamma_by_alpha_alpha: gamma.alpha.alpha,
+        gamma_by_chi_1_velocity: gamma.chi_1.velocity,
+        gamma_by_chi_1_altitude: gamma.chi_1.altitude,
+        gamma_by_chi_1_alpha: gamma.chi_1.alpha,
+        gamma_by_chi_2_velocity: gamma.chi_2.velocity,
+        gamma_by_chi_2_altitude: gamma.chi_2.altitude,
+        gamma_by_chi_2_alpha: gamma.chi_2.alpha,
+        gamma_by_chi_3_velocity: gamma.chi_3.velocity,
+        gamma_by_chi_3_altitude: gamma.chi_3.altitude,
+        gamma_by_chi_3_alpha: gamma.chi_3.alpha,
+        alpha_by_velocity_velocity: alpha.velocity.velocity,
+        alpha_by_altitude_velocity: alpha.altitude.velocity,
+        alpha_by_altitude_altitude: alpha.altitude.altitude,
+        alpha_by_gamma_velocity: alpha.gamma.velocity,
+        alpha_by_gamma_altitude: alpha.gamma.altitude,
+        alpha_by_gamma_gamma: alpha.gamma.gamma,
+        alpha_by_alpha_velocity: alpha.alpha.velocity,
+        alpha_by_alpha_altitude: alpha.alpha.altitude,
+        alpha_by_alpha_alpha: alpha.alpha.alpha,
+        alpha_by_chi_1_velocity: alpha.chi_1.velocity,
+        alpha_by_chi_1_altitude: alpha.chi_1.altitude,
+        alpha_by_chi_1_alpha: alpha.chi_1.alpha,
+        alpha_by_chi_2_velocity: alpha.chi_2.velocity,
+        alpha_by_chi_2_altitude: alpha.chi_2.altitude,
+        alpha_by_chi_2_alpha: alpha.chi_2.alpha,
+        alpha_by_chi_3_velocity: alpha.chi_3.velocity,
+        alpha_by_chi_3_altitude: alpha.chi_3.altitude,
+        alpha_by_chi_3_alpha: alpha.chi_3.alpha,
+        pitch_rate_by_velocity_velocity: pitch_rate.velocity.velocity,
+        pitch_rate_by_altitude_velocity: pitch_rate.altitude.velocity,
+        pitch_rate_by_altitude_altitude: pitch_rate.altitude.altitude,
+        pitch_rate_by_alpha_velocity: pitch_rate.alpha.velocity,
+        pitch_rate_by_alpha_altitude: pitch_rate.alpha.altitude,
+        pitch_rate_by_alpha_alpha: pitch_rate.alpha.alpha,
+        pitch_rate_by_chi_1_velocity: pitch_rate.chi_1.velocity,
+        pitch_rate_by_chi_1_altitude: pitch_rate.chi_1.altitude,
+        pitch_rate_by_chi_2_velocity: pitch_rate.chi_2.velocity,
+        pitch_rate_by_chi_2_altitude: pitch_rate.chi_2.altitude,
+        pitch_rate_by_chi_3_velocity: pitch_rate.chi_3.velocity,
+        pitch_rate_by_chi_3_altitude: pitch_rate.chi_3.altitude,
+    }
+}
+
+/// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
-pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 67] {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-
+fn hessian_by_velocity<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to velocity
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
@@ -111,13 +113,132 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * i.density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
     let d2_g_velocity_d_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure
         * i.density; // 1/ft
-    let d2_velocity_rate_printed_d_velocity_d_velocity_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
-    let d2_velocity_rate_printed_d_velocity_d_velocity =
-        p.s_over_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1 * i.density
+    let d2_velocity_rate_printed_d_velocity_d_velocity = p.s_over_m
+        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) * i.density
         + d2_f_velocity_d_velocity_d_velocity
         + u.phi * d2_g_velocity_d_velocity_d_velocity; // 1/ft
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_velocity =
+        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_velocity
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_velocity
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_velocity; // rad*s/ft
+    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity = i
+        .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
+        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity = i
+        .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
+        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity = i
+        .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
+        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
+    let d2_f_gamma_eta_d_velocity_d_velocity =
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
+        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_velocity
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
+    let cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity = i.cos_gamma
+        * d2_gravity_turn_d_velocity_d_velocity;
+    let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
+        - cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+
+    // Derivatives with respect to chi_1
+    let d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_gamma_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_gamma_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to velocity
+    let d_slope_of_f_alpha_eta_in_turn_factor_d_velocity = -d_slope_of_f_gamma_eta_in_turn_factor_d_velocity;
+    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_1
+        * p.inv_omega_1_2; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_2
+        * p.inv_omega_2_2; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_3
+        * p.inv_omega_3_2; // rad*s^2/ft^1.5/slug^0.5
+    let d2_f_alpha_eta_d_velocity_d_velocity =
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
+        + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_velocity
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
+    let d2_f_alpha_d_velocity_d_velocity = cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity
+        - i.gravity_turn
+            * (i.cos_gamma * s.inv_velocity_2
+                + (i.cos_gamma * i.inv_velocity
+                    - s.d_altitude_rate_d_gamma * s.inv_velocity_2) * i.inv_velocity
+                - s.d_altitude_rate_d_gamma * inv_velocity_3)
+        + d2_f_alpha_eta_d_velocity_d_velocity; // rad*s/ft^2
+    let d2_f_pitch_rate_eta_d_velocity_d_velocity = p.inv_i_yy
+        * (s.d_reference_force_d_velocity
+            * (R::TWO * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+                * s.d_generalized_force_1_d_velocity
+                + R::TWO * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+                    * s.d_generalized_force_2_d_velocity
+                + R::TWO * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
+                    * s.d_generalized_force_3_d_velocity)
+            + p.s
+                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
+                    * i.generalized_force_1_inv_omega_1_2
+                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
+                        * i.generalized_force_2_inv_omega_2_2
+                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
+                        * i.generalized_force_3_inv_omega_3_2) * i.density)
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_velocity_d_velocity
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_velocity_d_velocity
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_velocity_d_velocity; // rad/ft^2
+    let d2_f_pitch_rate_d_velocity_d_velocity = s
+        .slope_of_f_pitch_rate_in_dynamic_pressure * i.density
+        + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
+    let d2_g_pitch_rate_d_velocity_d_velocity = p
+        .slope_of_g_pitch_rate_in_dynamic_pressure * i.density; // 1/ft^2
+    let d2_pitch_rate_rate_printed_d_velocity_d_velocity = p.s_over_i_yy
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) * i.density
+        + d2_f_pitch_rate_d_velocity_d_velocity
+        + u.delta_e * d2_g_pitch_rate_d_velocity_d_velocity; // rad/ft^2
+
+    hessian.velocity_by_velocity_velocity = d2_velocity_rate_printed_d_velocity_d_velocity;
+    hessian.gamma_by_velocity_velocity = d2_f_gamma_d_velocity_d_velocity;
+    hessian.alpha_by_velocity_velocity = d2_f_alpha_d_velocity_d_velocity;
+    hessian.pitch_rate_by_velocity_velocity = d2_pitch_rate_rate_printed_d_velocity_d_velocity;
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude_of_velocity.
+#[inline(always)]
+fn hessian_by_altitude_of_velocity<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to velocity
+    let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
+        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * s.d_generalized_force_1_d_velocity
+            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * s.d_generalized_force_2_d_velocity
+            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * s.d_generalized_force_3_d_velocity); // ft^2/s/lb
 
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
@@ -148,22 +269,422 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
     let d2_g_velocity_d_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft
+    let d2_velocity_rate_printed_d_velocity_d_altitude_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
     let d2_velocity_rate_printed_d_velocity_d_altitude =
-        d2_reference_force_d_velocity_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
+        d2_reference_force_d_velocity_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_altitude_term_1
         + d2_f_velocity_d_velocity_d_altitude
         + u.phi * d2_g_velocity_d_velocity_d_altitude; // 1/s/ft
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    let d2_density_d_altitude_d_altitude = p.rho_0
+        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // lb/ft^4
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
+    let d2_gravity_d_altitude_d_altitude = p.g
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
+            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    let d2_reference_force_d_altitude_d_altitude = p.s
+        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_f_velocity_eta_d_altitude_d_altitude =
+        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude * s.d_dynamic_pressure_d_altitude
+        + s.slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_altitude;
+    let d2_f_velocity_d_altitude_d_altitude =
+        s.slope_of_f_velocity_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
+        - i.sin_gamma * d2_gravity_d_altitude_d_altitude
+        + d2_f_velocity_eta_d_altitude_d_altitude; // 1/s^2/ft
+    let d2_g_velocity_d_altitude_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
+    let d2_velocity_rate_printed_d_altitude_d_altitude =
+        d2_reference_force_d_altitude_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_altitude_term_1
+        + d2_f_velocity_d_altitude_d_altitude
+        + u.phi * d2_g_velocity_d_altitude_d_altitude; // 1/s^2/ft
 
+    hessian.velocity_by_altitude_velocity = d2_velocity_rate_printed_d_velocity_d_altitude;
+    hessian.velocity_by_altitude_altitude = d2_velocity_rate_printed_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude_of_gamma.
+#[inline(always)]
+fn hessian_by_altitude_of_gamma<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to altitude
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    let d2_reference_force_d_velocity_d_altitude = p.s
+        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    let d2_density_d_altitude_d_altitude = p.rho_0
+        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // lb/ft^4
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
+    let d2_gravity_d_altitude_d_altitude = p.g
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
+            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    let d2_reference_force_d_altitude_d_altitude = p.s
+        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude =
+        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_altitude
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_altitude
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_altitude; // rad/ft
+    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude = i
+        .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
+        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude = i
+        .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
+        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude = i
+        .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
+        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
+    let d2_f_gamma_eta_d_velocity_d_altitude =
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
+        + i.f_gamma_eta_over_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+    let d2_f_gamma_d_velocity_d_altitude =
+        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_velocity_d_altitude
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude
+        + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
+    let d2_g_gamma_d_velocity_d_altitude = i.g_gamma_over_turn_factor
+        * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
+    let d2_gamma_rate_printed_d_velocity_d_altitude =
+        s.slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + d2_f_gamma_d_velocity_d_altitude
+        + x.alpha * d2_g_gamma_d_velocity_d_altitude; // rad/ft^2
+    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
+        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
+    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
+        * i.inv_velocity
+        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
+    let d2_f_gamma_eta_d_altitude_d_altitude =
+        s.d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
+        + i.f_gamma_eta_over_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_f_gamma_d_altitude_d_altitude =
+        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_altitude_d_altitude
+        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude
+        + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_g_gamma_d_altitude_d_altitude = i.g_gamma_over_turn_factor
+        * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
+    let d2_gamma_rate_printed_d_altitude_d_altitude =
+        s.slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+        + d2_f_gamma_d_altitude_d_altitude
+        + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
+
+    hessian.gamma_by_altitude_velocity = d2_gamma_rate_printed_d_velocity_d_altitude;
+    hessian.gamma_by_altitude_altitude = d2_gamma_rate_printed_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude_of_alpha.
+#[inline(always)]
+fn hessian_by_altitude_of_alpha<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to altitude
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    let d2_reference_force_d_velocity_d_altitude = p.s
+        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    let d2_density_d_altitude_d_altitude = p.rho_0
+        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // lb/ft^4
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
+    let d2_gravity_d_altitude_d_altitude = p.g
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
+            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    let d2_reference_force_d_altitude_d_altitude = p.s
+        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude =
+        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_altitude
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_altitude
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_altitude; // rad/ft
+    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
+        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
+    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
+        * i.inv_velocity
+        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
+
+    // Derivatives with respect to chi_1
+    let d2_gamma_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_gamma_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_gamma_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to altitude
+    let d_slope_of_f_alpha_eta_in_turn_factor_d_altitude = -d_slope_of_f_gamma_eta_in_turn_factor_d_altitude; // rad/ft
+    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_1
+        * p.inv_omega_1_2; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_2
+        * p.inv_omega_2_2; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_3
+        * p.inv_omega_3_2; // rad*s/ft^1.5/slug^0.5
+    let d2_f_alpha_eta_d_velocity_d_altitude =
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+    let d2_f_alpha_d_velocity_d_altitude = s.slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        + i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude
+        + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
+    let d2_alpha_rate_printed_d_velocity_d_altitude = s
+        .slope_of_alpha_rate_printed_in_turn_factor
+        * d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
+    let d2_f_alpha_eta_d_altitude_d_altitude =
+        s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_f_alpha_d_altitude_d_altitude = s.slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+        + i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude
+        + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_alpha_rate_printed_d_altitude_d_altitude = s
+        .slope_of_alpha_rate_printed_in_turn_factor
+        * d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
+
+    hessian.alpha_by_altitude_velocity = d2_alpha_rate_printed_d_velocity_d_altitude;
+    hessian.alpha_by_altitude_altitude = d2_alpha_rate_printed_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate_gamma.
+#[inline(always)]
+fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to altitude
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    let d2_reference_force_d_velocity_d_altitude = p.s
+        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    let d2_density_d_altitude_d_altitude = p.rho_0
+        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // lb/ft^4
+    let d2_reference_force_d_altitude_d_altitude = p.s
+        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+
+    // Derivatives with respect to gamma
+    let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_f_gamma_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
+    let d2_f_gamma_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_f_gamma_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_f_alpha_d_velocity_d_gamma = s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
+    let d2_f_alpha_d_altitude_d_gamma = s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+
+    // Derivatives with respect to altitude
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
+        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+        * s.d_generalized_force_1_d_altitude;
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p
+        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+        * s.d_generalized_force_2_d_altitude;
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3 = p
+        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
+        * s.d_generalized_force_3_d_altitude;
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_4 =
+        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude = p.inv_i_yy
+        * (s.d_reference_force_d_velocity
+            * (d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
+                + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
+                + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
+            + s.d_reference_force_d_altitude
+                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+                    * s.d_generalized_force_1_d_velocity
+                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+                        * s.d_generalized_force_2_d_velocity
+                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
+                        * s.d_generalized_force_3_d_velocity)
+            + d2_reference_force_d_velocity_d_altitude
+                * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_4)
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_velocity_d_altitude
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_velocity_d_altitude
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
+    let d2_f_pitch_rate_d_velocity_d_altitude = s
+        .slope_of_f_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_velocity_d_altitude
+        + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
+    let d2_g_pitch_rate_d_velocity_d_altitude = p
+        .slope_of_g_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft^2
+    let d2_pitch_rate_rate_printed_d_velocity_d_altitude_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
+    let d2_pitch_rate_rate_printed_d_velocity_d_altitude = d2_reference_force_d_velocity_d_altitude
+        * p.inv_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_altitude_term_1
+        + d2_f_pitch_rate_d_velocity_d_altitude
+        + u.delta_e * d2_g_pitch_rate_d_velocity_d_altitude; // rad/s/ft^2
+    let d2_f_pitch_rate_eta_d_altitude_d_altitude = p.inv_i_yy
+        * (s.d_reference_force_d_altitude
+            * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
+                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
+                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
+            + d2_reference_force_d_altitude_d_altitude
+                * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_4)
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_altitude_d_altitude
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_altitude_d_altitude
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
+    let d2_f_pitch_rate_d_altitude_d_altitude = s
+        .slope_of_f_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude
+        + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
+    let d2_g_pitch_rate_d_altitude_d_altitude = p
+        .slope_of_g_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft^2
+    let d2_pitch_rate_rate_printed_d_altitude_d_altitude = d2_reference_force_d_altitude_d_altitude
+        * p.inv_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_altitude_term_1
+        + d2_f_pitch_rate_d_altitude_d_altitude
+        + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
+
+    hessian.pitch_rate_by_altitude_velocity = d2_pitch_rate_rate_printed_d_velocity_d_altitude;
+    hessian.pitch_rate_by_altitude_altitude = d2_pitch_rate_rate_printed_d_altitude_d_altitude;
+    hessian.velocity_by_gamma_altitude = d2_f_velocity_d_altitude_d_gamma;
+    hessian.velocity_by_gamma_gamma = d2_f_velocity_d_gamma_d_gamma;
+    hessian.altitude_by_gamma_velocity = i.cos_gamma;
+    hessian.altitude_by_gamma_gamma = d2_altitude_rate_d_gamma_d_gamma;
+    hessian.gamma_by_gamma_velocity = d2_f_gamma_d_velocity_d_gamma;
+    hessian.gamma_by_gamma_altitude = d2_f_gamma_d_altitude_d_gamma;
+    hessian.gamma_by_gamma_gamma = d2_f_gamma_d_gamma_d_gamma;
+    hessian.alpha_by_gamma_velocity = d2_f_alpha_d_velocity_d_gamma;
+    hessian.alpha_by_gamma_altitude = d2_f_alpha_d_altitude_d_gamma;
+    hessian.alpha_by_gamma_gamma = d2_f_alpha_d_gamma_d_gamma;
+}
+
+/// Entries of [`hessian_values`]: derivatives by alpha_of_velocity.
+#[inline(always)]
+fn hessian_by_alpha_of_velocity<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to alpha
     let d_slope_of_f_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
         * (i.cos_alpha * p.c_t_alpha - p.c_d_alpha
             + s.c_t_alpha_alpha_plus_c_t_0 * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
-    let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha_term_1 =
-        i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-        + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-        + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha = p.s_over_m
-        * (d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha_term_1
-            * s.d_cos_alpha_d_alpha
+        * ((i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+            + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+            + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3) * s.d_cos_alpha_d_alpha
             + p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
                 * s.d_generalized_force_1_d_alpha
             + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
@@ -201,62 +722,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * p.inv_m * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
         * s.d_cos_alpha_d_alpha + d2_f_velocity_d_velocity_d_alpha
         + u.phi * d2_g_velocity_d_velocity_d_alpha; // 1/s/rad
-
-    // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
-        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_velocity_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
-        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_velocity_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
-        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to altitude
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
-    let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_f_velocity_eta_d_altitude_d_altitude =
-        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude * s.d_dynamic_pressure_d_altitude
-        + s.slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
-        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_altitude
-        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_altitude;
-    let d2_f_velocity_d_altitude_d_altitude =
-        s.slope_of_f_velocity_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
-        - i.sin_gamma * d2_gravity_d_altitude_d_altitude
-        + d2_f_velocity_eta_d_altitude_d_altitude; // 1/s^2/ft
-    let d2_g_velocity_d_altitude_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
-    let d2_velocity_rate_printed_d_altitude_d_altitude =
-        d2_reference_force_d_altitude_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_velocity_term_1
-        + d2_f_velocity_d_altitude_d_altitude
-        + u.phi * d2_g_velocity_d_altitude_d_altitude; // 1/s^2/ft
-
-    // Derivatives with respect to gamma
-    let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to alpha
     let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
@@ -285,32 +750,13 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         * p.inv_m * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
         * s.d_cos_alpha_d_alpha + d2_f_velocity_d_altitude_d_alpha
         + u.phi * d2_g_velocity_d_altitude_d_alpha; // 1/s^2/rad
-
-    // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
-        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_velocity_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
-        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_velocity_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
-        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d_slope_of_f_velocity_in_cos_alpha_d_alpha = i.reference_force
         * p.c_t_alpha_over_m; // ft/s^2/rad
-    let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1 =
-        p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
-        + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
-        + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
     let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha = i.reference_force * p.inv_m
-        * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1; // ft/s^2/rad
+        * (p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+            + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+            + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha); // ft/s^2/rad
     let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
@@ -333,109 +779,51 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d2_f_velocity_d_alpha_d_alpha
         + u.phi * d2_g_velocity_d_alpha_d_alpha; // ft/s^2/rad^2
 
-    // Derivatives with respect to chi_1
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = i.reference_force
-        * p.c_t_eta_1_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha
-        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1; // ft^0.5/s^2/rad/slug^0.5
+    hessian.velocity_by_alpha_velocity = d2_velocity_rate_printed_d_velocity_d_alpha;
+    hessian.velocity_by_alpha_altitude = d2_velocity_rate_printed_d_altitude_d_alpha;
+    hessian.velocity_by_alpha_alpha = d2_velocity_rate_printed_d_alpha_d_alpha;
+}
 
-    // Derivatives with respect to chi_2
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = i.reference_force
-        * p.c_t_eta_2_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha
-        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3 = i.reference_force
-        * p.c_t_eta_3_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha
-        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-
-    // Derivatives with respect to velocity
-    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_velocity =
-        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_velocity
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_velocity
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_velocity; // rad*s/ft
-    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity = i
-        .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity = i
-        .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity = i
-        .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-        * s.d_turn_factor_d_velocity; // rad*s^2/ft^1.5/slug^0.5
-    let d2_f_gamma_eta_d_velocity_d_velocity =
-        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
-        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_velocity
-        + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
-        + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
-        + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity = i.cos_gamma
-        * d2_gravity_turn_d_velocity_d_velocity;
-    let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
-        - cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
-
-    // Derivatives with respect to altitude
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
-    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude =
-        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_altitude
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_altitude
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_altitude; // rad/ft
-    let d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude = i
-        .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude = i
-        .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
-    let d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude = i
-        .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-        * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
-    let d2_f_gamma_eta_d_velocity_d_altitude =
-        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
-        + i.f_gamma_eta_over_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
-        + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
-        + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
-    let cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude = i.cos_gamma
-        * d2_gravity_turn_d_velocity_d_altitude;
-    let d2_f_gamma_d_velocity_d_altitude =
-        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_velocity_d_altitude
-        - cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
-        + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
-    let d2_g_gamma_d_velocity_d_altitude = i.g_gamma_over_turn_factor
-        * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
-    let d2_gamma_rate_printed_d_velocity_d_altitude =
-        s.slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + d2_f_gamma_d_velocity_d_altitude
-        + x.alpha * d2_g_gamma_d_velocity_d_altitude; // rad/ft^2
-
-    // Derivatives with respect to gamma
-    let d2_f_gamma_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-
+/// Entries of [`hessian_values`]: derivatives by alpha_of_gamma.
+#[inline(always)]
+fn hessian_by_alpha_of_gamma<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+    n: &NoiseTerms<R>,
+) {
     // Derivatives with respect to alpha
+    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s
         .chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 * i.cos_alpha;
     let d_slope_of_f_gamma_in_turn_factor_d_alpha = (i.c_t_phi_phi + p.c_t_0)
         * i.cos_alpha;
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha =
-        d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha_term_1 * i.cos_alpha
-        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_alpha
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_alpha
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = (i
+        .generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+        + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+        + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3) * i.cos_alpha
+        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
+            * s.d_generalized_force_1_d_alpha
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
+            * s.d_generalized_force_2_d_alpha
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
+            * s.d_generalized_force_3_d_alpha;
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = i.turn_factor
         * p.c_t_eta_1_inv_omega_1_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = i.turn_factor
@@ -458,52 +846,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + s.d_turn_factor_d_velocity * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
         + d2_f_gamma_d_velocity_d_alpha
         + x.alpha * d2_g_gamma_d_velocity_d_alpha; // 1/ft
-
-    // Derivatives with respect to chi_1
-    let d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to altitude
-    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
-        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
-        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_f_gamma_eta_d_altitude_d_altitude =
-        s.d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + s.d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
-        + s.d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
-        + s.d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
-        + i.f_gamma_eta_over_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = i.cos_gamma
-        * d2_gravity_turn_d_altitude_d_altitude;
-    let d2_f_gamma_d_altitude_d_altitude =
-        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_altitude_d_altitude
-        - cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
-        + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_g_gamma_d_altitude_d_altitude = i.g_gamma_over_turn_factor
-        * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_gamma_rate_printed_d_altitude_d_altitude =
-        s.slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
-        + d2_f_gamma_d_altitude_d_altitude
-        + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
-
-    // Derivatives with respect to gamma
-    let d2_f_gamma_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to alpha
     let d2_f_gamma_eta_d_altitude_d_alpha = s.d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
         + s.d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
@@ -519,26 +861,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + s.d_turn_factor_d_altitude * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
         + d2_f_gamma_d_altitude_d_alpha
         + x.alpha * d2_g_gamma_d_altitude_d_alpha; // 1/s/ft
-
-    // Derivatives with respect to chi_1
-    let d2_gamma_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_f_gamma_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to alpha
     let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = i.turn_factor
-        * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha_term_1; // 1/s
+        * (p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+            + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+            + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha); // 1/s
     let d2_f_gamma_eta_d_alpha_d_alpha =
         s.d_generalized_force_1_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
@@ -557,6 +883,55 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + d2_f_gamma_d_alpha_d_alpha
         + x.alpha * d2_g_gamma_d_alpha_d_alpha; // 1/s/rad
 
+    hessian.gamma_by_alpha_velocity = d2_gamma_rate_printed_d_velocity_d_alpha;
+    hessian.gamma_by_alpha_altitude = d2_gamma_rate_printed_d_altitude_d_alpha;
+    hessian.gamma_by_alpha_alpha = d2_gamma_rate_printed_d_alpha_d_alpha;
+}
+
+/// Entries of [`hessian_values`]: derivatives by alpha_of_alpha.
+#[inline(always)]
+fn hessian_by_alpha_of_alpha<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+    m: &NoiseSlopes<R>,
+) {
+    // Derivatives with respect to alpha
+    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s
+        .chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 * i.cos_alpha;
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = (i
+        .generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+        + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+        + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3) * i.cos_alpha
+        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
+            * s.d_generalized_force_1_d_alpha
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
+            * s.d_generalized_force_2_d_alpha
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
+            * s.d_generalized_force_3_d_alpha;
+    let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = i.turn_factor
+        * (p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+            + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+            + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha); // 1/s
+
     // Derivatives with respect to chi_1
     let d2_gamma_rate_printed_d_alpha_d_chi_1 = i.cos_alpha * i.turn_factor
         * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
@@ -568,58 +943,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     // Derivatives with respect to chi_3
     let d2_gamma_rate_printed_d_alpha_d_chi_3 = i.cos_alpha * i.turn_factor
         * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to velocity
-    let d_slope_of_f_alpha_eta_in_turn_factor_d_velocity = -d_slope_of_f_gamma_eta_in_turn_factor_d_velocity;
-    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_1
-        * p.inv_omega_1_2; // rad*s^2/ft^1.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_2
-        * p.inv_omega_2_2; // rad*s^2/ft^1.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_3
-        * p.inv_omega_3_2; // rad*s^2/ft^1.5/slug^0.5
-    let d2_f_alpha_eta_d_velocity_d_velocity =
-        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_velocity
-        + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_velocity
-        + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
-        + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
-        + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let d2_f_alpha_d_velocity_d_velocity = cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity
-        - i.gravity_turn
-            * (i.cos_gamma * s.inv_velocity_2
-                + (i.cos_gamma * i.inv_velocity
-                    - s.d_altitude_rate_d_gamma * s.inv_velocity_2) * i.inv_velocity
-                - s.d_altitude_rate_d_gamma * inv_velocity_3)
-        + d2_f_alpha_eta_d_velocity_d_velocity; // rad*s/ft^2
-
-    // Derivatives with respect to altitude
-    let d_slope_of_f_alpha_eta_in_turn_factor_d_altitude = -d_slope_of_f_gamma_eta_in_turn_factor_d_altitude; // rad/ft
-    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_1
-        * p.inv_omega_1_2; // rad*s/ft^1.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_2
-        * p.inv_omega_2_2; // rad*s/ft^1.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_3
-        * p.inv_omega_3_2; // rad*s/ft^1.5/slug^0.5
-    let d2_f_alpha_eta_d_velocity_d_altitude =
-        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
-        + s.slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
-        + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
-        + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
-        + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
-    let d2_f_alpha_d_velocity_d_altitude = s.slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
-        + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
-    let d2_alpha_rate_printed_d_velocity_d_altitude = s
-        .slope_of_alpha_rate_printed_in_turn_factor
-        * d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
-
-    // Derivatives with respect to gamma
-    let d2_f_alpha_d_velocity_d_gamma = s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
@@ -647,47 +970,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_alpha_rate_printed_d_velocity_d_alpha = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
         + d2_f_alpha_d_velocity_d_alpha; // 1/ft
-
-    // Derivatives with respect to chi_1
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -i
-        .sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2 = -i
-        .sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3 = -i
-        .sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to altitude
-    let d2_f_alpha_eta_d_altitude_d_altitude =
-        s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
-        + s.d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
-        + s.d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
-        + s.d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
-        + s.slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_f_alpha_d_altitude_d_altitude = s.slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
-        + cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
-        + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_alpha_rate_printed_d_altitude_d_altitude = s
-        .slope_of_alpha_rate_printed_in_turn_factor
-        * d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
-
-    // Derivatives with respect to gamma
-    let d2_f_alpha_d_altitude_d_gamma = s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to alpha
     let d2_f_alpha_eta_d_altitude_d_alpha = s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
         + s.d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
@@ -700,24 +982,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_alpha_rate_printed_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
         + d2_f_alpha_d_altitude_d_alpha; // 1/s/ft
-
-    // Derivatives with respect to chi_1
-    let d2_alpha_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_alpha_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_alpha_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to gamma
-    let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    let d_slope_of_f_alpha_in_sin_alpha_d_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
     let d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha = -d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s
     let d2_f_alpha_eta_d_alpha_d_alpha =
         s.d_generalized_force_1_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
@@ -728,111 +992,78 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
         + s.slope_of_f_alpha_eta_in_sin_alpha * s.d_cos_alpha_d_alpha
         + i.cos_alpha * d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha; // 1/s/rad
-    let cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = i.cos_alpha
-        * d_slope_of_f_alpha_in_sin_alpha_d_alpha;
     let d2_f_alpha_d_alpha_d_alpha = s.slope_of_f_alpha_in_sin_alpha * s.d_cos_alpha_d_alpha
         - s.d_g_gamma_d_alpha
-        + cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
+        + m.d_alpha_slope_alpha_d_alpha
         + d2_f_alpha_eta_d_alpha_d_alpha; // 1/s/rad
     let d2_alpha_rate_printed_d_alpha_d_alpha = s
         .slope_of_alpha_rate_printed_in_sin_alpha * s.d_cos_alpha_d_alpha
         + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad
 
+    hessian.alpha_by_alpha_velocity = d2_alpha_rate_printed_d_velocity_d_alpha;
+    hessian.alpha_by_alpha_altitude = d2_alpha_rate_printed_d_altitude_d_alpha;
+    hessian.alpha_by_alpha_alpha = d2_alpha_rate_printed_d_alpha_d_alpha;
+}
+
+/// Entries of [`hessian_values`]: derivatives by alpha_of_pitch_rate_chi_1.
+#[inline(always)]
+fn hessian_by_alpha_of_pitch_rate_chi_1<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to alpha
+    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+
     // Derivatives with respect to chi_1
+    let d2_velocity_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to alpha
+    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+
+    // Derivatives with respect to chi_1
+    let d2_velocity_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to alpha
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+
+    // Derivatives with respect to chi_1
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = i.reference_force
+        * p.c_t_eta_1_over_m; // ft^0.5/s^2/slug^0.5
+    let d2_velocity_rate_printed_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1; // ft^0.5/s^2/rad/slug^0.5
+    let d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
+    let d2_gamma_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
+    let d2_gamma_rate_printed_d_alpha_d_chi_1 = i.cos_alpha * i.turn_factor
+        * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -i
+        .sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
+    let d2_alpha_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
     let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -i.turn_factor
         * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
     let d2_alpha_rate_printed_d_alpha_d_chi_1 = i.cos_alpha
         * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -i.turn_factor
-        * p.c_t_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_2 = i.cos_alpha
-        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -i.turn_factor
-        * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_3 = i.cos_alpha
-        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to velocity
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1 = p
-        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-        * s.d_generalized_force_1_d_velocity;
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_2 = p
-        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-        * s.d_generalized_force_2_d_velocity;
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3 = p
-        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-        * s.d_generalized_force_3_d_velocity;
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4 =
-        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
-    let d2_f_pitch_rate_eta_d_velocity_d_velocity = p.inv_i_yy
-        * (s.d_reference_force_d_velocity
-            * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1
-                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_2
-                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3)
-            + p.s * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4 * i.density)
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_velocity
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_velocity
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_velocity; // rad/ft^2
-    let d2_f_pitch_rate_d_velocity_d_velocity = s
-        .slope_of_f_pitch_rate_in_dynamic_pressure * i.density
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
-    let d2_g_pitch_rate_d_velocity_d_velocity = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure * i.density; // 1/ft^2
-    let d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
-    let d2_pitch_rate_rate_printed_d_velocity_d_velocity =
-        p.s_over_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1 * i.density
-        + d2_f_pitch_rate_d_velocity_d_velocity
-        + u.delta_e * d2_g_pitch_rate_d_velocity_d_velocity; // rad/ft^2
-
-    // Derivatives with respect to altitude
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
-        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-        * s.d_generalized_force_1_d_altitude;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p
-        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-        * s.d_generalized_force_2_d_altitude;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3 = p
-        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-        * s.d_generalized_force_3_d_altitude;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude = p.inv_i_yy
-        * (s.d_reference_force_d_velocity
-            * (d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
-                + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
-                + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
-            + s.d_reference_force_d_altitude
-                * (d2_f_pitch_rate_eta_d_velocity_d_velocity_term_1
-                    + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_2
-                    + d2_f_pitch_rate_eta_d_velocity_d_velocity_term_3)
-            + d2_reference_force_d_velocity_d_altitude
-                * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4)
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_altitude
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_altitude
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_f_pitch_rate_d_velocity_d_altitude = s
-        .slope_of_f_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_velocity_d_altitude
-        + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_g_pitch_rate_d_velocity_d_altitude = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft^2
-    let d2_pitch_rate_rate_printed_d_velocity_d_altitude = d2_reference_force_d_velocity_d_altitude
-        * p.inv_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1
-        + d2_f_pitch_rate_d_velocity_d_altitude
-        + u.delta_e * d2_g_pitch_rate_d_velocity_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to alpha
     let d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha = p.s_over_i_yy
@@ -855,40 +1086,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_pitch_rate_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
-    // Derivatives with respect to chi_2
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
-        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to altitude
-    let d2_f_pitch_rate_eta_d_altitude_d_altitude = p.inv_i_yy
-        * (s.d_reference_force_d_altitude
-            * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
-                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
-                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
-            + d2_reference_force_d_altitude_d_altitude
-                * d2_f_pitch_rate_eta_d_velocity_d_velocity_term_4)
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_altitude_d_altitude
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_altitude_d_altitude
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_f_pitch_rate_d_altitude_d_altitude = s
-        .slope_of_f_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude
-        + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_g_pitch_rate_d_altitude_d_altitude = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft^2
-    let d2_pitch_rate_rate_printed_d_altitude_d_altitude = d2_reference_force_d_altitude_d_altitude
-        * p.inv_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_velocity_term_1
-        + d2_f_pitch_rate_d_altitude_d_altitude
-        + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
-
     // Derivatives with respect to alpha
     let d2_f_pitch_rate_eta_d_altitude_d_alpha =
         s.d_reference_force_d_altitude * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
@@ -903,14 +1100,6 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_pitch_rate_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    // Derivatives with respect to chi_2
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
-        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     // Derivatives with respect to alpha
     let d2_f_pitch_rate_eta_d_alpha_d_alpha =
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
@@ -919,79 +1108,185 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [
     let d2_f_pitch_rate_d_alpha_d_alpha = i.reference_force
         * p.two_c_bar_c_m_alpha_2_over_i_yy + d2_f_pitch_rate_eta_d_alpha_d_alpha; // 1/s^2/rad
 
-    [
-        d2_velocity_rate_printed_d_velocity_d_velocity,
-        d2_velocity_rate_printed_d_velocity_d_altitude,
-        d2_velocity_rate_printed_d_altitude_d_altitude,
-        d2_f_velocity_d_altitude_d_gamma,
-        d2_f_velocity_d_gamma_d_gamma,
-        d2_velocity_rate_printed_d_velocity_d_alpha,
-        d2_velocity_rate_printed_d_altitude_d_alpha,
-        d2_velocity_rate_printed_d_alpha_d_alpha,
-        d2_velocity_rate_printed_d_velocity_d_chi_1,
-        d2_velocity_rate_printed_d_altitude_d_chi_1,
-        d2_velocity_rate_printed_d_alpha_d_chi_1,
-        d2_velocity_rate_printed_d_velocity_d_chi_2,
-        d2_velocity_rate_printed_d_altitude_d_chi_2,
-        d2_velocity_rate_printed_d_alpha_d_chi_2,
-        d2_velocity_rate_printed_d_velocity_d_chi_3,
-        d2_velocity_rate_printed_d_altitude_d_chi_3,
-        d2_velocity_rate_printed_d_alpha_d_chi_3,
-        i.cos_gamma,
-        d2_altitude_rate_d_gamma_d_gamma,
-        d2_f_gamma_d_velocity_d_velocity,
-        d2_gamma_rate_printed_d_velocity_d_altitude,
-        d2_gamma_rate_printed_d_altitude_d_altitude,
-        d2_f_gamma_d_velocity_d_gamma,
-        d2_f_gamma_d_altitude_d_gamma,
-        d2_f_gamma_d_gamma_d_gamma,
-        d2_gamma_rate_printed_d_velocity_d_alpha,
-        d2_gamma_rate_printed_d_altitude_d_alpha,
-        d2_gamma_rate_printed_d_alpha_d_alpha,
-        d2_gamma_rate_printed_d_velocity_d_chi_1,
-        d2_gamma_rate_printed_d_altitude_d_chi_1,
-        d2_gamma_rate_printed_d_alpha_d_chi_1,
-        d2_gamma_rate_printed_d_velocity_d_chi_2,
-        d2_gamma_rate_printed_d_altitude_d_chi_2,
-        d2_gamma_rate_printed_d_alpha_d_chi_2,
-        d2_gamma_rate_printed_d_velocity_d_chi_3,
-        d2_gamma_rate_printed_d_altitude_d_chi_3,
-        d2_gamma_rate_printed_d_alpha_d_chi_3,
-        d2_f_alpha_d_velocity_d_velocity,
-        d2_alpha_rate_printed_d_velocity_d_altitude,
-        d2_alpha_rate_printed_d_altitude_d_altitude,
-        d2_f_alpha_d_velocity_d_gamma,
-        d2_f_alpha_d_altitude_d_gamma,
-        d2_f_alpha_d_gamma_d_gamma,
-        d2_alpha_rate_printed_d_velocity_d_alpha,
-        d2_alpha_rate_printed_d_altitude_d_alpha,
-        d2_alpha_rate_printed_d_alpha_d_alpha,
-        d2_alpha_rate_printed_d_velocity_d_chi_1,
-        d2_alpha_rate_printed_d_altitude_d_chi_1,
-        d2_alpha_rate_printed_d_alpha_d_chi_1,
-        d2_alpha_rate_printed_d_velocity_d_chi_2,
-        d2_alpha_rate_printed_d_altitude_d_chi_2,
-        d2_alpha_rate_printed_d_alpha_d_chi_2,
-        d2_alpha_rate_printed_d_velocity_d_chi_3,
-        d2_alpha_rate_printed_d_altitude_d_chi_3,
-        d2_alpha_rate_printed_d_alpha_d_chi_3,
-        d2_pitch_rate_rate_printed_d_velocity_d_velocity,
-        d2_pitch_rate_rate_printed_d_velocity_d_altitude,
-        d2_pitch_rate_rate_printed_d_altitude_d_altitude,
-        d2_f_pitch_rate_d_velocity_d_alpha,
-        d2_f_pitch_rate_d_altitude_d_alpha,
-        d2_f_pitch_rate_d_alpha_d_alpha,
-        d2_pitch_rate_rate_printed_d_velocity_d_chi_1,
-        d2_pitch_rate_rate_printed_d_altitude_d_chi_1,
-        d2_pitch_rate_rate_printed_d_velocity_d_chi_2,
-        d2_pitch_rate_rate_printed_d_altitude_d_chi_2,
-        d2_pitch_rate_rate_printed_d_velocity_d_chi_3,
-        d2_pitch_rate_rate_printed_d_altitude_d_chi_3,
-    ]
+    hessian.pitch_rate_by_alpha_velocity = d2_f_pitch_rate_d_velocity_d_alpha;
+    hessian.pitch_rate_by_alpha_altitude = d2_f_pitch_rate_d_altitude_d_alpha;
+    hessian.pitch_rate_by_alpha_alpha = d2_f_pitch_rate_d_alpha_d_alpha;
+    hessian.velocity_by_chi_1_velocity = d2_velocity_rate_printed_d_velocity_d_chi_1;
+    hessian.velocity_by_chi_1_altitude = d2_velocity_rate_printed_d_altitude_d_chi_1;
+    hessian.velocity_by_chi_1_alpha = d2_velocity_rate_printed_d_alpha_d_chi_1;
+    hessian.gamma_by_chi_1_velocity = d2_gamma_rate_printed_d_velocity_d_chi_1;
+    hessian.gamma_by_chi_1_altitude = d2_gamma_rate_printed_d_altitude_d_chi_1;
+    hessian.gamma_by_chi_1_alpha = d2_gamma_rate_printed_d_alpha_d_chi_1;
+    hessian.alpha_by_chi_1_velocity = d2_alpha_rate_printed_d_velocity_d_chi_1;
+    hessian.alpha_by_chi_1_altitude = d2_alpha_rate_printed_d_altitude_d_chi_1;
+    hessian.alpha_by_chi_1_alpha = d2_alpha_rate_printed_d_alpha_d_chi_1;
+    hessian.pitch_rate_by_chi_1_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_1;
+    hessian.pitch_rate_by_chi_1_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_1;
+}
+
+/// Entries of [`hessian_values`]: derivatives by chi_2_chi_3.
+#[inline(always)]
+fn hessian_by_chi_2_chi_3<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to chi_2
+    let d2_velocity_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_velocity_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_velocity_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_velocity_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = i.reference_force
+        * p.c_t_eta_2_over_m; // ft^0.5/s^2/slug^0.5
+    let d2_velocity_rate_printed_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2; // ft^0.5/s^2/rad/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3 = i.reference_force
+        * p.c_t_eta_3_over_m; // ft^0.5/s^2/slug^0.5
+    let d2_velocity_rate_printed_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3; // ft^0.5/s^2/rad/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_gamma_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_gamma_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_gamma_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_gamma_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_gamma_rate_printed_d_alpha_d_chi_2 = i.cos_alpha * i.turn_factor
+        * p.c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_gamma_rate_printed_d_alpha_d_chi_3 = i.cos_alpha * i.turn_factor
+        * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2 = -i
+        .sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3 = -i
+        .sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_alpha_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_alpha_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -i.turn_factor
+        * p.c_t_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_2 = i.cos_alpha
+        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -i.turn_factor
+        * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_3 = i.cos_alpha
+        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_pitch_rate_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_pitch_rate_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    let d2_pitch_rate_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    let d2_pitch_rate_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+
+    hessian.velocity_by_chi_2_velocity = d2_velocity_rate_printed_d_velocity_d_chi_2;
+    hessian.velocity_by_chi_2_altitude = d2_velocity_rate_printed_d_altitude_d_chi_2;
+    hessian.velocity_by_chi_2_alpha = d2_velocity_rate_printed_d_alpha_d_chi_2;
+    hessian.gamma_by_chi_2_velocity = d2_gamma_rate_printed_d_velocity_d_chi_2;
+    hessian.gamma_by_chi_2_altitude = d2_gamma_rate_printed_d_altitude_d_chi_2;
+    hessian.gamma_by_chi_2_alpha = d2_gamma_rate_printed_d_alpha_d_chi_2;
+    hessian.alpha_by_chi_2_velocity = d2_alpha_rate_printed_d_velocity_d_chi_2;
+    hessian.alpha_by_chi_2_altitude = d2_alpha_rate_printed_d_altitude_d_chi_2;
+    hessian.alpha_by_chi_2_alpha = d2_alpha_rate_printed_d_alpha_d_chi_2;
+    hessian.pitch_rate_by_chi_2_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_2;
+    hessian.pitch_rate_by_chi_2_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_2;
+    hessian.velocity_by_chi_3_velocity = d2_velocity_rate_printed_d_velocity_d_chi_3;
+    hessian.velocity_by_chi_3_altitude = d2_velocity_rate_printed_d_altitude_d_chi_3;
+    hessian.velocity_by_chi_3_alpha = d2_velocity_rate_printed_d_alpha_d_chi_3;
+    hessian.gamma_by_chi_3_velocity = d2_gamma_rate_printed_d_velocity_d_chi_3;
+    hessian.gamma_by_chi_3_altitude = d2_gamma_rate_printed_d_altitude_d_chi_3;
+    hessian.gamma_by_chi_3_alpha = d2_gamma_rate_printed_d_alpha_d_chi_3;
+    hessian.alpha_by_chi_3_velocity = d2_alpha_rate_printed_d_velocity_d_chi_3;
+    hessian.alpha_by_chi_3_altitude = d2_alpha_rate_printed_d_altitude_d_chi_3;
+    hessian.alpha_by_chi_3_alpha = d2_alpha_rate_printed_d_alpha_d_chi_3;
+    hessian.pitch_rate_by_chi_3_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_3;
+    hessian.pitch_rate_by_chi_3_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_3;
+}
+
+/// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 959 operations: 297 additions, 657 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn hessian_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> HessianEntries<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let n = noise_terms(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &n);
+    let mut hessian = HessianEntries::splat(R::ZERO);
+    hessian_by_velocity(&mut hessian, x, u, p, &i, &s);
+    hessian_by_altitude_of_velocity(&mut hessian, x, u, p, &i, &s);
+    hessian_by_altitude_of_gamma(&mut hessian, x, p, &i, &s);
+    hessian_by_altitude_of_alpha(&mut hessian, x, p, &i, &s);
+    hessian_by_altitude_of_pitch_rate_gamma(&mut hessian, x, u, p, &i, &s);
+    hessian_by_alpha_of_velocity(&mut hessian, u, p, &i, &s);
+    hessian_by_alpha_of_gamma(&mut hessian, x, p, &i, &s, &n);
+    hessian_by_alpha_of_alpha(&mut hessian, x, u, p, &i, &s, &m);
+    hessian_by_alpha_of_pitch_rate_chi_1(&mut hessian, x, p, &i, &s);
+    hessian_by_chi_2_chi_3(&mut hessian, p, &i, &s);
+    hessian
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
 #[inline(always)]
 pub fn hessian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Hessian<R> {
-    HESSIAN_PATTERN.symmetric(&hessian_values(x, u, p))
+    hessian_values(x, u, p).dense()
 }

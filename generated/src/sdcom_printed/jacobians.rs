@@ -7,186 +7,75 @@ use super::{
     drift_from, intermediates, slopes,
 };
 
-use ahv_core::{Pattern, Real, Vector};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`StateJacobian`] stand.
-pub const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, State::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, State.velocity),
-        ahv_core::at!(State.velocity, State.altitude),
-        ahv_core::at!(State.velocity, State.gamma),
-        ahv_core::at!(State.velocity, State.alpha),
-        ahv_core::at!(State.velocity, State.chi_1),
-        ahv_core::at!(State.velocity, State.chi_2),
-        ahv_core::at!(State.velocity, State.chi_3),
-        ahv_core::at!(State.altitude, State.velocity),
-        ahv_core::at!(State.altitude, State.gamma),
-        ahv_core::at!(State.gamma, State.velocity),
-        ahv_core::at!(State.gamma, State.altitude),
-        ahv_core::at!(State.gamma, State.gamma),
-        ahv_core::at!(State.gamma, State.alpha),
-        ahv_core::at!(State.gamma, State.chi_1),
-        ahv_core::at!(State.gamma, State.chi_2),
-        ahv_core::at!(State.gamma, State.chi_3),
-        ahv_core::at!(State.alpha, State.velocity),
-        ahv_core::at!(State.alpha, State.altitude),
-        ahv_core::at!(State.alpha, State.gamma),
-        ahv_core::at!(State.alpha, State.alpha),
-        ahv_core::at!(State.alpha, State.pitch_rate),
-        ahv_core::at!(State.alpha, State.chi_1),
-        ahv_core::at!(State.alpha, State.chi_2),
-        ahv_core::at!(State.alpha, State.chi_3),
-        ahv_core::at!(State.pitch_rate, State.velocity),
-        ahv_core::at!(State.pitch_rate, State.altitude),
-        ahv_core::at!(State.pitch_rate, State.alpha),
-        ahv_core::at!(State.pitch_rate, State.chi_1),
-        ahv_core::at!(State.pitch_rate, State.chi_2),
-        ahv_core::at!(State.pitch_rate, State.chi_3),
-        ahv_core::at!(State.chi_1, State.chi_1),
-        ahv_core::at!(State.chi_2, State.chi_2),
-        ahv_core::at!(State.chi_3, State.chi_3),
-    ],
-);
-
-/// The [`StateJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_state_jacobian<R: Real>(values: &[R; 33]) -> StateJacobian<R> {
-    let no_state = State::splat(R::ZERO);
-    State {
-        velocity: State {
-            velocity: values[0],
-            altitude: values[1],
-            gamma: values[2],
-            alpha: values[3],
-            chi_1: values[4],
-            chi_2: values[5],
-            chi_3: values[6],
-            ..no_state
-        },
-        altitude: State {
-            velocity: values[7],
-            gamma: values[8],
-            ..no_state
-        },
-        gamma: State {
-            velocity: values[9],
-            altitude: values[10],
-            gamma: values[11],
-            alpha: values[12],
-            chi_1: values[13],
-            chi_2: values[14],
-            chi_3: values[15],
-            ..no_state
-        },
-        alpha: State {
-            velocity: values[16],
-            altitude: values[17],
-            gamma: values[18],
-            alpha: values[19],
-            pitch_rate: values[20],
-            chi_1: values[21],
-            chi_2: values[22],
-            chi_3: values[23],
-        },
-        pitch_rate: State {
-            velocity: values[24],
-            altitude: values[25],
-            alpha: values[26],
-            chi_1: values[27],
-            chi_2: values[28],
-            chi_3: values[29],
-            ..no_state
-        },
-        chi_1: State {
-            chi_1: values[30],
-            ..no_state
-        },
-        chi_2: State {
-            chi_2: values[31],
-            ..no_state
-        },
-        chi_3: State {
-            chi_3: values[32],
-            ..no_state
-        },
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`StateJacobian`].
+    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity_by_velocity: velocity.velocity,
+        velocity_by_altitude: velocity.altitude,
+        velocity_by_gamma: velocity.gamma,
+        velocity_by_alpha: velocity.alpha,
+        velocity_by_chi_1: velocity.chi_1,
+        velocity_by_chi_2: velocity.chi_2,
+        velocity_by_chi_3: velocity.chi_3,
+        altitude_by_velocity: altitude.velocity,
+        altitude_by_gamma: altitude.gamma,
+        gamma_by_velocity: gamma.velocity,
+        gamma_by_altitude: gamma.altitude,
+        gamma_by_gamma: gamma.gamma,
+        gamma_by_alpha: gamma.alpha,
+        gamma_by_chi_1: gamma.chi_1,
+        gamma_by_chi_2: gamma.chi_2,
+        gamma_by_chi_3: gamma.chi_3,
+        alpha_by_velocity: alpha.velocity,
+        alpha_by_altitude: alpha.altitude,
+        alpha_by_gamma: alpha.gamma,
+        alpha_by_alpha: alpha.alpha,
+        alpha_by_pitch_rate: alpha.pitch_rate,
+        alpha_by_chi_1: alpha.chi_1,
+        alpha_by_chi_2: alpha.chi_2,
+        alpha_by_chi_3: alpha.chi_3,
+        pitch_rate_by_velocity: pitch_rate.velocity,
+        pitch_rate_by_altitude: pitch_rate.altitude,
+        pitch_rate_by_alpha: pitch_rate.alpha,
+        pitch_rate_by_chi_1: pitch_rate.chi_1,
+        pitch_rate_by_chi_2: pitch_rate.chi_2,
+        pitch_rate_by_chi_3: pitch_rate.chi_3,
+        chi_1_by_chi_1: chi_1.chi_1,
+        chi_2_by_chi_2: chi_2.chi_2,
+        chi_3_by_chi_3: chi_3.chi_3,
     }
 }
 
-/// Where the entries of the compressed [`InputJacobian`] stand.
-pub const INPUT_JACOBIAN_PATTERN: Pattern<2> = Pattern::new(
-    [State::<u8>::LEN, Input::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Input.phi),
-        ahv_core::at!(State.velocity, Input.delta_e),
-        ahv_core::at!(State.velocity, Input.delta_c),
-        ahv_core::at!(State.gamma, Input.phi),
-        ahv_core::at!(State.gamma, Input.delta_e),
-        ahv_core::at!(State.gamma, Input.delta_c),
-        ahv_core::at!(State.alpha, Input.phi),
-        ahv_core::at!(State.alpha, Input.delta_e),
-        ahv_core::at!(State.alpha, Input.delta_c),
-        ahv_core::at!(State.pitch_rate, Input.phi),
-        ahv_core::at!(State.pitch_rate, Input.delta_e),
-        ahv_core::at!(State.pitch_rate, Input.delta_c),
-    ],
-);
-
-/// The [`InputJacobian`] whose structurally non-zero entries are `values`, in the order of the pattern.
-#[inline(always)]
-pub fn dense_input_jacobian<R: Real>(values: &[R; 12]) -> InputJacobian<R> {
-    let no_input = Input::splat(R::ZERO);
-    let no_state_input = State::splat(no_input);
-    State {
-        velocity: Input {
-            phi: values[0],
-            delta_e: values[1],
-            delta_c: values[2],
-        },
-        gamma: Input {
-            phi: values[3],
-            delta_e: values[4],
-            delta_c: values[5],
-        },
-        alpha: Input {
-            phi: values[6],
-            delta_e: values[7],
-            delta_c: values[8],
-        },
-        pitch_rate: Input {
-            phi: values[9],
-            delta_e: values[10],
-            delta_c: values[11],
-        },
-        ..no_state_input
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`InputJacobian`].
+    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity_by_phi: velocity.phi,
+        velocity_by_delta_e: velocity.delta_e,
+        velocity_by_delta_c: velocity.delta_c,
+        gamma_by_phi: gamma.phi,
+        gamma_by_delta_e: gamma.delta_e,
+        gamma_by_delta_c: gamma.delta_c,
+        alpha_by_phi: alpha.phi,
+        alpha_by_delta_e: alpha.delta_e,
+        alpha_by_delta_c: alpha.delta_c,
+        pitch_rate_by_phi: pitch_rate.phi,
+        pitch_rate_by_delta_e: pitch_rate.delta_e,
+        pitch_rate_by_delta_c: pitch_rate.delta_c,
     }
 }
 
-/// Derivatives of the drift with respect to the state and to the input, eq. (27).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 495 operations: 157 additions, 333 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// Entries of [`jacobians_values`]: derivatives by velocity.
 #[inline(always)]
-pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ([R; 33], [R; 12]) {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    jacobians_values_from(x, u, p, &i, &s)
-}
-
-/// [`jacobians_values`] from what is computed once.
-#[inline(always)]
-pub fn jacobians_values_from<R: Real>(
+fn jacobians_by_velocity<R: Real>(
+    state: &mut StateJacobianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) -> ([R; 33], [R; 12]) {
+) {
     // Derivatives with respect to velocity
     let d_f_velocity_eta_d_velocity = i.reference_force * p.inv_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
@@ -201,12 +90,10 @@ pub fn jacobians_values_from<R: Real>(
         * s.d_dynamic_pressure_d_velocity + d_f_velocity_eta_d_velocity; // 1/s
     let d_g_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure
         * s.d_dynamic_pressure_d_velocity; // 1/s
-    let d_velocity_rate_printed_d_velocity_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
-    let d_velocity_rate_printed_d_velocity =
-        s.d_reference_force_d_velocity * p.inv_m * d_velocity_rate_printed_d_velocity_term_1
-        + d_f_velocity_d_velocity
+    let d_velocity_rate_printed_d_velocity = s.d_reference_force_d_velocity * p.inv_m
+        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + d_f_velocity_d_velocity
         + u.phi * d_g_velocity_d_velocity; // 1/s
     let d_f_gamma_eta_d_velocity = i.f_gamma_eta_over_turn_factor * s.d_turn_factor_d_velocity
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_velocity
@@ -229,10 +116,6 @@ pub fn jacobians_values_from<R: Real>(
         + d_f_alpha_eta_d_velocity; // rad/ft
     let d_alpha_rate_printed_d_velocity = s.slope_of_alpha_rate_printed_in_turn_factor
         * s.d_turn_factor_d_velocity + d_f_alpha_d_velocity; // rad/ft
-    let d_f_pitch_rate_eta_d_velocity_term_1 =
-        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
     let d_f_pitch_rate_eta_d_velocity = p.inv_i_yy
         * (i.reference_force
             * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
@@ -241,19 +124,41 @@ pub fn jacobians_values_from<R: Real>(
                     * s.d_generalized_force_2_d_velocity
                 + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * s.d_generalized_force_3_d_velocity)
-            + s.d_reference_force_d_velocity * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s/ft
+            + s.d_reference_force_d_velocity
+                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
+                    * i.generalized_force_1_inv_omega_1_2
+                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
+                        * i.generalized_force_2_inv_omega_2_2
+                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
+                        * i.generalized_force_3_inv_omega_3_2)); // rad/s/ft
     let d_f_pitch_rate_d_velocity = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_velocity + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
     let d_g_pitch_rate_d_velocity = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_velocity; // 1/s/ft
-    let d_pitch_rate_rate_printed_d_velocity_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
-    let d_pitch_rate_rate_printed_d_velocity =
-        s.d_reference_force_d_velocity * p.inv_i_yy * d_pitch_rate_rate_printed_d_velocity_term_1
-        + d_f_pitch_rate_d_velocity
+    let d_pitch_rate_rate_printed_d_velocity = s.d_reference_force_d_velocity
+        * p.inv_i_yy
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + d_f_pitch_rate_d_velocity
         + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
 
+    state.velocity_by_velocity = d_velocity_rate_printed_d_velocity;
+    state.altitude_by_velocity = i.sin_gamma;
+    state.gamma_by_velocity = d_gamma_rate_printed_d_velocity;
+    state.alpha_by_velocity = d_alpha_rate_printed_d_velocity;
+    state.pitch_rate_by_velocity = d_pitch_rate_rate_printed_d_velocity;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by altitude_gamma.
+#[inline(always)]
+fn jacobians_by_altitude_gamma<R: Real>(
+    state: &mut StateJacobianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to altitude
     let d_f_velocity_eta_d_altitude = i.reference_force * p.inv_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
@@ -269,9 +174,10 @@ pub fn jacobians_values_from<R: Real>(
         + d_f_velocity_eta_d_altitude; // 1/s^2
     let d_g_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * s.d_dynamic_pressure_d_altitude; // 1/s^2
-    let d_velocity_rate_printed_d_altitude =
-        s.d_reference_force_d_altitude * p.inv_m * d_velocity_rate_printed_d_velocity_term_1
-        + d_f_velocity_d_altitude
+    let d_velocity_rate_printed_d_altitude = s.d_reference_force_d_altitude * p.inv_m
+        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + d_f_velocity_d_altitude
         + u.phi * d_g_velocity_d_altitude; // 1/s^2
     let d_f_gamma_eta_d_altitude = i.f_gamma_eta_over_turn_factor * s.d_turn_factor_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_altitude
@@ -302,14 +208,22 @@ pub fn jacobians_values_from<R: Real>(
                     * s.d_generalized_force_2_d_altitude
                 + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * s.d_generalized_force_3_d_altitude)
-            + s.d_reference_force_d_altitude * d_f_pitch_rate_eta_d_velocity_term_1); // rad/s^2/ft
+            + s.d_reference_force_d_altitude
+                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
+                    * i.generalized_force_1_inv_omega_1_2
+                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
+                        * i.generalized_force_2_inv_omega_2_2
+                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
+                        * i.generalized_force_3_inv_omega_3_2)); // rad/s^2/ft
     let d_f_pitch_rate_d_altitude = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
     let d_g_pitch_rate_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_altitude; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_altitude =
-        s.d_reference_force_d_altitude * p.inv_i_yy * d_pitch_rate_rate_printed_d_velocity_term_1
-        + d_f_pitch_rate_d_altitude
+    let d_pitch_rate_rate_printed_d_altitude = s.d_reference_force_d_altitude
+        * p.inv_i_yy
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + d_f_pitch_rate_d_altitude
         + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
 
     // Derivatives with respect to gamma
@@ -317,6 +231,27 @@ pub fn jacobians_values_from<R: Real>(
     let d_f_gamma_d_gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
     let d_f_alpha_d_gamma = i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
 
+    state.velocity_by_altitude = d_velocity_rate_printed_d_altitude;
+    state.gamma_by_altitude = d_gamma_rate_printed_d_altitude;
+    state.alpha_by_altitude = d_alpha_rate_printed_d_altitude;
+    state.pitch_rate_by_altitude = d_pitch_rate_rate_printed_d_altitude;
+    state.velocity_by_gamma = d_f_velocity_d_gamma;
+    state.altitude_by_gamma = s.d_altitude_rate_d_gamma;
+    state.gamma_by_gamma = d_f_gamma_d_gamma;
+    state.alpha_by_gamma = d_f_alpha_d_gamma;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by alpha to delta_e.
+#[inline(always)]
+fn jacobians_by_alpha_to_delta_e<R: Real>(
+    state: &mut StateJacobianEntries<R>,
+    input: &mut InputJacobianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to alpha
     let d_f_velocity_eta_d_alpha = i.reference_force * p.inv_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
@@ -385,6 +320,44 @@ pub fn jacobians_values_from<R: Real>(
     let d_pitch_rate_rate_printed_d_delta_e = i.g_pitch_rate
         + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
 
+    state.velocity_by_alpha = d_velocity_rate_printed_d_alpha;
+    state.gamma_by_alpha = d_gamma_rate_printed_d_alpha;
+    state.alpha_by_alpha = d_alpha_rate_printed_d_alpha;
+    state.pitch_rate_by_alpha = d_f_pitch_rate_d_alpha;
+    state.velocity_by_chi_1 = s.d_velocity_rate_printed_d_chi_1;
+    state.gamma_by_chi_1 = s.d_gamma_rate_printed_d_chi_1;
+    state.alpha_by_chi_1 = s.d_alpha_rate_printed_d_chi_1;
+    state.pitch_rate_by_chi_1 = s.d_pitch_rate_rate_printed_d_chi_1;
+    state.chi_1_by_chi_1 = p.minus_chi_decay_1;
+    state.velocity_by_chi_2 = s.d_velocity_rate_printed_d_chi_2;
+    state.gamma_by_chi_2 = s.d_gamma_rate_printed_d_chi_2;
+    state.alpha_by_chi_2 = s.d_alpha_rate_printed_d_chi_2;
+    state.pitch_rate_by_chi_2 = s.d_pitch_rate_rate_printed_d_chi_2;
+    state.chi_2_by_chi_2 = p.minus_chi_decay_2;
+    state.velocity_by_chi_3 = s.d_velocity_rate_printed_d_chi_3;
+    state.gamma_by_chi_3 = s.d_gamma_rate_printed_d_chi_3;
+    state.alpha_by_chi_3 = s.d_alpha_rate_printed_d_chi_3;
+    state.pitch_rate_by_chi_3 = s.d_pitch_rate_rate_printed_d_chi_3;
+    state.chi_3_by_chi_3 = p.minus_chi_decay_3;
+    state.alpha_by_pitch_rate = R::ONE;
+    input.velocity_by_phi = i.g_velocity;
+    input.gamma_by_phi = s.d_gamma_rate_printed_d_phi;
+    input.alpha_by_phi = d_f_alpha_d_phi;
+    input.pitch_rate_by_phi = d_f_pitch_rate_d_phi;
+    input.velocity_by_delta_e = s.d_f_velocity_d_delta_e;
+    input.gamma_by_delta_e = s.d_f_gamma_eta_d_delta_e;
+    input.alpha_by_delta_e = d_f_alpha_eta_d_delta_e;
+    input.pitch_rate_by_delta_e = d_pitch_rate_rate_printed_d_delta_e;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by delta_c.
+#[inline(always)]
+fn jacobians_by_delta_c<R: Real>(
+    input: &mut InputJacobianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = i.reference_force
         * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
@@ -400,57 +373,44 @@ pub fn jacobians_values_from<R: Real>(
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
 
-    // Result
-    let state = [
-        d_velocity_rate_printed_d_velocity,
-        d_velocity_rate_printed_d_altitude,
-        d_f_velocity_d_gamma,
-        d_velocity_rate_printed_d_alpha,
-        s.d_velocity_rate_printed_d_chi_1,
-        s.d_velocity_rate_printed_d_chi_2,
-        s.d_velocity_rate_printed_d_chi_3,
-        i.sin_gamma,
-        s.d_altitude_rate_d_gamma,
-        d_gamma_rate_printed_d_velocity,
-        d_gamma_rate_printed_d_altitude,
-        d_f_gamma_d_gamma,
-        d_gamma_rate_printed_d_alpha,
-        s.d_gamma_rate_printed_d_chi_1,
-        s.d_gamma_rate_printed_d_chi_2,
-        s.d_gamma_rate_printed_d_chi_3,
-        d_alpha_rate_printed_d_velocity,
-        d_alpha_rate_printed_d_altitude,
-        d_f_alpha_d_gamma,
-        d_alpha_rate_printed_d_alpha,
-        R::ONE,
-        s.d_alpha_rate_printed_d_chi_1,
-        s.d_alpha_rate_printed_d_chi_2,
-        s.d_alpha_rate_printed_d_chi_3,
-        d_pitch_rate_rate_printed_d_velocity,
-        d_pitch_rate_rate_printed_d_altitude,
-        d_f_pitch_rate_d_alpha,
-        s.d_pitch_rate_rate_printed_d_chi_1,
-        s.d_pitch_rate_rate_printed_d_chi_2,
-        s.d_pitch_rate_rate_printed_d_chi_3,
-        p.minus_chi_decay_1,
-        p.minus_chi_decay_2,
-        p.minus_chi_decay_3,
-    ];
-    let input = [
-        i.g_velocity,
-        s.d_f_velocity_d_delta_e,
-        s.d_f_velocity_eta_d_delta_c,
-        s.d_gamma_rate_printed_d_phi,
-        s.d_f_gamma_eta_d_delta_e,
-        s.d_f_gamma_eta_d_delta_c,
-        d_f_alpha_d_phi,
-        d_f_alpha_eta_d_delta_e,
-        d_f_alpha_eta_d_delta_c,
-        d_f_pitch_rate_d_phi,
-        d_pitch_rate_rate_printed_d_delta_e,
-        d_f_pitch_rate_eta_d_delta_c,
-    ];
+    input.velocity_by_delta_c = s.d_f_velocity_eta_d_delta_c;
+    input.gamma_by_delta_c = s.d_f_gamma_eta_d_delta_c;
+    input.alpha_by_delta_c = d_f_alpha_eta_d_delta_c;
+    input.pitch_rate_by_delta_c = d_f_pitch_rate_eta_d_delta_c;
+}
+
+/// [`jacobians_values`] from what is computed once.
+#[inline(always)]
+pub fn jacobians_values_from<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+    jacobians_by_velocity(&mut state, x, u, p, i, s);
+    jacobians_by_altitude_gamma(&mut state, x, u, p, i, s);
+    jacobians_by_alpha_to_delta_e(&mut state, &mut input, x, u, p, i, s);
+    jacobians_by_delta_c(&mut input, p, i, s);
     (state, input)
+}
+
+/// Derivatives of the drift with respect to the state and to the input, eq. (27).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 495 operations: 157 additions, 333 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn jacobians_values<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    jacobians_values_from(x, u, p, &i, &s)
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
@@ -461,7 +421,7 @@ pub fn jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
-    (dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (state.dense(), input.dense())
 }
 
 /// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
@@ -475,7 +435,7 @@ pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> (State<R>, [R; 33], [R; 12]) {
+) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let drift = drift_from(x, u, p, &i);
@@ -492,5 +452,5 @@ pub fn drift_and_jacobians<R: Real>(
     p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
-    (drift, dense_state_jacobian(&state), dense_input_jacobian(&input))
+    (drift, state.dense(), input.dense())
 }

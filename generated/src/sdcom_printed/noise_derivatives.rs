@@ -3,29 +3,29 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Noise, NoiseDerivatives, Prepared, State, intermediates, noise_terms, slopes,
+    Input, Noise, NoiseDerivatives, Prepared, State, intermediates, noise_slopes,
+    noise_terms, slopes,
 };
 
-use ahv_core::{Pattern, Real};
+use ahv_core::Real;
 
-/// Where the entries of the compressed [`NoiseDerivatives`] stand.
-pub const NOISE_DERIVATIVES_PATTERN: Pattern<3> = Pattern::new(
-    [State::<u8>::LEN, Noise::<u8>::LEN, Noise::<u8>::LEN],
-    &[
-        ahv_core::at!(State.velocity, Noise.w_gamma, Noise.w_alpha),
-        ahv_core::at!(State.velocity, Noise.w_alpha, Noise.w_alpha),
-        ahv_core::at!(State.velocity, Noise.w_q, Noise.w_alpha),
-        ahv_core::at!(State.altitude, Noise.w_alpha, Noise.w_gamma),
-        ahv_core::at!(State.gamma, Noise.w_gamma, Noise.w_alpha),
-        ahv_core::at!(State.gamma, Noise.w_alpha, Noise.w_alpha),
-        ahv_core::at!(State.gamma, Noise.w_q, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_gamma, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_alpha, Noise.w_alpha),
-        ahv_core::at!(State.alpha, Noise.w_q, Noise.w_alpha),
-        ahv_core::at!(State.pitch_rate, Noise.w_gamma, Noise.w_alpha),
-        ahv_core::at!(State.pitch_rate, Noise.w_alpha, Noise.w_alpha),
-    ],
-);
+ahv_core::entries! {
+    /// The structurally non-zero entries of a [`NoiseDerivatives`].
+    pub struct NoiseDerivativesEntries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
+        velocity_by_w_gamma_w_alpha: velocity.w_gamma.w_alpha,
+        velocity_by_w_alpha_w_alpha: velocity.w_alpha.w_alpha,
+        velocity_by_w_q_w_alpha: velocity.w_q.w_alpha,
+        altitude_by_w_alpha_w_gamma: altitude.w_alpha.w_gamma,
+        gamma_by_w_gamma_w_alpha: gamma.w_gamma.w_alpha,
+        gamma_by_w_alpha_w_alpha: gamma.w_alpha.w_alpha,
+        gamma_by_w_q_w_alpha: gamma.w_q.w_alpha,
+        alpha_by_w_gamma_w_alpha: alpha.w_gamma.w_alpha,
+        alpha_by_w_alpha_w_alpha: alpha.w_alpha.w_alpha,
+        alpha_by_w_q_w_alpha: alpha.w_q.w_alpha,
+        pitch_rate_by_w_gamma_w_alpha: pitch_rate.w_gamma.w_alpha,
+        pitch_rate_by_w_alpha_w_alpha: pitch_rate.w_alpha.w_alpha,
+    }
+}
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 ///
@@ -37,71 +37,48 @@ pub fn noise_derivatives_values<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) -> [R; 12] {
+) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let n = noise_terms(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &n);
 
     // Derivatives with respect to altitude
-    let d_alpha_slope_velocity_d_altitude_term_1 = n
-        .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha;
-    let d_alpha_slope_velocity_d_altitude = d_alpha_slope_velocity_d_altitude_term_1
+    let d_alpha_slope_velocity_d_altitude = (n
+        .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha)
         * s.d_reference_force_d_altitude * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d_alpha_slope_velocity_d_velocity = d_alpha_slope_velocity_d_altitude_term_1
-        * s.d_reference_force_d_velocity * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    let slope_of_alpha_slope_velocity_in_cos_alpha = i.reference_force * p.inv_m
-        * s.c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
-    let d_alpha_slope_velocity_d_alpha = slope_of_alpha_slope_velocity_in_cos_alpha
-        * s.d_cos_alpha_d_alpha; // ft/s^2/rad^2
-
-    // Derivatives with respect to altitude
     let slope_of_alpha_slope_alpha_in_turn_factor = -i.g_gamma_over_turn_factor;
     let d_alpha_slope_alpha_d_altitude = slope_of_alpha_slope_alpha_in_turn_factor
         * s.d_turn_factor_d_altitude; // 1/s/ft
+    let d_alpha_slope_pitch_rate_d_altitude = (p.c_bar_c_m_alpha
+        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi) * s.d_reference_force_d_altitude
+        * p.inv_i_yy; // 1/s^2/ft
 
-    // Derivatives with respect to velocity
-    let d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
-        * s.d_turn_factor_d_velocity; // 1/ft
-
-    // Derivatives with respect to alpha
-    let slope_of_alpha_slope_alpha_in_sin_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
-    let d_alpha_slope_alpha_d_alpha = i.cos_alpha
-        * slope_of_alpha_slope_alpha_in_sin_alpha; // 1/s/rad
-
-    // Derivatives with respect to altitude
-    let d_alpha_slope_pitch_rate_d_altitude_term_1 = p.c_bar_c_m_alpha
-        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi;
-    let d_alpha_slope_pitch_rate_d_altitude = d_alpha_slope_pitch_rate_d_altitude_term_1
-        * s.d_reference_force_d_altitude * p.inv_i_yy; // 1/s^2/ft
-
-    // Derivatives with respect to velocity
-    let d_alpha_slope_pitch_rate_d_velocity = d_alpha_slope_pitch_rate_d_altitude_term_1
-        * s.d_reference_force_d_velocity * p.inv_i_yy; // 1/s/ft
-
-    [
-        p.w_alpha_w_gamma * d_alpha_slope_velocity_d_altitude * x.velocity,
-        p.w_alpha_2
-            * (d_alpha_slope_velocity_d_velocity * n.alpha_slope_velocity
-                + d_alpha_slope_velocity_d_alpha * n.alpha_slope_alpha),
-        p.w_alpha_w_q * d_alpha_slope_velocity_d_alpha,
-        p.w_alpha_w_gamma * n.alpha_slope_velocity,
-        p.w_alpha_w_gamma * s.d_g_gamma_d_altitude * x.velocity,
-        p.w_alpha_2
+    NoiseDerivativesEntries {
+        velocity_by_w_gamma_w_alpha: p.w_alpha_w_gamma
+            * d_alpha_slope_velocity_d_altitude * x.velocity,
+        velocity_by_w_alpha_w_alpha: p.w_alpha_2
+            * (m.d_alpha_slope_velocity_d_velocity * n.alpha_slope_velocity
+                + m.d_alpha_slope_velocity_d_alpha * n.alpha_slope_alpha),
+        velocity_by_w_q_w_alpha: p.w_alpha_w_q * m.d_alpha_slope_velocity_d_alpha,
+        altitude_by_w_alpha_w_gamma: p.w_alpha_w_gamma * n.alpha_slope_velocity,
+        gamma_by_w_gamma_w_alpha: p.w_alpha_w_gamma * s.d_g_gamma_d_altitude
+            * x.velocity,
+        gamma_by_w_alpha_w_alpha: p.w_alpha_2
             * (s.d_g_gamma_d_velocity * n.alpha_slope_velocity
                 + s.d_g_gamma_d_alpha * n.alpha_slope_alpha),
-        p.w_alpha_w_q * s.d_g_gamma_d_alpha,
-        p.w_alpha_w_gamma * d_alpha_slope_alpha_d_altitude * x.velocity,
-        p.w_alpha_2
-            * (d_alpha_slope_alpha_d_velocity * n.alpha_slope_velocity
-                + d_alpha_slope_alpha_d_alpha * n.alpha_slope_alpha),
-        p.w_alpha_w_q * d_alpha_slope_alpha_d_alpha,
-        p.w_alpha_w_gamma * d_alpha_slope_pitch_rate_d_altitude * x.velocity,
-        p.w_alpha_2 * d_alpha_slope_pitch_rate_d_velocity * n.alpha_slope_velocity,
-    ]
+        gamma_by_w_q_w_alpha: p.w_alpha_w_q * s.d_g_gamma_d_alpha,
+        alpha_by_w_gamma_w_alpha: p.w_alpha_w_gamma * d_alpha_slope_alpha_d_altitude
+            * x.velocity,
+        alpha_by_w_alpha_w_alpha: p.w_alpha_2
+            * (m.d_alpha_slope_alpha_d_velocity * n.alpha_slope_velocity
+                + m.d_alpha_slope_alpha_d_alpha * n.alpha_slope_alpha),
+        alpha_by_w_q_w_alpha: p.w_alpha_w_q * m.d_alpha_slope_alpha_d_alpha,
+        pitch_rate_by_w_gamma_w_alpha: p.w_alpha_w_gamma
+            * d_alpha_slope_pitch_rate_d_altitude * x.velocity,
+        pitch_rate_by_w_alpha_w_alpha: p.w_alpha_2
+            * m.d_alpha_slope_pitch_rate_d_velocity * n.alpha_slope_velocity,
+    }
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
@@ -111,7 +88,7 @@ pub fn noise_derivatives<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> NoiseDerivatives<R> {
-    NOISE_DERIVATIVES_PATTERN.dense(&noise_derivatives_values(x, u, p))
+    noise_derivatives_values(x, u, p).dense()
 }
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
@@ -122,47 +99,19 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let n = noise_terms(x, u, p, &i, &s);
-
-    // Derivatives with respect to velocity
-    let d_alpha_slope_velocity_d_velocity = (n
-        .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha)
-        * s.d_reference_force_d_velocity * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    let slope_of_alpha_slope_velocity_in_cos_alpha = i.reference_force * p.inv_m
-        * s.c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
-    let d_alpha_slope_velocity_d_alpha = slope_of_alpha_slope_velocity_in_cos_alpha
-        * s.d_cos_alpha_d_alpha; // ft/s^2/rad^2
-
-    // Derivatives with respect to altitude
-    let slope_of_alpha_slope_alpha_in_turn_factor = -i.g_gamma_over_turn_factor;
-
-    // Derivatives with respect to velocity
-    let d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
-        * s.d_turn_factor_d_velocity; // 1/ft
-
-    // Derivatives with respect to alpha
-    let slope_of_alpha_slope_alpha_in_sin_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
-    let d_alpha_slope_alpha_d_alpha = i.cos_alpha
-        * slope_of_alpha_slope_alpha_in_sin_alpha; // 1/s/rad
-
-    // Derivatives with respect to velocity
-    let d_alpha_slope_pitch_rate_d_velocity = (p.c_bar_c_m_alpha
-        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi) * s.d_reference_force_d_velocity
-        * p.inv_i_yy; // 1/s/ft
-
+    let m = noise_slopes(x, u, p, &i, &s, &n);
     State {
         velocity: p.half_w_alpha_2
-            * (d_alpha_slope_velocity_d_velocity * n.alpha_slope_velocity
-                + d_alpha_slope_velocity_d_alpha * n.alpha_slope_alpha),
+            * (m.d_alpha_slope_velocity_d_velocity * n.alpha_slope_velocity
+                + m.d_alpha_slope_velocity_d_alpha * n.alpha_slope_alpha),
         altitude: R::ZERO,
         gamma: p.half_w_alpha_2
             * (s.d_g_gamma_d_velocity * n.alpha_slope_velocity
                 + s.d_g_gamma_d_alpha * n.alpha_slope_alpha),
         alpha: p.half_w_alpha_2
-            * (d_alpha_slope_alpha_d_velocity * n.alpha_slope_velocity
-                + d_alpha_slope_alpha_d_alpha * n.alpha_slope_alpha),
-        pitch_rate: p.half_w_alpha_2 * d_alpha_slope_pitch_rate_d_velocity
+            * (m.d_alpha_slope_alpha_d_velocity * n.alpha_slope_velocity
+                + m.d_alpha_slope_alpha_d_alpha * n.alpha_slope_alpha),
+        pitch_rate: p.half_w_alpha_2 * m.d_alpha_slope_pitch_rate_d_velocity
             * n.alpha_slope_velocity,
         chi_1: R::ZERO,
         chi_2: R::ZERO,

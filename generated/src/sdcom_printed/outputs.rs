@@ -2,7 +2,7 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Input, Outputs, Prepared, State, intermediates};
+use super::{Input, Outputs, Prepared, State, intermediates, sensitivities};
 use ahv_core::Real;
 
 /// Quantities that people look at, which are not states.
@@ -11,14 +11,10 @@ use ahv_core::Real;
 #[inline(always)]
 pub fn outputs<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Outputs<R> {
     let i = intermediates(x, u, p);
+    let q = sensitivities(x, u, p, &i);
 
     // Angles, (1)
     let theta = x.gamma + x.alpha; // rad
-
-    // Reduced flexible coordinates, (25)
-    let eta_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1; // (ft*slug)^0.5
-    let eta_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2; // (ft*slug)^0.5
-    let eta_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3; // (ft*slug)^0.5
 
     Outputs {
         theta,
@@ -27,14 +23,14 @@ pub fn outputs<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Outputs<
         c_n_1: i.c_n_1,
         generalized_force_1: i.generalized_force_1,
         eta_static_1: i.generalized_force_1_inv_omega_1_2,
-        eta_1,
+        eta_1: q.generalized_force_1_inv_omega_1_2_plus_chi_1,
         c_n_2: i.c_n_2,
         generalized_force_2: i.generalized_force_2,
         eta_static_2: i.generalized_force_2_inv_omega_2_2,
-        eta_2,
+        eta_2: q.generalized_force_2_inv_omega_2_2_plus_chi_2,
         c_n_3: i.c_n_3,
         generalized_force_3: i.generalized_force_3,
         eta_static_3: i.generalized_force_3_inv_omega_3_2,
-        eta_3,
+        eta_3: q.generalized_force_3_inv_omega_3_2_plus_chi_3,
     }
 }

@@ -5,131 +5,286 @@
 use super::{Input, Prepared, State};
 use ahv_core::Real;
 
-/// Quantities of the drift that other functions need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Intermediates<R> {
-    /// Air density over its reference, dimensionless.
-    pub density_ratio: R,
-    /// Air density, slug/ft^3.
-    pub density: R,
-    /// `x.velocity * x.velocity`.
-    pub velocity_2: R,
-    /// Dynamic pressure, lb/ft^2.
-    pub dynamic_pressure: R,
-    /// Dynamic pressure times reference area, lb/ft.
-    pub reference_force: R,
-    /// Sin of the angle of attack, dimensionless.
-    pub sin_alpha: R,
-    /// Cos of the angle of attack, dimensionless.
-    pub cos_alpha: R,
-    /// Sin of the flight-path angle, dimensionless.
-    pub sin_gamma: R,
-    /// Cos of the flight-path angle, dimensionless.
-    pub cos_gamma: R,
-    /// Radius of the Earth over the distance to its centre, dimensionless.
-    pub radius_ratio: R,
-    /// `radius_ratio * radius_ratio`.
-    pub radius_ratio_2: R,
-    /// Acceleration of gravity at altitude, ft/s^2.
-    pub gravity: R,
-    /// `1 / x.velocity`.
-    pub inv_velocity: R,
-    /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
-    pub gravity_turn: R,
-    /// Turn rate per force coefficient across the flight path, 1/s.
-    pub turn_factor: R,
-    /// Canard deflection as commanded, rad.
-    pub canard_commanded: R,
-    /// Canard deflection, commanded and slaved, rad.
-    pub canard_deflection: R,
-    /// `x.alpha * x.alpha`.
-    pub alpha_2: R,
-    /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
-    pub c_n_1: R,
-    /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
-    pub c_n_2: R,
-    /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
-    pub c_n_3: R,
-    /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
-    pub generalized_force_1: R,
-    /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
-    pub generalized_force_2: R,
-    /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
-    pub generalized_force_3: R,
-    /// Rate of the altitude, ft/s.
-    pub altitude_rate: R,
-    /// `cos_alpha * c_t_eta_1 - c_d_eta_1`.
-    pub cos_alpha_c_t_eta_1_minus_c_d_eta_1: R,
-    /// Static flexible coordinate of mode 1, (ft*slug)^0.5.
-    pub generalized_force_1_inv_omega_1_2: R,
-    /// `cos_alpha * c_t_eta_2 - c_d_eta_2`.
-    pub cos_alpha_c_t_eta_2_minus_c_d_eta_2: R,
-    /// Static flexible coordinate of mode 2, (ft*slug)^0.5.
-    pub generalized_force_2_inv_omega_2_2: R,
-    /// `cos_alpha * c_t_eta_3 - c_d_eta_3`.
-    pub cos_alpha_c_t_eta_3_minus_c_d_eta_3: R,
-    /// Static flexible coordinate of mode 3, (ft*slug)^0.5.
-    pub generalized_force_3_inv_omega_3_2: R,
-    /// F of the velocity row, flexible part, ft/s^2.
-    pub f_velocity_eta: R,
-    /// `c_t_alpha * x.alpha`.
-    pub c_t_alpha_alpha: R,
-    /// F of the velocity row, ft/s^2.
-    pub f_velocity: R,
-    /// G of the velocity row, ft/s^2.
-    pub g_velocity: R,
-    /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
-    /// coefficient across the flight path with respect to chi_1, rad/ft^0.5/slug^0.5.
-    pub sin_alpha_c_t_eta_1_plus_c_l_eta_1: R,
-    /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
-    /// coefficient across the flight path with respect to chi_2, rad/ft^0.5/slug^0.5.
-    pub sin_alpha_c_t_eta_2_plus_c_l_eta_2: R,
-    /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
-    /// coefficient across the flight path with respect to chi_3, rad/ft^0.5/slug^0.5.
-    pub sin_alpha_c_t_eta_3_plus_c_l_eta_3: R,
-    /// Partial derivative of f of the gamma row, flexible part with respect to turn rate per force coefficient across
-    /// the flight path, rad.
-    pub f_gamma_eta_over_turn_factor: R,
-    /// F of the gamma row, flexible part, rad/s.
-    pub f_gamma_eta: R,
-    /// `c_t_phi * u.phi`.
-    pub c_t_phi_phi: R,
-    /// Partial derivative of f of the gamma row with respect to turn rate per force coefficient across the flight
-    /// path, rad.
-    pub c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha: R,
-    /// `gravity_turn * cos_gamma`.
-    pub gravity_turn_cos_gamma: R,
-    /// F of the gamma row, rad/s.
-    pub f_gamma: R,
-    /// Partial derivative of g of the gamma row with respect to turn rate per force coefficient across the flight
-    /// path, dimensionless.
-    pub g_gamma_over_turn_factor: R,
-    /// G of the gamma row, 1/s.
-    pub g_gamma: R,
-    /// F of the alpha row, flexible part, rad/s.
-    pub f_alpha_eta: R,
-    /// F of the alpha row, rad/s.
-    pub f_alpha: R,
-    /// F of the pitch_rate row, flexible part, rad/s^2.
-    pub f_pitch_rate_eta: R,
-    /// F of the pitch_rate row, rad/s^2.
-    pub f_pitch_rate: R,
-    /// G of the pitch_rate row, 1/s^2.
-    pub g_pitch_rate: R,
-    /// Rate of velocity in the printed form, ft/s^2.
-    pub velocity_rate_printed: R,
-    /// `sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1`.
-    pub sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1: R,
-    /// `sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2`.
-    pub sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2: R,
-    /// `sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3`.
-    pub sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3: R,
-    /// Rate of gamma in the printed form, rad/s.
-    pub gamma_rate_printed: R,
-    /// Rate of alpha in the printed form, rad/s.
-    pub alpha_rate_printed: R,
-    /// Rate of pitch_rate in the printed form, rad/s^2.
-    pub pitch_rate_rate_printed: R,
+ahv_core::record! {
+    /// Quantities of the drift that other functions need.
+    pub struct Intermediates<R> {
+        /// Air density over its reference, dimensionless.
+        pub density_ratio: R,
+        /// Air density, slug/ft^3.
+        pub density: R,
+        /// `x.velocity * x.velocity`.
+        pub velocity_2: R,
+        /// Dynamic pressure, lb/ft^2.
+        pub dynamic_pressure: R,
+        /// Dynamic pressure times reference area, lb/ft.
+        pub reference_force: R,
+        /// Sin of the angle of attack, dimensionless.
+        pub sin_alpha: R,
+        /// Cos of the angle of attack, dimensionless.
+        pub cos_alpha: R,
+        /// Sin of the flight-path angle, dimensionless.
+        pub sin_gamma: R,
+        /// Cos of the flight-path angle, dimensionless.
+        pub cos_gamma: R,
+        /// Radius of the Earth over the distance to its centre, dimensionless.
+        pub radius_ratio: R,
+        /// `i.radius_ratio * i.radius_ratio`.
+        pub radius_ratio_2: R,
+        /// Acceleration of gravity at altitude, ft/s^2.
+        pub gravity: R,
+        /// `1 / x.velocity`.
+        pub inv_velocity: R,
+        /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
+        pub gravity_turn: R,
+        /// Turn rate per force coefficient across the flight path, 1/s.
+        pub turn_factor: R,
+        /// Canard deflection as commanded, rad.
+        pub canard_commanded: R,
+        /// Canard deflection, commanded and slaved, rad.
+        pub canard_deflection: R,
+        /// `x.alpha * x.alpha`.
+        pub alpha_2: R,
+        /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
+        pub c_n_1: R,
+        /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
+        pub c_n_2: R,
+        /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
+        pub c_n_3: R,
+        /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
+        pub generalized_force_1: R,
+        /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
+        pub generalized_force_2: R,
+        /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
+        pub generalized_force_3: R,
+        /// Rate of the altitude, ft/s.
+        pub altitude_rate: R,
+        /// `i.cos_alpha * c_t_eta_1 - c_d_eta_1`.
+        pub cos_alpha_c_t_eta_1_minus_c_d_eta_1: R,
+        /// Static flexible coordinate of mode 1, (ft*slug)^0.5.
+        pub generalized_force_1_inv_omega_1_2: R,
+        /// `i.cos_alpha * c_t_eta_2 - c_d_eta_2`.
+        pub cos_alpha_c_t_eta_2_minus_c_d_eta_2: R,
+        /// Static flexible coordinate of mode 2, (ft*slug)^0.5.
+        pub generalized_force_2_inv_omega_2_2: R,
+        /// `i.cos_alpha * c_t_eta_3 - c_d_eta_3`.
+        pub cos_alpha_c_t_eta_3_minus_c_d_eta_3: R,
+        /// Static flexible coordinate of mode 3, (ft*slug)^0.5.
+        pub generalized_force_3_inv_omega_3_2: R,
+        /// F of the velocity row, flexible part, ft/s^2.
+        pub f_velocity_eta: R,
+        /// `c_t_alpha * x.alpha`.
+        pub c_t_alpha_alpha: R,
+        /// F of the velocity row, ft/s^2.
+        pub f_velocity: R,
+        /// G of the velocity row, ft/s^2.
+        pub g_velocity: R,
+        /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
+        /// coefficient across the flight path with respect to chi_1, rad/ft^0.5/slug^0.5.
+        pub sin_alpha_c_t_eta_1_plus_c_l_eta_1: R,
+        /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
+        /// coefficient across the flight path with respect to chi_2, rad/ft^0.5/slug^0.5.
+        pub sin_alpha_c_t_eta_2_plus_c_l_eta_2: R,
+        /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
+        /// coefficient across the flight path with respect to chi_3, rad/ft^0.5/slug^0.5.
+        pub sin_alpha_c_t_eta_3_plus_c_l_eta_3: R,
+        /// Partial derivative of f of the gamma row, flexible part with respect to turn rate per force coefficient across
+        /// the flight path, rad.
+        pub f_gamma_eta_over_turn_factor: R,
+        /// F of the gamma row, flexible part, rad/s.
+        pub f_gamma_eta: R,
+        /// `c_t_phi * u.phi`.
+        pub c_t_phi_phi: R,
+        /// Partial derivative of f of the gamma row with respect to turn rate per force coefficient across the flight
+        /// path, rad.
+        pub c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha: R,
+        /// `i.gravity_turn * i.cos_gamma`.
+        pub gravity_turn_cos_gamma: R,
+        /// F of the gamma row, rad/s.
+        pub f_gamma: R,
+        /// Partial derivative of g of the gamma row with respect to turn rate per force coefficient across the flight
+        /// path, dimensionless.
+        pub g_gamma_over_turn_factor: R,
+        /// G of the gamma row, 1/s.
+        pub g_gamma: R,
+        /// F of the alpha row, flexible part, rad/s.
+        pub f_alpha_eta: R,
+        /// F of the alpha row, rad/s.
+        pub f_alpha: R,
+        /// F of the pitch_rate row, flexible part, rad/s^2.
+        pub f_pitch_rate_eta: R,
+        /// F of the pitch_rate row, rad/s^2.
+        pub f_pitch_rate: R,
+        /// G of the pitch_rate row, 1/s^2.
+        pub g_pitch_rate: R,
+        /// Rate of velocity in the printed form, ft/s^2.
+        pub velocity_rate_printed: R,
+        /// `i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1`.
+        pub sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1: R,
+        /// `i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2`.
+        pub sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2: R,
+        /// `i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3`.
+        pub sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3: R,
+        /// Rate of gamma in the printed form, rad/s.
+        pub gamma_rate_printed: R,
+        /// Rate of alpha in the printed form, rad/s.
+        pub alpha_rate_printed: R,
+        /// Rate of pitch_rate in the printed form, rad/s^2.
+        pub pitch_rate_rate_printed: R,
+    }
+}
+/// Fills a part of [`Intermediates`].
+#[inline(always)]
+fn intermediates_part_1<R: Real>(
+    i: &mut Intermediates<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) {
+    // Air, (2)
+    i.density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
+    i.density = p.rho_0 * i.density_ratio; // slug/ft^3
+    i.velocity_2 = x.velocity * x.velocity;
+    i.dynamic_pressure = R::HALF * i.density * i.velocity_2; // lb/ft^2
+    i.reference_force = i.dynamic_pressure * p.s; // lb/ft
+
+    // Angles, (1)
+    (i.sin_alpha, i.cos_alpha) = x.alpha.sin_cos();
+    (i.sin_gamma, i.cos_gamma) = x.gamma.sin_cos();
+
+    // Gravity, (1)
+    i.radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
+    i.radius_ratio_2 = i.radius_ratio * i.radius_ratio;
+    i.gravity = p.g * i.radius_ratio_2; // ft/s^2
+    i.inv_velocity = x.velocity.recip();
+    i.gravity_turn = i.gravity * i.inv_velocity
+        - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
+
+    // Motion, (1)
+    i.turn_factor = i.density * x.velocity * p.half_s_over_m; // 1/s
+
+    // Canard, (4)
+    i.canard_commanded = p.canard_command * u.delta_c; // rad
+    i.canard_deflection = i.canard_commanded + p.canard_gain * u.delta_e; // rad
+
+    // Curve fits, (3)
+    i.alpha_2 = x.alpha * x.alpha;
+    i.c_n_1 = p.c_n_1_0
+        + p.c_n_1_alpha_2 * i.alpha_2
+        + p.c_n_1_alpha * x.alpha
+        + p.c_n_1_delta_e * u.delta_e
+        + p.c_n_1_delta_c * i.canard_deflection; // (ft/slug)^0.5
+    i.c_n_2 = p.c_n_2_0
+        + p.c_n_2_alpha_2 * i.alpha_2
+        + p.c_n_2_alpha * x.alpha
+        + p.c_n_2_delta_e * u.delta_e
+        + p.c_n_2_delta_c * i.canard_deflection; // (ft/slug)^0.5
+    i.c_n_3 = p.c_n_3_0
+        + p.c_n_3_alpha_2 * i.alpha_2
+        + p.c_n_3_alpha * x.alpha
+        + p.c_n_3_delta_e * u.delta_e
+        + p.c_n_3_delta_c * i.canard_deflection; // (ft/slug)^0.5
+
+    // Generalized forces, (2)
+    i.generalized_force_1 = i.reference_force * i.c_n_1; // (ft*slug)^0.5/s^2
+    i.generalized_force_2 = i.reference_force * i.c_n_2; // (ft*slug)^0.5/s^2
+    i.generalized_force_3 = i.reference_force * i.c_n_3; // (ft*slug)^0.5/s^2
+
+    // Motion, (1)
+    i.altitude_rate = x.velocity * i.sin_gamma; // ft/s
+
+    // Strict-feedback form, (29)
+    i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 = i.cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
+    i.generalized_force_1_inv_omega_1_2 = i.generalized_force_1 * p.inv_omega_1_2;
+    i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 = i.cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
+    i.generalized_force_2_inv_omega_2_2 = i.generalized_force_2 * p.inv_omega_2_2;
+    i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 = i.cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
+    i.generalized_force_3_inv_omega_3_2 = i.generalized_force_3 * p.inv_omega_3_2;
+    i.f_velocity_eta = i.reference_force * p.inv_m
+        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * i.generalized_force_1_inv_omega_1_2
+            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * i.generalized_force_2_inv_omega_2_2
+            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * i.generalized_force_3_inv_omega_3_2); // ft/s^2
+}
+
+/// Fills a part of [`Intermediates`].
+#[inline(always)]
+fn intermediates_part_2<R: Real>(
+    i: &mut Intermediates<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+) {
+    i.c_t_alpha_alpha = p.c_t_alpha * x.alpha;
+    i.f_velocity = i.reference_force * p.inv_m
+        * (i.cos_alpha * (i.c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
+            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
+        - i.gravity * i.sin_gamma + i.f_velocity_eta; // ft/s^2
+    i.g_velocity = i.reference_force * p.inv_m * i.cos_alpha
+        * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
+    i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
+    i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
+    i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
+    i.f_gamma_eta_over_turn_factor = i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * i.generalized_force_1_inv_omega_1_2
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * i.generalized_force_2_inv_omega_2_2
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * i.generalized_force_3_inv_omega_3_2;
+    i.f_gamma_eta = i.turn_factor * i.f_gamma_eta_over_turn_factor; // rad/s
+    i.c_t_phi_phi = p.c_t_phi * u.phi;
+    i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
+        + i.sin_alpha * (i.c_t_phi_phi + p.c_t_0);
+    i.gravity_turn_cos_gamma = i.gravity_turn * i.cos_gamma;
+    i.f_gamma = i.turn_factor * i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+        - i.gravity_turn_cos_gamma
+        + i.f_gamma_eta; // rad/s
+    i.g_gamma_over_turn_factor = p.c_l_alpha
+        + i.sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
+    i.g_gamma = i.turn_factor * i.g_gamma_over_turn_factor; // 1/s
+    i.f_alpha_eta = -i.f_gamma_eta; // rad/s
+    let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
+        + i.c_t_alpha_alpha
+        + i.c_t_phi_phi
+        + p.c_t_0;
+    i.f_alpha = i.gravity_turn_cos_gamma
+        - i.turn_factor * (p.c_l_0 + p.c_l_alpha * x.alpha + i.sin_alpha * f_alpha_term_1)
+        + i.f_alpha_eta; // rad/s
+    i.f_pitch_rate_eta = i.reference_force * p.inv_i_yy
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
+                * i.generalized_force_3_inv_omega_3_2); // rad/s^2
+    i.f_pitch_rate = i.reference_force * p.inv_i_yy
+        * (p.z_t * f_alpha_term_1
+            + p.c_bar * (p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
+        + i.f_pitch_rate_eta; // rad/s^2
+    i.g_pitch_rate = i.reference_force * p.g_pitch_rate_constant_1; // 1/s^2
+
+    // Printed form, (27)
+    i.velocity_rate_printed = i.reference_force * p.inv_m
+        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + i.f_velocity
+        + i.g_velocity * u.phi; // ft/s^2
+    i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = i
+        .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1;
+    i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = i
+        .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2;
+    i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = i
+        .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
+    let gamma_rate_printed_term_1 = i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
+    i.gamma_rate_printed = i.turn_factor * gamma_rate_printed_term_1
+        + i.f_gamma
+        + i.g_gamma * x.alpha; // rad/s
+    i.alpha_rate_printed = i.turn_factor
+        * (-i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+            - i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+            - i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + i.f_alpha
+        + x.pitch_rate; // rad/s
+    i.pitch_rate_rate_printed = i.reference_force * p.inv_i_yy
+        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
+            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
+            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + i.f_pitch_rate
+        + i.g_pitch_rate * u.delta_e; // rad/s^2
 }
 
 /// Computes [`Intermediates`].
@@ -139,368 +294,368 @@ pub fn intermediates<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) -> Intermediates<R> {
-    // Air, (2)
-    let density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
-    let density = p.rho_0 * density_ratio; // slug/ft^3
-    let velocity_2 = x.velocity * x.velocity;
-    let dynamic_pressure = R::HALF * density * velocity_2; // lb/ft^2
-    let reference_force = dynamic_pressure * p.s; // lb/ft
-
-    // Angles, (1)
-    let (sin_alpha, cos_alpha) = x.alpha.sin_cos();
-    let (sin_gamma, cos_gamma) = x.gamma.sin_cos();
-
-    // Gravity, (1)
-    let radius_ratio = (R::ONE + p.earth_curvature * x.altitude).recip();
-    let radius_ratio_2 = radius_ratio * radius_ratio;
-    let gravity = p.g * radius_ratio_2; // ft/s^2
-    let inv_velocity = x.velocity.recip();
-    let gravity_turn = gravity * inv_velocity
-        - p.earth_curvature * radius_ratio * x.velocity; // 1/s
-
-    // Motion, (1)
-    let turn_factor = density * x.velocity * p.half_s_over_m; // 1/s
-
-    // Canard, (4)
-    let canard_commanded = p.canard_command * u.delta_c; // rad
-    let canard_deflection = canard_commanded + p.canard_gain * u.delta_e; // rad
-
-    // Curve fits, (3)
-    let alpha_2 = x.alpha * x.alpha;
-    let c_n_1 = p.c_n_1_0
-        + p.c_n_1_alpha_2 * alpha_2
-        + p.c_n_1_alpha * x.alpha
-        + p.c_n_1_delta_e * u.delta_e
-        + p.c_n_1_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_2 = p.c_n_2_0
-        + p.c_n_2_alpha_2 * alpha_2
-        + p.c_n_2_alpha * x.alpha
-        + p.c_n_2_delta_e * u.delta_e
-        + p.c_n_2_delta_c * canard_deflection; // (ft/slug)^0.5
-    let c_n_3 = p.c_n_3_0
-        + p.c_n_3_alpha_2 * alpha_2
-        + p.c_n_3_alpha * x.alpha
-        + p.c_n_3_delta_e * u.delta_e
-        + p.c_n_3_delta_c * canard_deflection; // (ft/slug)^0.5
-
-    // Generalized forces, (2)
-    let generalized_force_1 = reference_force * c_n_1; // (ft*slug)^0.5/s^2
-    let generalized_force_2 = reference_force * c_n_2; // (ft*slug)^0.5/s^2
-    let generalized_force_3 = reference_force * c_n_3; // (ft*slug)^0.5/s^2
-
-    // Motion, (1)
-    let altitude_rate = x.velocity * sin_gamma; // ft/s
-
-    // Strict-feedback form, (29)
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
-    let generalized_force_1_inv_omega_1_2 = generalized_force_1 * p.inv_omega_1_2;
-    let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = cos_alpha * p.c_t_eta_2 - p.c_d_eta_2;
-    let generalized_force_2_inv_omega_2_2 = generalized_force_2 * p.inv_omega_2_2;
-    let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = cos_alpha * p.c_t_eta_3 - p.c_d_eta_3;
-    let generalized_force_3_inv_omega_3_2 = generalized_force_3 * p.inv_omega_3_2;
-    let f_velocity_eta = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * generalized_force_1_inv_omega_1_2
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * generalized_force_2_inv_omega_2_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * generalized_force_3_inv_omega_3_2); // ft/s^2
-    let c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-    let f_velocity = reference_force * p.inv_m
-        * (cos_alpha * (c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
-            - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        - gravity * sin_gamma + f_velocity_eta; // ft/s^2
-    let g_velocity = reference_force * p.inv_m * cos_alpha
-        * (p.c_t_phi_alpha * x.alpha + p.c_t_phi); // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1 = sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2 = sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3 = sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    let f_gamma_eta_over_turn_factor = sin_alpha_c_t_eta_1_plus_c_l_eta_1 * generalized_force_1_inv_omega_1_2
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2 * generalized_force_2_inv_omega_2_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3 * generalized_force_3_inv_omega_3_2;
-    let f_gamma_eta = turn_factor * f_gamma_eta_over_turn_factor; // rad/s
-    let c_t_phi_phi = p.c_t_phi * u.phi;
-    let c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
-        + sin_alpha * (c_t_phi_phi + p.c_t_0);
-    let gravity_turn_cos_gamma = gravity_turn * cos_gamma;
-    let f_gamma = turn_factor * c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        - gravity_turn_cos_gamma
-        + f_gamma_eta; // rad/s
-    let g_gamma_over_turn_factor = p.c_l_alpha
-        + sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    let g_gamma = turn_factor * g_gamma_over_turn_factor; // 1/s
-    let f_alpha_eta = -f_gamma_eta; // rad/s
-    let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + c_t_alpha_alpha
-        + c_t_phi_phi
-        + p.c_t_0;
-    let f_alpha = gravity_turn_cos_gamma
-        - turn_factor * (p.c_l_0 + p.c_l_alpha * x.alpha + sin_alpha * f_alpha_term_1)
-        + f_alpha_eta; // rad/s
-    let f_pitch_rate_eta = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * generalized_force_1_inv_omega_1_2
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * generalized_force_2_inv_omega_2_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * generalized_force_3_inv_omega_3_2); // rad/s^2
-    let f_pitch_rate = reference_force * p.inv_i_yy
-        * (p.z_t * f_alpha_term_1
-            + p.c_bar * (p.c_m_alpha_2 * alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
-        + f_pitch_rate_eta; // rad/s^2
-    let g_pitch_rate = reference_force * p.g_pitch_rate_constant_1; // 1/s^2
-
-    // Printed form, (27)
-    let velocity_rate_printed = reference_force * p.inv_m
-        * (cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + f_velocity
-        + g_velocity * u.phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1
-        * x.chi_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = sin_alpha_c_t_eta_2_plus_c_l_eta_2
-        * x.chi_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = sin_alpha_c_t_eta_3_plus_c_l_eta_3
-        * x.chi_3;
-    let gamma_rate_printed_term_1 = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
-    let gamma_rate_printed = turn_factor * gamma_rate_printed_term_1
-        + f_gamma
-        + g_gamma * x.alpha; // rad/s
-    let alpha_rate_printed = turn_factor
-        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + f_alpha + x.pitch_rate; // rad/s
-    let pitch_rate_rate_printed = reference_force * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + f_pitch_rate
-        + g_pitch_rate * u.delta_e; // rad/s^2
-
-    Intermediates {
-        density_ratio,
-        density,
-        velocity_2,
-        dynamic_pressure,
-        reference_force,
-        sin_alpha,
-        cos_alpha,
-        sin_gamma,
-        cos_gamma,
-        radius_ratio,
-        radius_ratio_2,
-        gravity,
-        inv_velocity,
-        gravity_turn,
-        turn_factor,
-        canard_commanded,
-        canard_deflection,
-        alpha_2,
-        c_n_1,
-        c_n_2,
-        c_n_3,
-        generalized_force_1,
-        generalized_force_2,
-        generalized_force_3,
-        altitude_rate,
-        cos_alpha_c_t_eta_1_minus_c_d_eta_1,
-        generalized_force_1_inv_omega_1_2,
-        cos_alpha_c_t_eta_2_minus_c_d_eta_2,
-        generalized_force_2_inv_omega_2_2,
-        cos_alpha_c_t_eta_3_minus_c_d_eta_3,
-        generalized_force_3_inv_omega_3_2,
-        f_velocity_eta,
-        c_t_alpha_alpha,
-        f_velocity,
-        g_velocity,
-        sin_alpha_c_t_eta_1_plus_c_l_eta_1,
-        sin_alpha_c_t_eta_2_plus_c_l_eta_2,
-        sin_alpha_c_t_eta_3_plus_c_l_eta_3,
-        f_gamma_eta_over_turn_factor,
-        f_gamma_eta,
-        c_t_phi_phi,
-        c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha,
-        gravity_turn_cos_gamma,
-        f_gamma,
-        g_gamma_over_turn_factor,
-        g_gamma,
-        f_alpha_eta,
-        f_alpha,
-        f_pitch_rate_eta,
-        f_pitch_rate,
-        g_pitch_rate,
-        velocity_rate_printed,
-        sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1,
-        sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2,
-        sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3,
-        gamma_rate_printed,
-        alpha_rate_printed,
-        pitch_rate_rate_printed,
-    }
+    let mut i = Intermediates::splat(R::ZERO);
+    intermediates_part_1(&mut i, x, u, p);
+    intermediates_part_2(&mut i, x, u, p);
+    i
 }
 
-/// Quantities of the Jacobians that other functions need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slopes<R> {
-    /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
-    pub d_dynamic_pressure_d_velocity: R,
-    /// `i.c_t_alpha_alpha + c_t_0`.
-    pub c_t_alpha_alpha_plus_c_t_0: R,
-    /// Partial derivative of f of the velocity row with respect to dynamic pressure, ft^3/s^2/lb.
-    pub slope_of_f_velocity_in_dynamic_pressure: R,
-    /// Partial derivative of f of the velocity row, flexible part with respect to dynamic pressure, ft^3/s^2/lb.
-    pub slope_of_f_velocity_eta_in_dynamic_pressure: R,
-    /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
-    pub d_reference_force_d_velocity: R,
-    /// Derivative of generalized force of mode 1 with respect to velocity, slug^0.5/ft^0.5/s.
-    pub d_generalized_force_1_d_velocity: R,
-    /// Derivative of generalized force of mode 2 with respect to velocity, slug^0.5/ft^0.5/s.
-    pub d_generalized_force_2_d_velocity: R,
-    /// Derivative of generalized force of mode 3 with respect to velocity, slug^0.5/ft^0.5/s.
-    pub d_generalized_force_3_d_velocity: R,
-    /// `c_t_phi_alpha * x.alpha + c_t_phi`.
-    pub c_t_phi_alpha_alpha_plus_c_t_phi: R,
-    /// Partial derivative of g of the velocity row with respect to dynamic pressure, ft^3/s^2/lb.
-    pub slope_of_g_velocity_in_dynamic_pressure: R,
-    /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
-    pub d_turn_factor_d_velocity: R,
-    /// Partial derivative of rate of gamma in the printed form with respect to turn rate per force coefficient across
-    /// the flight path, rad.
-    pub slope_of_gamma_rate_printed_in_turn_factor: R,
-    /// `i.inv_velocity * i.inv_velocity`.
-    pub inv_velocity_2: R,
-    /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-    /// velocity, 1/ft.
-    pub d_gravity_turn_d_velocity: R,
-    /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 1,
-    /// rad*s/ft^0.5/slug^0.5.
-    pub slope_of_f_gamma_eta_in_generalized_force_1: R,
-    /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 2,
-    /// rad*s/ft^0.5/slug^0.5.
-    pub slope_of_f_gamma_eta_in_generalized_force_2: R,
-    /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 3,
-    /// rad*s/ft^0.5/slug^0.5.
-    pub slope_of_f_gamma_eta_in_generalized_force_3: R,
-    /// Derivative of g of the gamma row with respect to velocity, 1/ft.
-    pub d_g_gamma_d_velocity: R,
-    /// Partial derivative of rate of alpha in the printed form with respect to turn rate per force coefficient across
-    /// the flight path, rad.
-    pub slope_of_alpha_rate_printed_in_turn_factor: R,
-    /// Partial derivative of f of the alpha row with respect to turn rate per force coefficient across the flight
-    /// path, rad.
-    pub slope_of_f_alpha_in_turn_factor: R,
-    /// Partial derivative of f of the alpha row, flexible part with respect to turn rate per force coefficient across
-    /// the flight path, rad.
-    pub slope_of_f_alpha_eta_in_turn_factor: R,
-    /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 1,
-    /// rad*s/ft^0.5/slug^0.5.
-    pub slope_of_f_alpha_eta_in_generalized_force_1: R,
-    /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 2,
-    /// rad*s/ft^0.5/slug^0.5.
-    pub slope_of_f_alpha_eta_in_generalized_force_2: R,
-    /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 3,
-    /// rad*s/ft^0.5/slug^0.5.
-    pub slope_of_f_alpha_eta_in_generalized_force_3: R,
-    /// Partial derivative of f of the pitch_rate row with respect to dynamic pressure, rad*ft^2/s^2/lb.
-    pub slope_of_f_pitch_rate_in_dynamic_pressure: R,
-    /// Derivative of air density with respect to altitude, slug/ft^4.
-    pub d_density_d_altitude: R,
-    /// Derivative of dynamic pressure with respect to altitude, lb/ft^3.
-    pub d_dynamic_pressure_d_altitude: R,
-    /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
-    pub d_radius_ratio_d_altitude: R,
-    /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
-    pub d_gravity_d_altitude: R,
-    /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
-    pub d_reference_force_d_altitude: R,
-    /// Derivative of generalized force of mode 1 with respect to altitude, slug^0.5/ft^0.5/s^2.
-    pub d_generalized_force_1_d_altitude: R,
-    /// Derivative of generalized force of mode 2 with respect to altitude, slug^0.5/ft^0.5/s^2.
-    pub d_generalized_force_2_d_altitude: R,
-    /// Derivative of generalized force of mode 3 with respect to altitude, slug^0.5/ft^0.5/s^2.
-    pub d_generalized_force_3_d_altitude: R,
-    /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
-    pub d_turn_factor_d_altitude: R,
-    /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-    /// altitude, 1/s/ft.
-    pub d_gravity_turn_d_altitude: R,
-    /// Derivative of g of the gamma row with respect to altitude, 1/s/ft.
-    pub d_g_gamma_d_altitude: R,
-    /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
-    pub d_altitude_rate_d_gamma: R,
-    /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
-    pub d_cos_gamma_d_gamma: R,
-    /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
-    pub d_cos_alpha_d_alpha: R,
-    /// `x.chi_1 * c_t_eta_1 + x.chi_2 * c_t_eta_2 + x.chi_3 * c_t_eta_3`.
-    pub chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3: R,
-    /// Partial derivative of rate of velocity in the printed form with respect to cos of the angle of attack, ft/s^2.
-    pub slope_of_velocity_rate_printed_in_cos_alpha: R,
-    /// Partial derivative of f of the velocity row with respect to cos of the angle of attack, ft/s^2.
-    pub slope_of_f_velocity_in_cos_alpha: R,
-    /// Partial derivative of f of the velocity row, flexible part with respect to cos of the angle of attack, ft/s^2.
-    pub slope_of_f_velocity_eta_in_cos_alpha: R,
-    /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, ft^0.5/slug^0.5/rad.
-    pub d_c_n_1_d_alpha: R,
-    /// Derivative of generalized force of mode 1 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-    pub d_generalized_force_1_d_alpha: R,
-    /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, ft^0.5/slug^0.5/rad.
-    pub d_c_n_2_d_alpha: R,
-    /// Derivative of generalized force of mode 2 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-    pub d_generalized_force_2_d_alpha: R,
-    /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, ft^0.5/slug^0.5/rad.
-    pub d_c_n_3_d_alpha: R,
-    /// Derivative of generalized force of mode 3 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-    pub d_generalized_force_3_d_alpha: R,
-    /// Partial derivative of g of the velocity row with respect to cos of the angle of attack, ft/s^2.
-    pub slope_of_g_velocity_in_cos_alpha: R,
-    /// Partial derivative of rate of gamma in the printed form with respect to sin of the angle of attack, rad/s.
-    pub slope_of_gamma_rate_printed_in_sin_alpha: R,
-    /// Partial derivative of f of the gamma row with respect to sin of the angle of attack, rad/s.
-    pub slope_of_f_gamma_in_sin_alpha: R,
-    /// Partial derivative of f of the gamma row, flexible part with respect to sin of the angle of attack, rad/s.
-    pub slope_of_f_gamma_eta_in_sin_alpha: R,
-    /// `c_t_alpha + c_t_phi_alpha * u.phi`.
-    pub c_t_alpha_plus_c_t_phi_alpha_phi: R,
-    /// Partial derivative of g of the gamma row with respect to sin of the angle of attack, 1/s.
-    pub slope_of_g_gamma_in_sin_alpha: R,
-    /// Derivative of g of the gamma row with respect to alpha, 1/s/rad.
-    pub d_g_gamma_d_alpha: R,
-    /// Partial derivative of rate of alpha in the printed form with respect to sin of the angle of attack, rad/s.
-    pub slope_of_alpha_rate_printed_in_sin_alpha: R,
-    /// Partial derivative of f of the alpha row with respect to sin of the angle of attack, rad/s.
-    pub slope_of_f_alpha_in_sin_alpha: R,
-    /// Partial derivative of f of the alpha row, flexible part with respect to sin of the angle of attack, rad/s.
-    pub slope_of_f_alpha_eta_in_sin_alpha: R,
-    /// Derivative of rate of velocity in the printed form with respect to chi_1, ft^0.5/s^2/slug^0.5.
-    pub d_velocity_rate_printed_d_chi_1: R,
-    /// Derivative of rate of gamma in the printed form with respect to chi_1, rad/s/ft^0.5/slug^0.5.
-    pub d_gamma_rate_printed_d_chi_1: R,
-    /// Derivative of rate of alpha in the printed form with respect to chi_1, rad/s/ft^0.5/slug^0.5.
-    pub d_alpha_rate_printed_d_chi_1: R,
-    /// Derivative of rate of pitch_rate in the printed form with respect to chi_1, rad/s^2/ft^0.5/slug^0.5.
-    pub d_pitch_rate_rate_printed_d_chi_1: R,
-    /// Derivative of rate of velocity in the printed form with respect to chi_2, ft^0.5/s^2/slug^0.5.
-    pub d_velocity_rate_printed_d_chi_2: R,
-    /// Derivative of rate of gamma in the printed form with respect to chi_2, rad/s/ft^0.5/slug^0.5.
-    pub d_gamma_rate_printed_d_chi_2: R,
-    /// Derivative of rate of alpha in the printed form with respect to chi_2, rad/s/ft^0.5/slug^0.5.
-    pub d_alpha_rate_printed_d_chi_2: R,
-    /// Derivative of rate of pitch_rate in the printed form with respect to chi_2, rad/s^2/ft^0.5/slug^0.5.
-    pub d_pitch_rate_rate_printed_d_chi_2: R,
-    /// Derivative of rate of velocity in the printed form with respect to chi_3, ft^0.5/s^2/slug^0.5.
-    pub d_velocity_rate_printed_d_chi_3: R,
-    /// Derivative of rate of gamma in the printed form with respect to chi_3, rad/s/ft^0.5/slug^0.5.
-    pub d_gamma_rate_printed_d_chi_3: R,
-    /// Derivative of rate of alpha in the printed form with respect to chi_3, rad/s/ft^0.5/slug^0.5.
-    pub d_alpha_rate_printed_d_chi_3: R,
-    /// Derivative of rate of pitch_rate in the printed form with respect to chi_3, rad/s^2/ft^0.5/slug^0.5.
-    pub d_pitch_rate_rate_printed_d_chi_3: R,
-    /// Derivative of rate of gamma in the printed form with respect to phi, rad/s.
-    pub d_gamma_rate_printed_d_phi: R,
-    /// Derivative of f of the velocity row with respect to delta_e, ft/s^2/rad.
-    pub d_f_velocity_d_delta_e: R,
-    /// Derivative of f of the gamma row, flexible part with respect to delta_e, 1/s.
-    pub d_f_gamma_eta_d_delta_e: R,
-    /// Derivative of f of the velocity row, flexible part with respect to delta_c, ft/s^2/rad.
-    pub d_f_velocity_eta_d_delta_c: R,
-    /// Derivative of f of the gamma row, flexible part with respect to delta_c, 1/s.
-    pub d_f_gamma_eta_d_delta_c: R,
+ahv_core::record! {
+    /// Quantities of the Jacobians that other functions need.
+    pub struct Slopes<R> {
+        /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
+        pub d_dynamic_pressure_d_velocity: R,
+        /// `i.c_t_alpha_alpha + c_t_0`.
+        pub c_t_alpha_alpha_plus_c_t_0: R,
+        /// Partial derivative of f of the velocity row with respect to dynamic pressure, ft^3/s^2/lb.
+        pub slope_of_f_velocity_in_dynamic_pressure: R,
+        /// Partial derivative of f of the velocity row, flexible part with respect to dynamic pressure, ft^3/s^2/lb.
+        pub slope_of_f_velocity_eta_in_dynamic_pressure: R,
+        /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
+        pub d_reference_force_d_velocity: R,
+        /// Derivative of generalized force of mode 1 with respect to velocity, slug^0.5/ft^0.5/s.
+        pub d_generalized_force_1_d_velocity: R,
+        /// Derivative of generalized force of mode 2 with respect to velocity, slug^0.5/ft^0.5/s.
+        pub d_generalized_force_2_d_velocity: R,
+        /// Derivative of generalized force of mode 3 with respect to velocity, slug^0.5/ft^0.5/s.
+        pub d_generalized_force_3_d_velocity: R,
+        /// `c_t_phi_alpha * x.alpha + c_t_phi`.
+        pub c_t_phi_alpha_alpha_plus_c_t_phi: R,
+        /// Partial derivative of g of the velocity row with respect to dynamic pressure, ft^3/s^2/lb.
+        pub slope_of_g_velocity_in_dynamic_pressure: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
+        pub d_turn_factor_d_velocity: R,
+        /// Partial derivative of rate of gamma in the printed form with respect to turn rate per force coefficient across
+        /// the flight path, rad.
+        pub slope_of_gamma_rate_printed_in_turn_factor: R,
+        /// `i.inv_velocity * i.inv_velocity`.
+        pub inv_velocity_2: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// velocity, 1/ft.
+        pub d_gravity_turn_d_velocity: R,
+        /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 1,
+        /// rad*s/ft^0.5/slug^0.5.
+        pub slope_of_f_gamma_eta_in_generalized_force_1: R,
+        /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 2,
+        /// rad*s/ft^0.5/slug^0.5.
+        pub slope_of_f_gamma_eta_in_generalized_force_2: R,
+        /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 3,
+        /// rad*s/ft^0.5/slug^0.5.
+        pub slope_of_f_gamma_eta_in_generalized_force_3: R,
+        /// Derivative of g of the gamma row with respect to velocity, 1/ft.
+        pub d_g_gamma_d_velocity: R,
+        /// Partial derivative of rate of alpha in the printed form with respect to turn rate per force coefficient across
+        /// the flight path, rad.
+        pub slope_of_alpha_rate_printed_in_turn_factor: R,
+        /// Partial derivative of f of the alpha row with respect to turn rate per force coefficient across the flight
+        /// path, rad.
+        pub slope_of_f_alpha_in_turn_factor: R,
+        /// Partial derivative of f of the alpha row, flexible part with respect to turn rate per force coefficient across
+        /// the flight path, rad.
+        pub slope_of_f_alpha_eta_in_turn_factor: R,
+        /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 1,
+        /// rad*s/ft^0.5/slug^0.5.
+        pub slope_of_f_alpha_eta_in_generalized_force_1: R,
+        /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 2,
+        /// rad*s/ft^0.5/slug^0.5.
+        pub slope_of_f_alpha_eta_in_generalized_force_2: R,
+        /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 3,
+        /// rad*s/ft^0.5/slug^0.5.
+        pub slope_of_f_alpha_eta_in_generalized_force_3: R,
+        /// Partial derivative of f of the pitch_rate row with respect to dynamic pressure, rad*ft^2/s^2/lb.
+        pub slope_of_f_pitch_rate_in_dynamic_pressure: R,
+        /// Derivative of air density with respect to altitude, slug/ft^4.
+        pub d_density_d_altitude: R,
+        /// Derivative of dynamic pressure with respect to altitude, lb/ft^3.
+        pub d_dynamic_pressure_d_altitude: R,
+        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
+        pub d_radius_ratio_d_altitude: R,
+        /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
+        pub d_gravity_d_altitude: R,
+        /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
+        pub d_reference_force_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to altitude, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_1_d_altitude: R,
+        /// Derivative of generalized force of mode 2 with respect to altitude, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_2_d_altitude: R,
+        /// Derivative of generalized force of mode 3 with respect to altitude, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_3_d_altitude: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
+        pub d_turn_factor_d_altitude: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// altitude, 1/s/ft.
+        pub d_gravity_turn_d_altitude: R,
+        /// Derivative of g of the gamma row with respect to altitude, 1/s/ft.
+        pub d_g_gamma_d_altitude: R,
+        /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
+        pub d_altitude_rate_d_gamma: R,
+        /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
+        pub d_cos_gamma_d_gamma: R,
+        /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
+        pub d_cos_alpha_d_alpha: R,
+        /// `x.chi_1 * c_t_eta_1 + x.chi_2 * c_t_eta_2 + x.chi_3 * c_t_eta_3`.
+        pub chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3: R,
+        /// Partial derivative of rate of velocity in the printed form with respect to cos of the angle of attack, ft/s^2.
+        pub slope_of_velocity_rate_printed_in_cos_alpha: R,
+        /// Partial derivative of f of the velocity row with respect to cos of the angle of attack, ft/s^2.
+        pub slope_of_f_velocity_in_cos_alpha: R,
+        /// Partial derivative of f of the velocity row, flexible part with respect to cos of the angle of attack, ft/s^2.
+        pub slope_of_f_velocity_eta_in_cos_alpha: R,
+        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, ft^0.5/slug^0.5/rad.
+        pub d_c_n_1_d_alpha: R,
+        /// Derivative of generalized force of mode 1 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
+        pub d_generalized_force_1_d_alpha: R,
+        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, ft^0.5/slug^0.5/rad.
+        pub d_c_n_2_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
+        pub d_generalized_force_2_d_alpha: R,
+        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, ft^0.5/slug^0.5/rad.
+        pub d_c_n_3_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
+        pub d_generalized_force_3_d_alpha: R,
+        /// Partial derivative of g of the velocity row with respect to cos of the angle of attack, ft/s^2.
+        pub slope_of_g_velocity_in_cos_alpha: R,
+        /// Partial derivative of rate of gamma in the printed form with respect to sin of the angle of attack, rad/s.
+        pub slope_of_gamma_rate_printed_in_sin_alpha: R,
+        /// Partial derivative of f of the gamma row with respect to sin of the angle of attack, rad/s.
+        pub slope_of_f_gamma_in_sin_alpha: R,
+        /// Partial derivative of f of the gamma row, flexible part with respect to sin of the angle of attack, rad/s.
+        pub slope_of_f_gamma_eta_in_sin_alpha: R,
+        /// `c_t_alpha + c_t_phi_alpha * u.phi`.
+        pub c_t_alpha_plus_c_t_phi_alpha_phi: R,
+        /// Partial derivative of g of the gamma row with respect to sin of the angle of attack, 1/s.
+        pub slope_of_g_gamma_in_sin_alpha: R,
+        /// Derivative of g of the gamma row with respect to alpha, 1/s/rad.
+        pub d_g_gamma_d_alpha: R,
+        /// Partial derivative of rate of alpha in the printed form with respect to sin of the angle of attack, rad/s.
+        pub slope_of_alpha_rate_printed_in_sin_alpha: R,
+        /// Partial derivative of f of the alpha row with respect to sin of the angle of attack, rad/s.
+        pub slope_of_f_alpha_in_sin_alpha: R,
+        /// Partial derivative of f of the alpha row, flexible part with respect to sin of the angle of attack, rad/s.
+        pub slope_of_f_alpha_eta_in_sin_alpha: R,
+        /// Derivative of rate of velocity in the printed form with respect to chi_1, ft^0.5/s^2/slug^0.5.
+        pub d_velocity_rate_printed_d_chi_1: R,
+        /// Derivative of rate of gamma in the printed form with respect to chi_1, rad/s/ft^0.5/slug^0.5.
+        pub d_gamma_rate_printed_d_chi_1: R,
+        /// Derivative of rate of alpha in the printed form with respect to chi_1, rad/s/ft^0.5/slug^0.5.
+        pub d_alpha_rate_printed_d_chi_1: R,
+        /// Derivative of rate of pitch_rate in the printed form with respect to chi_1, rad/s^2/ft^0.5/slug^0.5.
+        pub d_pitch_rate_rate_printed_d_chi_1: R,
+        /// Derivative of rate of velocity in the printed form with respect to chi_2, ft^0.5/s^2/slug^0.5.
+        pub d_velocity_rate_printed_d_chi_2: R,
+        /// Derivative of rate of gamma in the printed form with respect to chi_2, rad/s/ft^0.5/slug^0.5.
+        pub d_gamma_rate_printed_d_chi_2: R,
+        /// Derivative of rate of alpha in the printed form with respect to chi_2, rad/s/ft^0.5/slug^0.5.
+        pub d_alpha_rate_printed_d_chi_2: R,
+        /// Derivative of rate of pitch_rate in the printed form with respect to chi_2, rad/s^2/ft^0.5/slug^0.5.
+        pub d_pitch_rate_rate_printed_d_chi_2: R,
+        /// Derivative of rate of velocity in the printed form with respect to chi_3, ft^0.5/s^2/slug^0.5.
+        pub d_velocity_rate_printed_d_chi_3: R,
+        /// Derivative of rate of gamma in the printed form with respect to chi_3, rad/s/ft^0.5/slug^0.5.
+        pub d_gamma_rate_printed_d_chi_3: R,
+        /// Derivative of rate of alpha in the printed form with respect to chi_3, rad/s/ft^0.5/slug^0.5.
+        pub d_alpha_rate_printed_d_chi_3: R,
+        /// Derivative of rate of pitch_rate in the printed form with respect to chi_3, rad/s^2/ft^0.5/slug^0.5.
+        pub d_pitch_rate_rate_printed_d_chi_3: R,
+        /// Derivative of rate of gamma in the printed form with respect to phi, rad/s.
+        pub d_gamma_rate_printed_d_phi: R,
+        /// Derivative of f of the velocity row with respect to delta_e, ft/s^2/rad.
+        pub d_f_velocity_d_delta_e: R,
+        /// Derivative of f of the gamma row, flexible part with respect to delta_e, 1/s.
+        pub d_f_gamma_eta_d_delta_e: R,
+        /// Derivative of f of the velocity row, flexible part with respect to delta_c, ft/s^2/rad.
+        pub d_f_velocity_eta_d_delta_c: R,
+        /// Derivative of f of the gamma row, flexible part with respect to delta_c, 1/s.
+        pub d_f_gamma_eta_d_delta_c: R,
+    }
+}
+/// Fills a part of [`Slopes`].
+#[inline(always)]
+fn slopes_part_1<R: Real>(
+    s: &mut Slopes<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) {
+    // Derivatives with respect to velocity
+    s.d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
+    s.c_t_alpha_alpha_plus_c_t_0 = i.c_t_alpha_alpha + p.c_t_0;
+    s.slope_of_f_velocity_in_dynamic_pressure = (i.cos_alpha
+        * s.c_t_alpha_alpha_plus_c_t_0 - p.c_d_alpha * x.alpha
+        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
+        * p.s_over_m; // ft^3/s^2/lb
+    s.slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
+        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * i.generalized_force_1_inv_omega_1_2
+            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * i.generalized_force_2_inv_omega_2_2
+            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * i.generalized_force_3_inv_omega_3_2); // ft^3/s^2/lb
+    s.d_reference_force_d_velocity = p.s * s.d_dynamic_pressure_d_velocity; // lb*s/ft^2
+    s.d_generalized_force_1_d_velocity = i.c_n_1 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    s.d_generalized_force_2_d_velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    s.d_generalized_force_3_d_velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    s.c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
+    s.slope_of_g_velocity_in_dynamic_pressure = s.c_t_phi_alpha_alpha_plus_c_t_phi
+        * i.cos_alpha * p.s_over_m; // ft^3/s^2/lb
+    s.d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
+    s.slope_of_gamma_rate_printed_in_turn_factor = i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3; // rad
+    s.inv_velocity_2 = i.inv_velocity * i.inv_velocity;
+    s.d_gravity_turn_d_velocity = -(i.gravity * s.inv_velocity_2
+        + p.earth_curvature * i.radius_ratio); // 1/ft
+    s.slope_of_f_gamma_eta_in_generalized_force_1 = i.turn_factor
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
+    s.slope_of_f_gamma_eta_in_generalized_force_2 = i.turn_factor
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
+    s.slope_of_f_gamma_eta_in_generalized_force_3 = i.turn_factor
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
+    s.d_g_gamma_d_velocity = i.g_gamma_over_turn_factor * s.d_turn_factor_d_velocity; // 1/ft
+    s.slope_of_alpha_rate_printed_in_turn_factor = -s
+        .slope_of_gamma_rate_printed_in_turn_factor; // rad
+    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
+        + i.c_t_alpha_alpha
+        + i.c_t_phi_phi
+        + p.c_t_0;
+    s.slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
+        + i.sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
+    s.slope_of_f_alpha_eta_in_turn_factor = -i.f_gamma_eta_over_turn_factor; // rad
+    s.slope_of_f_alpha_eta_in_generalized_force_1 = -s
+        .slope_of_f_gamma_eta_in_generalized_force_1; // rad*s/ft^0.5/slug^0.5
+    s.slope_of_f_alpha_eta_in_generalized_force_2 = -s
+        .slope_of_f_gamma_eta_in_generalized_force_2; // rad*s/ft^0.5/slug^0.5
+    s.slope_of_f_alpha_eta_in_generalized_force_3 = -s
+        .slope_of_f_gamma_eta_in_generalized_force_3; // rad*s/ft^0.5/slug^0.5
+    s.slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
+        * slope_of_f_alpha_in_turn_factor_term_1
+        + p.c_bar * (p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
+        * p.s_over_i_yy; // rad*ft^2/s^2/lb
+
+    // Derivatives with respect to altitude
+    let d_density_ratio_d_altitude = -i.density_ratio * p.inv_h_s; // 1/ft
+    s.d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
+    s.d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * s.d_density_d_altitude; // lb/ft^3
+    s.d_radius_ratio_d_altitude = -i.radius_ratio_2 * p.earth_curvature; // 1/ft
+    s.d_gravity_d_altitude = p.two_g * i.radius_ratio * s.d_radius_ratio_d_altitude; // 1/s^2
+    s.d_reference_force_d_altitude = p.s * s.d_dynamic_pressure_d_altitude; // lb/ft^2
+    s.d_generalized_force_1_d_altitude = i.c_n_1 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    s.d_generalized_force_2_d_altitude = i.c_n_2 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    s.d_generalized_force_3_d_altitude = i.c_n_3 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    s.d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * s.d_density_d_altitude; // 1/s/ft
+    s.d_gravity_turn_d_altitude = s.d_gravity_d_altitude * i.inv_velocity
+        - x.velocity * p.earth_curvature * s.d_radius_ratio_d_altitude; // 1/s/ft
+    s.d_g_gamma_d_altitude = i.g_gamma_over_turn_factor * s.d_turn_factor_d_altitude; // 1/s/ft
+
+    // Derivatives with respect to gamma
+    s.d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
+    s.d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
+
+    // Derivatives with respect to alpha
+    s.d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
+    s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
+        + x.chi_2 * p.c_t_eta_2
+        + x.chi_3 * p.c_t_eta_3;
+    s.slope_of_velocity_rate_printed_in_cos_alpha = i.reference_force * p.inv_m
+        * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
+    s.slope_of_f_velocity_in_cos_alpha = i.reference_force * p.inv_m
+        * s.c_t_alpha_alpha_plus_c_t_0; // ft/s^2
+    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+        + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
+        + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
+    s.slope_of_f_velocity_eta_in_cos_alpha = i.reference_force * p.inv_m
+        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
+    s.d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
+    s.d_generalized_force_1_d_alpha = i.reference_force * s.d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
+    s.d_generalized_force_2_d_alpha = i.reference_force * s.d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+    s.d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_c_t_phi
+        * i.reference_force * p.inv_m; // ft/s^2
+    s.slope_of_gamma_rate_printed_in_sin_alpha = i.turn_factor
+        * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
+    s.slope_of_f_gamma_in_sin_alpha = i.turn_factor * (i.c_t_phi_phi + p.c_t_0); // rad/s
+    s.slope_of_f_gamma_eta_in_sin_alpha = i.turn_factor
+        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
+    s.c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
+    s.slope_of_g_gamma_in_sin_alpha = i.turn_factor * s.c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
+    s.d_g_gamma_d_alpha = s.slope_of_g_gamma_in_sin_alpha * i.cos_alpha; // 1/s/rad
+    s.slope_of_alpha_rate_printed_in_sin_alpha = -s
+        .slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
+    s.slope_of_f_alpha_in_sin_alpha = -i.turn_factor
+        * slope_of_f_alpha_in_turn_factor_term_1; // rad/s
+}
+
+/// Fills a part of [`Slopes`].
+#[inline(always)]
+fn slopes_part_2<R: Real>(
+    s: &mut Slopes<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) {
+    s.slope_of_f_alpha_eta_in_sin_alpha = -s.slope_of_f_gamma_eta_in_sin_alpha; // rad/s
+
+    // Derivatives with respect to chi_1
+    s.d_velocity_rate_printed_d_chi_1 = i.reference_force * p.inv_m
+        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
+    s.d_gamma_rate_printed_d_chi_1 = i.turn_factor
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
+    s.d_alpha_rate_printed_d_chi_1 = -s.d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
+    s.d_pitch_rate_rate_printed_d_chi_1 = i.reference_force
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    s.d_velocity_rate_printed_d_chi_2 = i.reference_force * p.inv_m
+        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
+    s.d_gamma_rate_printed_d_chi_2 = i.turn_factor
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
+    s.d_alpha_rate_printed_d_chi_2 = -s.d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
+    s.d_pitch_rate_rate_printed_d_chi_2 = i.reference_force
+        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    s.d_velocity_rate_printed_d_chi_3 = i.reference_force * p.inv_m
+        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
+    s.d_gamma_rate_printed_d_chi_3 = i.turn_factor
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
+    s.d_alpha_rate_printed_d_chi_3 = -s.d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    s.d_pitch_rate_rate_printed_d_chi_3 = i.reference_force
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to phi
+    let d_f_gamma_d_phi = i.turn_factor * i.sin_alpha * p.c_t_phi; // rad/s
+    let d_g_gamma_d_phi = i.turn_factor * i.sin_alpha * p.c_t_phi_alpha; // 1/s
+    s.d_gamma_rate_printed_d_phi = d_f_gamma_d_phi + x.alpha * d_g_gamma_d_phi; // rad/s
+
+    // Derivatives with respect to delta_e
+    let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_f_velocity_eta_d_delta_e =
+        s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
+    s.d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
+        - i.reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
+    s.d_f_gamma_eta_d_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
+
+    // Derivatives with respect to delta_c
+    let d_generalized_force_1_d_delta_c = i.reference_force
+        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_c = i.reference_force
+        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_c = i.reference_force
+        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    s.d_f_velocity_eta_d_delta_c =
+        s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
+    s.d_f_gamma_eta_d_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
 }
 
 /// Computes [`Slopes`].
@@ -511,264 +666,26 @@ pub fn slopes<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) -> Slopes<R> {
-    // Derivatives with respect to velocity
-    let d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
-    let c_t_alpha_alpha_plus_c_t_0 = i.c_t_alpha_alpha + p.c_t_0;
-    let slope_of_f_velocity_in_dynamic_pressure = (i.cos_alpha
-        * c_t_alpha_alpha_plus_c_t_0 - p.c_d_alpha * x.alpha
-        - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
-        * p.s_over_m; // ft^3/s^2/lb
-    let slope_of_f_velocity_eta_in_dynamic_pressure = p.s_over_m
-        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * i.generalized_force_1_inv_omega_1_2
-            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * i.generalized_force_2_inv_omega_2_2
-            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * i.generalized_force_3_inv_omega_3_2); // ft^3/s^2/lb
-    let d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft^2
-    let d_generalized_force_1_d_velocity = i.c_n_1 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_2_d_velocity = i.c_n_2 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_3_d_velocity = i.c_n_3 * d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
-    let slope_of_g_velocity_in_dynamic_pressure = c_t_phi_alpha_alpha_plus_c_t_phi
-        * i.cos_alpha * p.s_over_m; // ft^3/s^2/lb
-    let d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
-    let slope_of_gamma_rate_printed_in_turn_factor = i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3; // rad
-    let inv_velocity_2 = i.inv_velocity * i.inv_velocity;
-    let d_gravity_turn_d_velocity = -(i.gravity * inv_velocity_2
-        + p.earth_curvature * i.radius_ratio); // 1/ft
-    let slope_of_f_gamma_eta_in_generalized_force_1 = i.turn_factor
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_2 = i.turn_factor
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
-    let slope_of_f_gamma_eta_in_generalized_force_3 = i.turn_factor
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    let d_g_gamma_d_velocity = i.g_gamma_over_turn_factor * d_turn_factor_d_velocity; // 1/ft
-    let slope_of_alpha_rate_printed_in_turn_factor = -slope_of_gamma_rate_printed_in_turn_factor; // rad
-    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + i.c_t_alpha_alpha
-        + i.c_t_phi_phi
-        + p.c_t_0;
-    let slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
-        + i.sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
-    let slope_of_f_alpha_eta_in_turn_factor = -i.f_gamma_eta_over_turn_factor; // rad
-    let slope_of_f_alpha_eta_in_generalized_force_1 = -slope_of_f_gamma_eta_in_generalized_force_1;
-    let slope_of_f_alpha_eta_in_generalized_force_2 = -slope_of_f_gamma_eta_in_generalized_force_2;
-    let slope_of_f_alpha_eta_in_generalized_force_3 = -slope_of_f_gamma_eta_in_generalized_force_3;
-    let slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
-        * slope_of_f_alpha_in_turn_factor_term_1
-        + p.c_bar * (p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
-        * p.s_over_i_yy; // rad*ft^2/s^2/lb
+    let mut s = Slopes::splat(R::ZERO);
+    slopes_part_1(&mut s, x, u, p, i);
+    slopes_part_2(&mut s, x, p, i);
+    s
+}
 
-    // Derivatives with respect to altitude
-    let d_density_ratio_d_altitude = -i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_altitude = p.rho_0 * d_density_ratio_d_altitude; // slug/ft^4
-    let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * d_density_d_altitude; // lb/ft^3
-    let d_radius_ratio_d_altitude = -i.radius_ratio_2 * p.earth_curvature; // 1/ft
-    let d_gravity_d_altitude = p.two_g * i.radius_ratio * d_radius_ratio_d_altitude; // 1/s^2
-    let d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft^2
-    let d_generalized_force_1_d_altitude = i.c_n_1 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_altitude = i.c_n_2 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_altitude = i.c_n_3 * d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * d_density_d_altitude; // 1/s/ft
-    let d_gravity_turn_d_altitude = d_gravity_d_altitude * i.inv_velocity
-        - x.velocity * p.earth_curvature * d_radius_ratio_d_altitude; // 1/s/ft
-    let d_g_gamma_d_altitude = i.g_gamma_over_turn_factor * d_turn_factor_d_altitude; // 1/s/ft
-
-    // Derivatives with respect to gamma
-    let d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
-    let d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
-
-    // Derivatives with respect to alpha
-    let d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
-    let chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
-        + x.chi_2 * p.c_t_eta_2
-        + x.chi_3 * p.c_t_eta_3;
-    let slope_of_velocity_rate_printed_in_cos_alpha = i.reference_force * p.inv_m
-        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
-    let slope_of_f_velocity_in_cos_alpha = i.reference_force * p.inv_m
-        * c_t_alpha_alpha_plus_c_t_0; // ft/s^2
-    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-        + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-        + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
-    let slope_of_f_velocity_eta_in_cos_alpha = i.reference_force * p.inv_m
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
-    let d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_1_d_alpha = i.reference_force * d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_2_d_alpha = i.reference_force * d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    let d_generalized_force_3_d_alpha = i.reference_force * d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let slope_of_g_velocity_in_cos_alpha = c_t_phi_alpha_alpha_plus_c_t_phi
-        * i.reference_force * p.inv_m; // ft/s^2
-    let slope_of_gamma_rate_printed_in_sin_alpha = i.turn_factor
-        * chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
-    let slope_of_f_gamma_in_sin_alpha = i.turn_factor * (i.c_t_phi_phi + p.c_t_0); // rad/s
-    let slope_of_f_gamma_eta_in_sin_alpha = i.turn_factor
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
-    let c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    let slope_of_g_gamma_in_sin_alpha = i.turn_factor * c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
-    let d_g_gamma_d_alpha = slope_of_g_gamma_in_sin_alpha * i.cos_alpha; // 1/s/rad
-    let slope_of_alpha_rate_printed_in_sin_alpha = -slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
-    let slope_of_f_alpha_in_sin_alpha = -i.turn_factor
-        * slope_of_f_alpha_in_turn_factor_term_1; // rad/s
-    let slope_of_f_alpha_eta_in_sin_alpha = -slope_of_f_gamma_eta_in_sin_alpha; // rad/s
-
-    // Derivatives with respect to chi_1
-    let d_velocity_rate_printed_d_chi_1 = i.reference_force * p.inv_m
-        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_1 = i.turn_factor
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_1 = -d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_1 = i.reference_force
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_velocity_rate_printed_d_chi_2 = i.reference_force * p.inv_m
-        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_2 = i.turn_factor
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_2 = -d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_2 = i.reference_force
-        * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d_velocity_rate_printed_d_chi_3 = i.reference_force * p.inv_m
-        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    let d_gamma_rate_printed_d_chi_3 = i.turn_factor
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_alpha_rate_printed_d_chi_3 = -d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitch_rate_rate_printed_d_chi_3 = i.reference_force
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to phi
-    let d_f_gamma_d_phi = i.turn_factor * i.sin_alpha * p.c_t_phi; // rad/s
-    let d_g_gamma_d_phi = i.turn_factor * i.sin_alpha * p.c_t_phi_alpha; // 1/s
-    let d_gamma_rate_printed_d_phi = d_f_gamma_d_phi + x.alpha * d_g_gamma_d_phi; // rad/s
-
-    // Derivatives with respect to delta_e
-    let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_e =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
-    let d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
-        - i.reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_e = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
-
-    // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = i.reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = i.reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = i.reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_velocity_eta_d_delta_c =
-        d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
-        + d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
-        + d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    let d_f_gamma_eta_d_delta_c = slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
-        + slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-
-    Slopes {
-        d_dynamic_pressure_d_velocity,
-        c_t_alpha_alpha_plus_c_t_0,
-        slope_of_f_velocity_in_dynamic_pressure,
-        slope_of_f_velocity_eta_in_dynamic_pressure,
-        d_reference_force_d_velocity,
-        d_generalized_force_1_d_velocity,
-        d_generalized_force_2_d_velocity,
-        d_generalized_force_3_d_velocity,
-        c_t_phi_alpha_alpha_plus_c_t_phi,
-        slope_of_g_velocity_in_dynamic_pressure,
-        d_turn_factor_d_velocity,
-        slope_of_gamma_rate_printed_in_turn_factor,
-        inv_velocity_2,
-        d_gravity_turn_d_velocity,
-        slope_of_f_gamma_eta_in_generalized_force_1,
-        slope_of_f_gamma_eta_in_generalized_force_2,
-        slope_of_f_gamma_eta_in_generalized_force_3,
-        d_g_gamma_d_velocity,
-        slope_of_alpha_rate_printed_in_turn_factor,
-        slope_of_f_alpha_in_turn_factor,
-        slope_of_f_alpha_eta_in_turn_factor,
-        slope_of_f_alpha_eta_in_generalized_force_1,
-        slope_of_f_alpha_eta_in_generalized_force_2,
-        slope_of_f_alpha_eta_in_generalized_force_3,
-        slope_of_f_pitch_rate_in_dynamic_pressure,
-        d_density_d_altitude,
-        d_dynamic_pressure_d_altitude,
-        d_radius_ratio_d_altitude,
-        d_gravity_d_altitude,
-        d_reference_force_d_altitude,
-        d_generalized_force_1_d_altitude,
-        d_generalized_force_2_d_altitude,
-        d_generalized_force_3_d_altitude,
-        d_turn_factor_d_altitude,
-        d_gravity_turn_d_altitude,
-        d_g_gamma_d_altitude,
-        d_altitude_rate_d_gamma,
-        d_cos_gamma_d_gamma,
-        d_cos_alpha_d_alpha,
-        chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3,
-        slope_of_velocity_rate_printed_in_cos_alpha,
-        slope_of_f_velocity_in_cos_alpha,
-        slope_of_f_velocity_eta_in_cos_alpha,
-        d_c_n_1_d_alpha,
-        d_generalized_force_1_d_alpha,
-        d_c_n_2_d_alpha,
-        d_generalized_force_2_d_alpha,
-        d_c_n_3_d_alpha,
-        d_generalized_force_3_d_alpha,
-        slope_of_g_velocity_in_cos_alpha,
-        slope_of_gamma_rate_printed_in_sin_alpha,
-        slope_of_f_gamma_in_sin_alpha,
-        slope_of_f_gamma_eta_in_sin_alpha,
-        c_t_alpha_plus_c_t_phi_alpha_phi,
-        slope_of_g_gamma_in_sin_alpha,
-        d_g_gamma_d_alpha,
-        slope_of_alpha_rate_printed_in_sin_alpha,
-        slope_of_f_alpha_in_sin_alpha,
-        slope_of_f_alpha_eta_in_sin_alpha,
-        d_velocity_rate_printed_d_chi_1,
-        d_gamma_rate_printed_d_chi_1,
-        d_alpha_rate_printed_d_chi_1,
-        d_pitch_rate_rate_printed_d_chi_1,
-        d_velocity_rate_printed_d_chi_2,
-        d_gamma_rate_printed_d_chi_2,
-        d_alpha_rate_printed_d_chi_2,
-        d_pitch_rate_rate_printed_d_chi_2,
-        d_velocity_rate_printed_d_chi_3,
-        d_gamma_rate_printed_d_chi_3,
-        d_alpha_rate_printed_d_chi_3,
-        d_pitch_rate_rate_printed_d_chi_3,
-        d_gamma_rate_printed_d_phi,
-        d_f_velocity_d_delta_e,
-        d_f_gamma_eta_d_delta_e,
-        d_f_velocity_eta_d_delta_c,
-        d_f_gamma_eta_d_delta_c,
+ahv_core::record! {
+    /// Quantities of the diffusion that other functions need.
+    pub struct NoiseTerms<R> {
+        /// Derivative of partial derivative of g of the gamma row with respect to turn rate per force coefficient across
+        /// the flight path with respect to alpha, 1/rad.
+        pub c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha: R,
+        /// H of the velocity row, ft/s^2/rad.
+        pub alpha_slope_velocity: R,
+        /// H of the alpha row, rad/s/rad.
+        pub alpha_slope_alpha: R,
+        /// H of the pitch_rate row, rad/s^2/rad.
+        pub alpha_slope_pitch_rate: R,
     }
 }
-
-/// Quantities of the diffusion that other functions need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NoiseTerms<R> {
-    /// Derivative of partial derivative of g of the gamma row with respect to turn rate per force coefficient across
-    /// the flight path with respect to alpha, 1/rad.
-    pub c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha: R,
-    /// H of the velocity row, ft/s^2/rad.
-    pub alpha_slope_velocity: R,
-    /// H of the alpha row, rad/s/rad.
-    pub alpha_slope_alpha: R,
-    /// H of the pitch_rate row, rad/s^2/rad.
-    pub alpha_slope_pitch_rate: R,
-}
-
 /// Computes [`NoiseTerms`].
 #[inline(always)]
 pub fn noise_terms<R: Real>(
@@ -778,19 +695,107 @@ pub fn noise_terms<R: Real>(
     i: &Intermediates<R>,
     s: &Slopes<R>,
 ) -> NoiseTerms<R> {
-    // Strict-feedback form, (28)
-    let c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = i.cos_alpha
-        * s.c_t_alpha_plus_c_t_phi_alpha_phi;
-    let alpha_slope_velocity = i.reference_force * p.inv_m
-        * (c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
-    let alpha_slope_alpha = -i.g_gamma; // rad/s/rad
-    let alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
-        * (p.c_bar_c_m_alpha + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
+    let mut n = NoiseTerms::splat(R::ZERO);
 
-    NoiseTerms {
-        c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha,
-        alpha_slope_velocity,
-        alpha_slope_alpha,
-        alpha_slope_pitch_rate,
+    // Strict-feedback form, (28)
+    n.c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = i.cos_alpha
+        * s.c_t_alpha_plus_c_t_phi_alpha_phi;
+    n.alpha_slope_velocity = i.reference_force * p.inv_m
+        * (n.c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
+    n.alpha_slope_alpha = -i.g_gamma; // rad/s/rad
+    n.alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
+        * (p.c_bar_c_m_alpha + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
+    n
+}
+
+ahv_core::record! {
+    /// Quantities of the noise's derivatives that other functions, or several parts of these, need.
+    pub struct NoiseSlopes<R> {
+        /// Derivative of H of the velocity row with respect to velocity, 1/s/rad.
+        pub d_alpha_slope_velocity_d_velocity: R,
+        /// Derivative of H of the velocity row with respect to alpha, ft/s^2/rad^2.
+        pub d_alpha_slope_velocity_d_alpha: R,
+        /// Derivative of H of the alpha row with respect to velocity, 1/ft.
+        pub d_alpha_slope_alpha_d_velocity: R,
+        /// Derivative of H of the alpha row with respect to alpha, 1/s/rad.
+        pub d_alpha_slope_alpha_d_alpha: R,
+        /// Derivative of H of the pitch_rate row with respect to velocity, 1/s/ft.
+        pub d_alpha_slope_pitch_rate_d_velocity: R,
     }
+}
+/// Computes [`NoiseSlopes`].
+#[inline(always)]
+pub fn noise_slopes<R: Real>(
+    _x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+    n: &NoiseTerms<R>,
+) -> NoiseSlopes<R> {
+    let mut m = NoiseSlopes::splat(R::ZERO);
+
+    // Derivatives with respect to velocity
+    m.d_alpha_slope_velocity_d_velocity = (n
+        .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha)
+        * s.d_reference_force_d_velocity * p.inv_m; // 1/s/rad
+
+    // Derivatives with respect to alpha
+    let slope_of_alpha_slope_velocity_in_cos_alpha = i.reference_force * p.inv_m
+        * s.c_t_alpha_plus_c_t_phi_alpha_phi; // ft/s^2/rad
+    m.d_alpha_slope_velocity_d_alpha = slope_of_alpha_slope_velocity_in_cos_alpha
+        * s.d_cos_alpha_d_alpha; // ft/s^2/rad^2
+
+    // Derivatives with respect to altitude
+    let slope_of_alpha_slope_alpha_in_turn_factor = -i.g_gamma_over_turn_factor;
+
+    // Derivatives with respect to velocity
+    m.d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
+        * s.d_turn_factor_d_velocity; // 1/ft
+
+    // Derivatives with respect to alpha
+    let slope_of_alpha_slope_alpha_in_sin_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
+    m.d_alpha_slope_alpha_d_alpha = i.cos_alpha
+        * slope_of_alpha_slope_alpha_in_sin_alpha; // 1/s/rad
+
+    // Derivatives with respect to velocity
+    m.d_alpha_slope_pitch_rate_d_velocity = (p.c_bar_c_m_alpha
+        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi) * s.d_reference_force_d_velocity
+        * p.inv_i_yy; // 1/s/ft
+    m
+}
+
+ahv_core::record! {
+    /// Quantities of the derivatives with respect to parameters that several parts of these need.
+    pub struct Sensitivities<R> {
+        /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
+        /// Earth, 0 where it is flat, ft.
+        pub slope_of_radius_ratio_in_earth_curvature: R,
+        /// Reduced flexible coordinate of mode 1, (ft*slug)^0.5.
+        pub generalized_force_1_inv_omega_1_2_plus_chi_1: R,
+        /// Reduced flexible coordinate of mode 2, (ft*slug)^0.5.
+        pub generalized_force_2_inv_omega_2_2_plus_chi_2: R,
+        /// Reduced flexible coordinate of mode 3, (ft*slug)^0.5.
+        pub generalized_force_3_inv_omega_3_2_plus_chi_3: R,
+    }
+}
+/// Computes [`Sensitivities`].
+#[inline(always)]
+pub fn sensitivities<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    _p: &Prepared<R>,
+    i: &Intermediates<R>,
+) -> Sensitivities<R> {
+    let mut q = Sensitivities::splat(R::ZERO);
+
+    // Derivatives with respect to parameters
+    q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+    q.generalized_force_1_inv_omega_1_2_plus_chi_1 = i.generalized_force_1_inv_omega_1_2
+        + x.chi_1;
+    q.generalized_force_2_inv_omega_2_2_plus_chi_2 = i.generalized_force_2_inv_omega_2_2
+        + x.chi_2;
+    q.generalized_force_3_inv_omega_3_2_plus_chi_3 = i.generalized_force_3_inv_omega_3_2
+        + x.chi_3;
+    q
 }

@@ -1,9 +1,9 @@
 //! Results as Rust: the type of an output, its dense form as an expression, its pattern.
 
-use crate::ir::Basis;
 use crate::schedule::tree::Expr;
 use crate::shape::{Shape, words};
 
+use super::format;
 use super::print::{expression, literal};
 
 /// Zeros that a result needs, by name, each with the vector type that it is a splat of and its component.
@@ -95,58 +95,61 @@ impl Shape<'_> {
         Some(expression(&values[self.entry(at)?]))
     }
 
-    /// The name of the function from the compressed to the dense form, where there is one. A literal is several times
-    /// as quick as a walk along the pattern; but where every new coefficient is a new entry, it would be rewritten each time.
-    pub(crate) fn scatter(&self) -> Option<String> {
-        let is_small =
-            self.axes.len() == 2 && self.axes.iter().all(|b| b.basis != Basis::Parameter);
-        is_small.then(|| Some(format!("dense_{}", words(self.alias()?))))?
-    }
-
-    /// The dense form as an expression of the compressed one; none for what has no compressed form.
-    pub(crate) fn scattered(&self, values: &str) -> Option<String> {
-        if let Some(function) = self.scatter() {
-            return Some(format!("{function}(&{values})"));
-        }
-        let method = if self.output.symmetric {
-            "symmetric"
-        } else {
-            "dense"
-        };
-        let pattern = self.pattern()?.name;
-        Some(format!("{pattern}.{method}(&{values})"))
-    }
-
-    /// The pattern of the compressed form, one entry a line: its name, its indices, its shape.
-    pub(crate) fn pattern(&self) -> Option<PatternText> {
+    /// The struct of the structurally non-zero entries; none for what has no compressed form.
+    pub(super) fn entries(&self) -> Option<EntriesText> {
         let alias = self.alias()?;
-        let name = words(alias).to_uppercase();
-        let entries = self.output.entries.iter().map(|entry| {
-            let indices = entry.at.iter().zip(&self.axes);
-            let indices = indices.map(|(name, axis)| format!("{}.{name}", axis.vector));
-            format!("ahv_core::at!({})", indices.collect::<Vec<_>>().join(", "))
-        });
-        let shape = self
-            .axes
-            .iter()
-            .map(|axis| format!("{}::<u8>::LEN", axis.vector));
-        Some(PatternText {
-            name: format!("{name}_PATTERN"),
+        let vectors: Vec<&str> = self.vectors().collect();
+        let symmetric = if self.output.symmetric {
+            "symmetric "
+        } else {
+            ""
+        };
+        let open = vectors.join("<");
+        let close = ">".repeat(vectors.len() - 1);
+        let entries = self.entry_names().zip(&self.output.entries);
+        let entries = entries.map(|(name, entry)| format!("{name}: {},", entry.at.join(".")));
+        Some(EntriesText {
+            name: format!("{alias}Entries"),
             alias,
-            dimensions: self.axes.len(),
-            shape: shape.collect::<Vec<_>>().join(", "),
+            pattern: format!("{}_PATTERN", words(alias).to_uppercase()),
+            shape: format!("{symmetric}{open}{close}"),
             entries: entries.collect(),
+        })
+    }
+
+    /// The name of each entry: its row, then what it is a derivative by.
+    pub(crate) fn entry_names(&self) -> impl Iterator<Item = String> {
+        let entries = self.output.entries.iter();
+        entries.map(|entry| match entry.at.split_first() {
+            Some((row, others)) => format!("{row}_by_{}", others.join("_")),
+            None => String::new(),
         })
     }
 }
 
-/// A constant that says where the entries of a compressed form stand.
-pub(crate) struct PatternText {
-    pub(crate) name: String,
-    pub(crate) alias: &'static str,
-    pub(crate) dimensions: usize,
-    pub(crate) shape: String,
-    pub(crate) entries: Vec<String>,
+/// A struct of entries, and the constant that says where they stand.
+pub(super) struct EntriesText {
+    pub(super) name: String,
+    pub(super) alias: &'static str,
+    pub(super) pattern: String,
+    shape: String,
+    entries: Vec<String>,
+}
+
+impl EntriesText {
+    /// Its definition, as the formatter's marker.
+    pub(super) fn definition(&self) -> String {
+        let Self {
+            name,
+            alias,
+            pattern,
+            shape,
+            entries,
+        } = self;
+        let about = format!("/// The structurally non-zero entries of a [`{alias}`].");
+        let head = format!("pub struct {name}, {pattern}: {shape}");
+        format::entries(&about, &head, entries)
+    }
 }
 
 fn field(name: &str, value: String) -> String {

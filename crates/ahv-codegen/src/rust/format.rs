@@ -4,20 +4,33 @@
 use crate::EmitError;
 
 /// A comment on a line of its own, with a blank line before it.
-pub(crate) const SECTION: &str = "__section!";
+pub(super) const SECTION: &str = "__section!";
 /// A comment at the end of the line before it.
-pub(crate) const TRAILING: &str = "__trailing!";
+pub(super) const TRAILING: &str = "__trailing!";
 
 /// Addends of a sum, separated by `|`, one a line.
-pub(crate) const ADDENDS: &str = "__addends!";
+pub(super) const ADDENDS: &str = "__addends!";
 
-/// An `impl_vector!` of `ahv-core`: the vector, then its fields, separated by `|`.
-const VECTOR: &str = "__vector!";
+/// A call of a macro of `ahv-core`, line by line, separated by `|`: the formatter does not lay out the body of a macro.
+const CALL: &str = "__call!";
 
-/// An `impl_vector!` with a line for each field; the formatter does not lay out the body of a macro.
-pub(crate) fn vector(name: &str, fields: &[String]) -> String {
-    format!("{VECTOR}({:?});", format!("{name}|{}", fields.join("|")))
+/// An `impl_vector!` with a line for each field.
+pub(super) fn vector(name: &str, fields: &[String]) -> String {
+    call("impl_vector", "", name, fields)
 }
+
+/// An `entries!` with a line for each entry.
+pub(super) fn entries(about: &str, head: &str, entries: &[String]) -> String {
+    call("entries", about, head, entries)
+}
+
+fn call(name: &str, about: &str, head: &str, fields: &[String]) -> String {
+    let text = format!("{name}|{about}|{head}|{}", fields.join("|"));
+    format!("{CALL}({text:?});")
+}
+
+/// The attribute of a struct that `record!` of `ahv-core` defines.
+const RECORD: &str = "#[__record]";
 
 /// Lines of code stay below this width, comments included.
 const WIDTH: usize = 120;
@@ -55,12 +68,14 @@ pub(crate) fn format_rust(path: &str, header: &str, text: &str) -> Result<String
                 out.truncate(out.trim_end().len());
                 out += &format!(" // {comment}\n");
             }
-        } else if let Some(call) = code.strip_prefix(VECTOR) {
+        } else if let Some(call) = code.strip_prefix(CALL) {
             let mut call = call.to_owned();
             while !call.ends_with(");") {
                 call += lines.next().map_or(");", str::trim);
             }
-            out += &vector_call(&call);
+            out += &macro_call(&call);
+        } else if code == RECORD {
+            record(&mut out, &mut lines);
         } else if let Some((start, call)) = code.split_once(ADDENDS) {
             let mut call = call.to_owned();
             while !call.ends_with([';', ')']) {
@@ -91,19 +106,41 @@ pub(crate) fn format_rust(path: &str, header: &str, text: &str) -> Result<String
     Ok(out)
 }
 
-/// The `impl_vector!` that a marker stands for.
-fn vector_call(marker: &str) -> String {
+/// The call of a macro that a marker stands for.
+fn macro_call(marker: &str) -> String {
     let text = marker
         .trim_start_matches("(\"")
         .trim_end_matches("\");")
         .replace("\\\"", "\"");
-    let mut fields = text.split('|');
-    let name = fields.next().unwrap_or_default();
-    let mut out = format!("\nahv_core::impl_vector! {{\n    {name} {{\n");
-    for field in fields {
+    let mut parts = text.split('|');
+    let mut part = || parts.next().unwrap_or_default().to_owned();
+    let (name, about, head) = (part(), part(), part());
+    let mut out = format!("\nahv_core::{name}! {{\n");
+    if !about.is_empty() {
+        out += &format!("    {about}\n");
+    }
+    out += &format!("    {head} {{\n");
+    for field in parts {
         out += &format!("        {field}\n");
     }
     out + "    }\n}\n"
+}
+
+/// A struct as the body of `record!`. What is written of it already, its description, goes inside.
+fn record<'a>(out: &mut String, lines: &mut impl Iterator<Item = &'a str>) {
+    let about = out.trim_end().rfind("\n\n").map_or(0, |at| at + 2);
+    let about: String = out.split_off(about);
+    *out += "ahv_core::record! {\n";
+    for line in about.lines() {
+        *out += &format!("    {line}\n");
+    }
+    for line in lines {
+        *out += &format!("    {line}\n");
+        if line == "}" {
+            break;
+        }
+    }
+    *out += "}\n";
 }
 
 /// Whether a blank line separates an item from what stands before it.

@@ -2,20 +2,21 @@
 
 use std::collections::BTreeSet;
 
-use super::dense::{PatternText, Zeros};
-use super::print::{expression, statement, value_of};
+use super::dense::Zeros;
+use super::print::{expression, section, statement, value_of};
 use super::wording::{arguments, tuple, values_name};
 use crate::graph::Kind;
 use crate::ir::capitalised;
+use crate::schedule::pieces::Group;
 use crate::schedule::program::{Function, Program};
-use crate::schedule::stages;
-use crate::schedule::tree::{Expr, Source, Statement};
+use crate::schedule::stages::{self, Stage};
+use crate::schedule::tree::{Body, Source, Statement};
 use crate::shape::Shape;
 use crate::wording::summary;
 
-/// A pattern or a function.
+/// A struct of entries or a function.
 pub(super) enum Item {
-    Pattern(PatternText),
+    Entries(String),
     Function(FunctionText),
 }
 
@@ -26,51 +27,36 @@ pub(super) struct FunctionText {
     pub(super) arguments: Vec<String>,
     pub(super) result: String,
     pub(super) statements: Vec<String>,
+    /// Whether others are to call it.
+    pub(super) is_public: bool,
     /// Whether a blank line sets the result off from what it is made of.
     pub(super) sets_result_off: bool,
     pub(super) zeros: Zeros,
     pub(super) outputs: Vec<(String, String)>,
 }
 
-/// The function from the compressed to the dense form, where a literal says it.
-pub(super) fn scatter(shape: &Shape<'_>) -> Option<FunctionText> {
-    let (name, alias) = (shape.scatter()?, shape.alias()?);
-    let count = shape.output.entries.len();
-    let values: Vec<Expr> = (0..count)
-        .map(|k| Expr::Name(format!("values[{k}]")))
-        .collect();
-    let mut zeros = Zeros::new();
-    let dense = shape.dense(&values, &mut zeros);
-    Some(FunctionText {
-        name,
-        docs: vec![format!(
-            "The [`{alias}`] whose structurally non-zero entries are `values`, in the order of the pattern."
-        )],
-        arguments: vec![format!("values: &[R; {count}]")],
-        result: shape.result(),
-        statements: Vec::new(),
-        sets_result_off: false,
-        zeros,
-        outputs: vec![(String::new(), dense)],
-    })
-}
-
-/// A function, or its compressed form: one item, or two where another function takes what it is made from.
+/// The items of a function, or of its compressed form.
 pub(super) fn functions(program: &Program<'_>, function: &Function<'_>) -> Vec<FunctionText> {
     if !function.parts.is_empty() {
         return vec![composed(program, function)];
     }
-    let mut text = own(function);
+    let mut text = own(program, function);
+    let pieces = function.pieces.iter();
+    let mut items: Vec<FunctionText> = pieces
+        .map(|(group, body)| piece(program, function, group, body))
+        .collect();
     let Some(from) = from(function) else {
         let stages = stage_lines(program, &function.stages);
         text.statements.splice(0..0, stages);
-        return vec![text];
+        items.push(text);
+        return items;
     };
     let whole = FunctionText {
         docs: text.docs.clone(),
         arguments: public_arguments(program, function),
         result: text.result.clone(),
         statements: stage_lines(program, &function.stages),
+        is_public: true,
         sets_result_off: false,
         zeros: Zeros::new(),
         outputs: vec![(String::new(), call(program, function))],
@@ -79,12 +65,112 @@ pub(super) fn functions(program: &Program<'_>, function: &Function<'_>) -> Vec<F
     text.docs = vec![format!("[`{}`] from what is computed once.", whole.name)];
     for &position in &function.stages {
         let kind = program.stages[position].kind;
-        text.arguments.push(stage_argument(
-            kind,
-            function.body.uses(Source::Stage(kind)),
-        ));
+        let is_used = function.uses(Source::Stage(kind));
+        text.arguments.push(stage_argument(kind, is_used));
     }
-    vec![whole, text]
+    items.extend([text, whole]);
+    items
+}
+
+/// What a body takes: arguments of the model, then stages, as far as it refers to them.
+pub(super) fn taken(uses: impl Fn(Source) -> bool, stages: &[Stage]) -> Vec<(String, String)> {
+    let arguments = [
+        ("x", Kind::State, "State"),
+        ("u", Kind::Input, "Input"),
+        ("p", Kind::Parameter, "Prepared"),
+        ("dw", Kind::Noise, "Noise"),
+    ];
+    let arguments = arguments.into_iter();
+    let arguments = arguments.filter(|(_, kind, _)| uses(Source::Argument(*kind)));
+    let arguments = arguments.map(|(name, _, of)| (name.to_owned(), of.to_owned()));
+    let stages = stages.iter().map(|stage| stage.kind);
+    let stages = stages.filter(|kind| uses(Source::Stage(kind)));
+    let stages = stages.map(|kind| (kind.argument.to_owned(), kind.type_name.to_owned()));
+    arguments.chain(stages).collect()
+}
+
+/// A function that computes some entries of another.
+fn piece(
+    program: &Program<'_>,
+    function: &Function<'_>,
+    group: &Group,
+    body: &Body,
+) -> FunctionText {
+    let mut statements: Vec<String> = body.statements.iter().map(statement).collect();
+    if !statements.is_empty() {
+        statements.push(section(""));
+    }
+    for (entry, value) in group.entries.iter().zip(&body.results) {
+        let field = place(function, *entry);
+        statements.push(format!("{field} = {};", value_of(value)));
+    }
+    let targets = targets(function, group).into_iter();
+    let targets = targets.map(|(name, of)| format!("{name}: &mut {of}<R>"));
+    let taken = taken(|source| body.uses(source), &program.stages).into_iter();
+    let taken = taken.map(|(name, of)| format!("{name}: &{of}<R>"));
+    FunctionText {
+        name: piece_name(function, group),
+        docs: vec![format!(
+            "Entries of [`{}`]: derivatives by {}.",
+            own_name(function),
+            group.label.replace("_to_", " to ")
+        )],
+        arguments: targets.chain(taken).collect(),
+        result: String::new(),
+        statements,
+        is_public: false,
+        sets_result_off: false,
+        zeros: Zeros::new(),
+        outputs: Vec::new(),
+    }
+}
+
+fn piece_name(function: &Function<'_>, group: &Group) -> String {
+    format!("{}_by_{}", function.ir.name, group.label)
+}
+
+/// The structs that a piece fills, as arguments.
+fn targets(function: &Function<'_>, group: &Group) -> Vec<(String, String)> {
+    let mut targets = Vec::new();
+    for &entry in &group.entries {
+        let (output, _) = locate(function, entry);
+        let shape = &function.shapes[output];
+        let name = result_name(function, output);
+        let of = shape.entries().map_or_else(String::new, |it| it.name);
+        if !targets.contains(&(name.clone(), of.clone())) {
+            targets.push((name, of));
+        }
+    }
+    targets
+}
+
+/// The output in which an entry of a function stands, and its position there.
+fn locate(function: &Function<'_>, mut entry: usize) -> (usize, usize) {
+    for (output, shape) in function.shapes.iter().enumerate() {
+        let length = shape.output.entries.len();
+        if entry < length {
+            return (output, entry);
+        }
+        entry -= length;
+    }
+    (0, 0)
+}
+
+fn result_name(function: &Function<'_>, output: usize) -> String {
+    let name = &function.ir.outputs[output].name;
+    if name.is_empty() {
+        "entries".to_owned()
+    } else {
+        name.clone()
+    }
+}
+
+/// An entry of a function as a field of the struct that it returns.
+fn place(function: &Function<'_>, entry: usize) -> String {
+    let (output, position) = locate(function, entry);
+    let name = function.shapes[output].entry_names().nth(position);
+    let name = name.unwrap_or_default();
+    format!("{}.{name}", result_name(function, output))
 }
 
 /// The argument that holds a stage.
@@ -99,7 +185,7 @@ pub(super) fn stage_lines(program: &Program<'_>, positions: &[usize]) -> Vec<Str
         let stage = &program.stages[position];
         let mut call = format!("{}(x, u, p", stage.kind.function);
         for earlier in &program.stages[..position] {
-            if stage.body.uses(Source::Stage(earlier.kind)) {
+            if stage.uses(Source::Stage(earlier.kind)) {
                 call += &format!(", &{}", earlier.kind.argument);
             }
         }
@@ -113,7 +199,7 @@ fn public_arguments(program: &Program<'_>, function: &Function<'_>) -> Vec<Strin
     let bodies: Vec<&Function<'_>> = parts.chain([function]).collect();
     let used = |kind: Kind| {
         let by_stages = !function.stages.is_empty() && kind != Kind::Noise;
-        by_stages || bodies.iter().any(|it| it.body.uses(Source::Argument(kind)))
+        by_stages || bodies.iter().any(|it| it.uses(Source::Argument(kind)))
     };
     let scalars: BTreeSet<String> = bodies.iter().flat_map(|it| it.body.scalars()).collect();
     let scalars = scalars.into_iter().map(|name| format!("{name}: R"));
@@ -140,7 +226,7 @@ fn call(program: &Program<'_>, function: &Function<'_>) -> String {
         "{}(x, u, p",
         from(function).unwrap_or_else(|| own_name(function))
     );
-    if function.body.uses(Source::Argument(Kind::Noise)) {
+    if function.uses(Source::Argument(Kind::Noise)) {
         call += ", dw";
     }
     for scalar in function.body.scalars() {
@@ -164,12 +250,11 @@ fn composed(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
         let names: Vec<String> = names.map(|output| output.name.clone()).collect();
         statements.push(format!("let {} = {};", tuple(&names), call(program, part)));
         for (shape, name) in part.shapes.iter().zip(names) {
-            let is_array = part.ir.compressed && shape.pattern().is_some();
-            let entries = shape.output.entries.len();
-            let (value, result) = match shape.scattered(&name) {
-                Some(dense) if is_array && !ir.compressed => (dense, shape.result()),
-                _ if is_array => (name, format!("[R; {entries}]")),
-                _ => (name, shape.result()),
+            let entries = shape.entries().filter(|_| part.ir.compressed);
+            let (value, result) = match entries {
+                Some(_) if !ir.compressed => (format!("{name}.dense()"), shape.result()),
+                Some(entries) => (name, format!("{}<R>", entries.name)),
+                None => (name, shape.result()),
             };
             values.push(value);
             results.push(result);
@@ -181,51 +266,108 @@ fn composed(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
         arguments: public_arguments(program, function),
         result: tuple(&results),
         statements,
+        is_public: true,
         sets_result_off: false,
         zeros: Zeros::new(),
         outputs: vec![(String::new(), tuple(&values))],
     }
 }
 
-/// A function with a body, without what it takes from stages.
-fn own(function: &Function<'_>) -> FunctionText {
+/// A function with a body or pieces, without what it takes from stages.
+fn own(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
     let Function {
         ir, shapes, body, ..
     } = function;
+    let mut statements: Vec<String> = body.statements.iter().map(statement).collect();
+    let sets_result_off = !matches!(body.statements.last(), None | Some(Statement::Section(_)));
     let mut zeros = Zeros::new();
     let (mut outputs, mut results) = (Vec::new(), Vec::new());
     let mut remaining = body.results.as_slice();
-    for (output, shape) in ir.outputs.iter().zip(shapes) {
-        let (values, rest) = remaining.split_at(output.entries.len());
-        remaining = rest;
-        let (result, value) = if ir.compressed && shape.pattern().is_some() {
-            let values: Vec<String> = values.iter().map(expression).collect();
-            let result = format!("[R; {}]", values.len());
-            (result, format!("[{}]", values.join(", ")))
-        } else {
-            let value = match values {
-                [value] if shape.axes.is_empty() => value_of(value),
-                _ => shape.dense(values, &mut zeros),
-            };
-            (shape.result(), value)
+    for (position, (output, shape)) in ir.outputs.iter().zip(shapes).enumerate() {
+        let (result, value) = match shape.entries().filter(|_| ir.compressed) {
+            Some(entries) if !function.pieces.is_empty() => {
+                let name = result_name(function, position);
+                statements.push(format!(
+                    "let mut {name} = {}::splat(R::ZERO);",
+                    entries.name
+                ));
+                (format!("{}<R>", entries.name), name)
+            }
+            entries => {
+                let (values, rest) = remaining.split_at(output.entries.len());
+                remaining = rest;
+                match entries {
+                    Some(entries) => {
+                        let fields = shape.entry_names().zip(values);
+                        let fields =
+                            fields.map(|(name, value)| format!("{name}: {}", expression(value)));
+                        let fields: Vec<String> = fields.collect();
+                        let literal = if fields.is_empty() {
+                            format!("{}::splat(R::ZERO)", entries.name)
+                        } else {
+                            format!("{} {{ {} }}", entries.name, fields.join(", "))
+                        };
+                        (format!("{}<R>", entries.name), literal)
+                    }
+                    None => {
+                        let value = match values {
+                            [value] if shape.axes.is_empty() => value_of(value),
+                            _ => shape.dense(values, &mut zeros),
+                        };
+                        (shape.result(), value)
+                    }
+                }
+            }
         };
         results.push(result);
         outputs.push((output.name.clone(), value));
     }
+    if !function.pieces.is_empty() {
+        let pieces = function.pieces.iter();
+        statements
+            .extend(pieces.map(|(group, body)| call_of_piece(program, function, group, body)));
+        let names: Vec<String> = outputs.into_iter().map(|(_, value)| value).collect();
+        outputs = vec![(String::new(), tuple(&names))];
+    }
     let is_whole = from(function).is_none();
     let by_stages = is_whole && !function.stages.is_empty();
-    let used = |kind: Kind| (by_stages && kind != Kind::Noise) || body.uses(Source::Argument(kind));
+    let used =
+        |kind: Kind| (by_stages && kind != Kind::Noise) || function.uses(Source::Argument(kind));
     let scalars = body.scalars().into_iter().map(|name| format!("{name}: R"));
     FunctionText {
         name: own_name(function),
         docs: documentation(function),
         arguments: arguments(used).into_iter().chain(scalars).collect(),
         result: tuple(&results),
-        statements: body.statements.iter().map(statement).collect(),
-        sets_result_off: !matches!(body.statements.last(), None | Some(Statement::Section(_))),
+        statements,
+        is_public: true,
+        sets_result_off,
         zeros,
         outputs,
     }
+}
+
+/// The call of a piece. Stages are at hand by value, or as arguments by reference.
+fn call_of_piece(
+    program: &Program<'_>,
+    function: &Function<'_>,
+    group: &Group,
+    body: &Body,
+) -> String {
+    let targets = targets(function, group).into_iter();
+    let targets = targets.map(|(name, _)| format!("&mut {name}"));
+    let by_value = from(function).is_none();
+    let taken = taken(|source| body.uses(source), &program.stages).into_iter();
+    let taken = taken.map(|(name, _)| {
+        let is_stage = program.stages.iter().any(|it| it.kind.argument == name);
+        if is_stage && by_value {
+            format!("&{name}")
+        } else {
+            name
+        }
+    });
+    let arguments: Vec<String> = targets.chain(taken).collect();
+    format!("{}({});", piece_name(function, group), arguments.join(", "))
 }
 
 fn documentation(function: &Function<'_>) -> Vec<String> {
@@ -251,14 +393,17 @@ pub(super) fn dense(function: &Function<'_>) -> FunctionText {
     };
     let source = (shapes.len() > 1).then(|| format!("let {} = {call};", tuple(&values)));
     let dense = shapes.iter().zip(&values);
-    let dense =
-        dense.map(|(shape, values)| shape.scattered(values).unwrap_or_else(|| values.clone()));
+    let dense = dense.map(|(shape, values)| match shape.entries() {
+        Some(_) => format!("{values}.dense()"),
+        None => values.clone(),
+    });
     FunctionText {
         name: ir.name.clone(),
         docs: summary(ir),
         arguments: arguments(|kind| kind != Kind::Noise),
         result: tuple(&results),
         statements: source.into_iter().collect(),
+        is_public: true,
         sets_result_off: false,
         zeros: Zeros::new(),
         outputs: vec![(String::new(), tuple(&dense.collect::<Vec<_>>()))],
@@ -272,19 +417,17 @@ pub(super) fn imports(program: &Program<'_>, function: &Function<'_>) -> Vec<Str
     for part in parts.clone() {
         if part.ir.group != function.ir.group {
             found.push(from(part).unwrap_or_else(|| own_name(part)));
-            if part.ir.compressed && !function.ir.compressed {
-                found.extend(part.shapes.iter().filter_map(Shape::scatter));
-            }
         }
     }
     let mut bodies = parts.chain([function]);
-    if bodies.any(|it| it.body.uses(Source::Argument(Kind::Noise))) {
+    if bodies.any(|it| it.uses(Source::Argument(Kind::Noise))) {
         found.push("Noise".to_owned());
     }
     for &position in &function.stages {
         let kind = program.stages[position].kind;
         found.push(kind.function.to_owned());
-        if from(function).is_some() {
+        let named = from(function).is_some() || !function.pieces.is_empty();
+        if named && (from(function).is_some() || function.uses(Source::Stage(kind))) {
             found.push(kind.type_name.to_owned());
         }
     }

@@ -14,13 +14,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::EmitError;
 use crate::emit::render;
-use crate::ir::{self, Basis, Variable, described};
+use crate::ir::{self, Basis, Variable};
+use crate::schedule::Cost;
 use crate::schedule::program::Program;
 use crate::schedule::stages::{self, Stage};
-use crate::schedule::tree::Source;
+use crate::schedule::tree::{Source, Statement};
 use crate::wording::wrapped;
 use items::Item;
-use print::{expression, statement};
+use print::statement;
 use wording::{arguments, formula, vector_impl};
 
 #[derive(Template)]
@@ -109,33 +110,30 @@ struct Vector<'a> {
 }
 
 #[derive(Template)]
-#[template(path = "prepared.rs")]
-struct PreparedTemplate<'a> {
-    label: String,
-    fields: Vec<PreparedField<'a>>,
-    statements: Vec<String>,
-    cost: String,
-}
-
-struct PreparedField<'a> {
-    name: &'a str,
-    docs: Vec<String>,
-    value: String,
-}
-
-#[derive(Template)]
 #[template(path = "stages.rs")]
 struct StagesTemplate<'a> {
-    label: String,
-    units: &'static str,
+    about: String,
     imports: Vec<&'static str>,
     stages: Vec<StageText<'a>>,
 }
 
 struct StageText<'a> {
     kind: &'static stages::Kind,
-    arguments: Vec<String>,
-    fields: Vec<PreparedField<'a>>,
+    docs: Vec<String>,
+    fields: Vec<(&'a str, Vec<String>)>,
+    arguments: String,
+    /// Whether it is a part of every function that calls it.
+    is_inline: bool,
+    /// Statements, where one part fills all.
+    statements: Vec<String>,
+    /// Otherwise what each part takes, its call and its statements.
+    parts: Vec<PartText>,
+}
+
+struct PartText {
+    name: String,
+    arguments: String,
+    call: String,
     statements: Vec<String>,
 }
 
@@ -148,15 +146,9 @@ struct FunctionsTemplate {
     imports: Vec<String>,
     paper_names: bool,
     needs_vector: bool,
+    /// Whether a function takes more arguments than the linter likes.
+    is_crowded: bool,
     items: Vec<Item>,
-}
-
-impl FunctionsTemplate {
-    fn has_patterns(&self) -> bool {
-        self.items
-            .iter()
-            .any(|item| matches!(item, Item::Pattern(_)))
-    }
 }
 
 /// The text of each Rust file of a model, by its name without ending.
@@ -243,55 +235,119 @@ fn vectors(model: &ir::Model) -> Vec<Vector<'_>> {
 }
 
 fn prepared(program: &Program<'_>) -> Result<String, EmitError> {
-    let statements = &program.prepare.statements;
-    let fields = program.fields.iter().map(|field| {
-        let formula = || format!("`{}`.", formula(&field.value, statements));
-        PreparedField {
-            name: &field.name,
-            docs: wrapped(&field.about.clone().unwrap_or_else(formula)),
-            value: expression(&field.value),
-        }
-    });
-    render(&PreparedTemplate {
-        label: program.label(),
-        fields: fields.collect(),
-        statements: statements.iter().map(statement).collect(),
-        cost: program.prepare.cost().describe(),
+    let stage = &program.prepared;
+    let mut cost = Cost::default();
+    stage.parts.iter().for_each(|part| cost += part.cost());
+    let docs = ["Computes everything that depends on parameters alone.", ""];
+    let docs = docs.map(str::to_owned).into_iter();
+    let text = StageText {
+        docs: docs.chain([format!("{}.", cost.describe())]).collect(),
+        ..stage_text(stage, &[], "Parameters")
+    };
+    render(&StagesTemplate {
+        about: format!(
+            "What {} computes from its parameters once.",
+            program.label()
+        ),
+        imports: vec!["Parameters"],
+        stages: vec![text],
     })
 }
 
 /// What functions share.
 fn stages(program: &Program<'_>) -> Result<String, EmitError> {
-    let stages = program.stages.iter().map(|it| stage_text(program, it));
+    let stages = program.stages.iter();
+    let stages = stages.map(|stage| stage_text(stage, &program.stages, "Prepared"));
     render(&StagesTemplate {
-        label: program.label(),
-        units: program.document.units.in_words(),
+        about: format!(
+            "What functions of {} share. Units are {}.",
+            program.label(),
+            program.document.units.in_words()
+        ),
         imports: vec!["Input", "Prepared", "State"],
         stages: stages.collect(),
     })
 }
 
-fn stage_text<'a>(program: &Program<'_>, stage: &'a Stage<'_>) -> StageText<'a> {
-    let statements = &stage.body.statements;
-    let fields = stage.fields.iter().zip(&stage.body.results);
-    let fields = fields.map(|(field, value)| {
-        let formula = || format!("`{}`.", formula(value, statements));
-        let about = field.quantity.map(|it| described(&it.doc, &it.unit));
-        PreparedField {
-            name: &field.name,
-            docs: wrapped(&about.unwrap_or_else(formula)),
-            value: expression(value),
+/// A stage; `p` are values of this type.
+fn stage_text<'a>(stage: &'a Stage, all: &[Stage], parameters: &str) -> StageText<'a> {
+    let kind = stage.kind;
+    let values = stage.parts.iter().flat_map(|part| &part.statements);
+    let value = |name: &str| {
+        values.clone().find_map(|it| match it {
+            Statement::Set { field, value, .. } if field == name => Some(value),
+            _ => None,
+        })
+    };
+    let fields = stage.fields.iter().map(|field| {
+        let formula = || {
+            format!(
+                "`{}`.",
+                value(&field.name).map_or_else(String::new, formula)
+            )
+        };
+        let about = field.about.clone().unwrap_or_else(formula);
+        (&*field.name, wrapped(&about))
+    });
+    let arguments = if parameters == "Parameters" {
+        format!("p: &{parameters}<R>")
+    } else {
+        let mut arguments = arguments(|kind| stage.uses(Source::Argument(kind)));
+        let earlier = all.iter().map(|it| it.kind).filter(|it| **it != *kind);
+        let earlier = earlier.filter(|kind| stage.uses(Source::Stage(kind)));
+        arguments.extend(earlier.map(|kind| items::stage_argument(kind, true)));
+        arguments.join(", ")
+    };
+    let is_whole = stage.parts.len() == 1;
+    let mut statements = stage.parts.iter();
+    let mut statements: Vec<Vec<String>> = statements
+        .by_ref()
+        .map(|part| part.statements.iter().map(statement).collect())
+        .collect();
+    let whole = if is_whole {
+        statements.remove(0)
+    } else {
+        Vec::new()
+    };
+    let parts = stage.parts.iter().zip(statements).zip(1..);
+    let parts = parts.map(|((part, statements), number)| {
+        let taken = items::taken(|source| part.uses(source), all).into_iter();
+        let taken: Vec<(String, String)> =
+            taken.filter(|(name, _)| name != kind.argument).collect();
+        let name = format!("{}_part_{number}", kind.function);
+        let types = taken.iter().map(|(name, of)| {
+            let of = if name == "p" { parameters } else { of };
+            format!("{name}: &{of}<R>")
+        });
+        let own = format!("{}: &mut {}<R>", kind.argument, kind.type_name);
+        let names = taken.iter().map(|(name, _)| name.clone());
+        let names: Vec<String> = [format!("&mut {}", kind.argument)]
+            .into_iter()
+            .chain(names)
+            .collect();
+        PartText {
+            call: format!("{name}({});", names.join(", ")),
+            arguments: [own]
+                .into_iter()
+                .chain(types)
+                .collect::<Vec<_>>()
+                .join(", "),
+            name,
+            statements,
         }
     });
-    let mut arguments = arguments(|kind| stage.body.uses(Source::Argument(kind)));
-    let earlier = program.stages.iter().map(|it| it.kind);
-    let earlier = earlier.filter(|&kind| stage.body.uses(Source::Stage(kind)));
-    arguments.extend(earlier.map(|kind| items::stage_argument(kind, true)));
     StageText {
-        kind: stage.kind,
-        arguments,
+        kind,
+        docs: vec![format!("Computes [`{}`].", kind.type_name)],
         fields: fields.collect(),
-        statements: statements.iter().map(statement).collect(),
+        arguments,
+        is_inline: *kind != stages::PREPARED,
+        parts: if is_whole {
+            Vec::new()
+        } else {
+            parts.collect()
+        },
+        statements: whole,
     }
 }
 
@@ -305,12 +361,13 @@ fn functions(program: &Program<'_>, group: &str) -> Result<String, EmitError> {
     for function in own {
         for shape in &function.shapes {
             imports.extend(shape.vectors().chain(shape.alias()).map(str::to_owned));
-            if function.ir.compressed
-                && let Some(pattern) = shape.pattern()
-                && patterns.insert(pattern.name.clone())
-            {
-                items.push(Item::Pattern(pattern));
-                items.extend(items::scatter(shape).map(Item::Function));
+            if let Some(entries) = shape.entries().filter(|_| function.ir.compressed) {
+                let here = function.parts.is_empty() && patterns.insert(entries.pattern.clone());
+                if here {
+                    items.push(Item::Entries(entries.definition()));
+                } else if !patterns.contains(&entries.pattern) {
+                    imports.insert(entries.name);
+                }
             }
         }
         imports.extend(items::imports(program, function));
@@ -323,10 +380,11 @@ fn functions(program: &Program<'_>, group: &str) -> Result<String, EmitError> {
     let functions = || {
         items.iter().filter_map(|item| match item {
             Item::Function(function) => Some(function),
-            Item::Pattern(_) => None,
+            Item::Entries(_) => None,
         })
     };
     let paper_names = functions().any(|f| f.name.chars().any(char::is_uppercase));
+    let is_crowded = functions().any(|f| f.arguments.len() > 7);
     let needs_vector = functions().any(|f| !f.zeros.is_empty());
     render(&FunctionsTemplate {
         label: program.label(),
@@ -334,6 +392,7 @@ fn functions(program: &Program<'_>, group: &str) -> Result<String, EmitError> {
         imports: imports.into_iter().collect(),
         paper_names,
         needs_vector,
+        is_crowded,
         items,
     })
 }

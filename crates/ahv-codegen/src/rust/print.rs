@@ -34,14 +34,7 @@ fn function(call: Call) -> &'static str {
 pub(super) fn expression(expr: &Expr) -> String {
     match expr {
         Expr::Number(value) => literal(*value),
-        Expr::Component(source, name) => match source {
-            Source::Argument(Kind::State) => format!("x.{name}"),
-            Source::Argument(Kind::Input) => format!("u.{name}"),
-            Source::Argument(Kind::Noise) => format!("dw.{name}"),
-            Source::Argument(Kind::Parameter) => format!("p.{name}"),
-            Source::Argument(Kind::Argument) => name.clone(),
-            Source::Stage(stage) => format!("{}.{name}", stage.argument),
-        },
+        Expr::Component(source, name) => component(*source, name),
         Expr::Name(name) => name.clone(),
         Expr::Negative(part) => format!("-{}", enclosed(part, Binding::Product)),
         Expr::Sum(addends) => addends_of(addends).join(" "),
@@ -64,6 +57,27 @@ pub(super) fn expression(expr: &Expr) -> String {
         Expr::Call(call, part) => {
             format!("{}.{}()", enclosed(part, Binding::Atom), function(*call))
         }
+    }
+}
+
+/// A component of an argument.
+pub(super) fn component(source: Source, name: &str) -> String {
+    let argument = match source {
+        Source::Argument(Kind::State) => "x",
+        Source::Argument(Kind::Input) => "u",
+        Source::Argument(Kind::Noise) => "dw",
+        Source::Argument(Kind::Parameter) => "p",
+        Source::Argument(Kind::Argument) => return name.to_owned(),
+        Source::Stage(stage) => stage.argument,
+    };
+    format!("{argument}.{name}")
+}
+
+/// The unit after a statement; a pure number has none to tell.
+fn trailing(unit: &str) -> String {
+    match unit {
+        "" | "1" => String::new(),
+        unit => format!(" {TRAILING}({unit:?});"),
     }
 }
 
@@ -90,21 +104,35 @@ fn addends_of(addends: &[(Sign, Expr)]) -> Vec<String> {
     addends.iter().enumerate().map(addend).collect()
 }
 
+/// A heading; without text it is a blank line.
+pub(super) fn section(heading: &str) -> String {
+    format!("{SECTION}({heading:?});")
+}
+
 /// A statement as source text; comments and listed sums travel as the formatter's markers.
 pub(super) fn statement(statement: &Statement) -> String {
     match statement {
-        Statement::Section(heading) => format!("{SECTION}({heading:?});"),
+        Statement::Section(heading) => section(heading),
         Statement::Let { name, value, unit } => {
-            // A pure number has no unit to tell.
-            let trailing = match unit.as_str() {
-                "" | "1" => String::new(),
-                unit => format!(" {TRAILING}({unit:?});"),
-            };
-            format!("let {name} = {};{trailing}", value_of(value))
+            format!("let {name} = {};{}", value_of(value), trailing(unit))
+        }
+        Statement::Set {
+            source,
+            field,
+            value,
+            unit,
+        } => {
+            let field = component(*source, field);
+            format!("{field} = {};{}", value_of(value), trailing(unit))
         }
         Statement::SinCos { sin, cos, angle } => {
             let angle = enclosed(angle, Binding::Atom);
-            format!("let ({sin}, {cos}) = {angle}.sin_cos();")
+            let start = match sin {
+                Expr::Name(_) => "let ",
+                _ => "",
+            };
+            let (sin, cos) = (expression(sin), expression(cos));
+            format!("{start}({sin}, {cos}) = {angle}.sin_cos();")
         }
     }
 }

@@ -5,7 +5,7 @@ use super::print::expression;
 use crate::EmitError;
 use crate::graph::Kind;
 use crate::ir;
-use crate::schedule::tree::{Expr, Statement};
+use crate::schedule::tree::Expr;
 
 /// The name of the compressed form.
 pub(super) fn values_name(function: &ir::Function) -> String {
@@ -51,15 +51,9 @@ pub(super) fn vector_impl<'a>(
     Ok(format::vector(vector, &lines))
 }
 
-/// The formula of a prepared value for a reader: that of its `let` where it has one.
-pub(super) fn formula(value: &Expr, statements: &[Statement]) -> String {
-    let bound = statements.iter().find_map(|statement| match statement {
-        Statement::Let {
-            name, value: bound, ..
-        } if matches!(value, Expr::Name(it) if it == name) => Some(bound),
-        _ => None,
-    });
-    let text = expression(bound.unwrap_or(value)).replace("p.", "");
+/// The formula of a field for a reader.
+pub(super) fn formula(value: &Expr) -> String {
+    let text = expression(value).replace("c.", "").replace("p.", "");
     match text.strip_suffix(".recip()") {
         Some(below) => format!("1 / {below}"),
         None => text.replace("R::TWO", "2").replace("R::from_f64(3.0)", "3"),

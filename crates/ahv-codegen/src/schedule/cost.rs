@@ -71,3 +71,14 @@ impl Cost {
         }
     }
 }
+
+impl std::ops::AddAssign for Cost {
+    fn add_assign(&mut self, other: Self) {
+        self.additions += other.additions;
+        self.multiplications += other.multiplications;
+        self.divisions += other.divisions;
+        self.sin_cos += other.sin_cos;
+        self.exp += other.exp;
+        self.sqrt += other.sqrt;
+    }
+}

@@ -1,5 +1,7 @@
 //! What each pass does to the number of operations of a model.
 
+use std::collections::HashMap;
+
 use crate::EmitError;
 use crate::graph::passes::{Pass, Passes};
 use crate::graph::{Dag, Id};
@@ -81,7 +83,7 @@ impl<'a> Graph<'a> {
         let roots = self.roots.iter();
         let roots: Vec<(&str, &[Id])> = roots.map(|(name, ids)| (&**name, &**ids)).collect();
         let prepared = Prepared::gather(&mut dag, self.model, &roots, &[]);
-        let mut count = |owner: &str, ids: &[Id], prepared: Option<&Prepared>| {
+        let mut count = |owner: &str, ids: &[Id], prepared: Option<&HashMap<Id, String>>| {
             let given = Given {
                 prepared,
                 stages: &[],
@@ -90,7 +92,7 @@ impl<'a> Graph<'a> {
         };
         let functions = self.roots.iter();
         let mut counts: Vec<Cost> = functions
-            .map(|(owner, ids)| count(owner, ids, Some(&prepared)))
+            .map(|(owner, ids)| count(owner, ids, Some(prepared.names())))
             .collect();
         let fields: Vec<Id> = prepared.fields.iter().map(|field| field.id).collect();
         counts.push(count("prepared", &fields, None));

@@ -110,8 +110,8 @@ impl Scope<'_> {
 
     /// The name of a node, where it has one in this scope.
     fn known(&self, id: Id) -> Option<Expr> {
-        if let Some(name) = self.bound.get(&id) {
-            return Some(Expr::Name(name.clone()));
+        if let Some(bound) = self.bound.get(&id) {
+            return Some(bound.clone());
         }
         let (source, field) = self.given.find(id)?;
         Some(Expr::Component(source, field.to_owned()))

@@ -4,6 +4,7 @@ mod cost;
 pub(crate) mod effect;
 mod expressions;
 mod names;
+pub(crate) mod pieces;
 mod prepared;
 pub(crate) mod program;
 mod scope;

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use super::pieces::{Group, groups, joined, length};
 use super::stages::{self, Given, Stage};
-use super::tree::{Body, Expr, Source};
+use super::tree::{Body, Source};
 use super::{Cost, Prepared, body};
 use crate::EmitError;
 use crate::graph::passes::Passes;
 use crate::graph::{Dag, Id, Node, decay};
-use crate::ir::{self, capitalised, described};
+use crate::ir::{self, capitalised};
 use crate::shape::Shape;
 use crate::wording::parameter_doc;
 
@@ -18,23 +19,13 @@ pub(crate) struct Program<'a> {
     pub(crate) document: &'a ir::Document,
     /// The module in which the parameters of the table stand.
     pub(crate) home: &'a str,
-    /// What computes [`Program::fields`].
-    pub(crate) prepare: Body,
     /// What depends on parameters alone.
-    pub(crate) fields: Vec<Field>,
+    pub(crate) prepared: Stage,
     /// What several functions need, computed once.
-    pub(crate) stages: Vec<Stage<'a>>,
+    pub(crate) stages: Vec<Stage>,
     pub(crate) functions: Vec<Function<'a>>,
     /// States that decay by themselves, each with the field that holds its rate.
     pub(crate) coloured: Vec<(String, String)>,
-}
-
-/// A prepared value.
-pub(crate) struct Field {
-    pub(crate) name: String,
-    pub(crate) value: Expr,
-    /// What it is, as a sentence; `None` where its formula says it.
-    pub(crate) about: Option<String>,
 }
 
 /// A function with what it does.
@@ -42,8 +33,10 @@ pub(crate) struct Function<'a> {
     pub(crate) ir: &'a ir::Function,
     /// The shapes of its outputs.
     pub(crate) shapes: Vec<Shape<'a>>,
-    /// Its results are the entries of the outputs in turn. Empty for what consists of parts.
+    /// Its results are the entries of the outputs in turn. Empty for what consists of parts or pieces.
     pub(crate) body: Body,
+    /// What computes some of the entries each, where one function would be too long.
+    pub(crate) pieces: Vec<(Group, Body)>,
     /// The functions whose results are its own, in turn, by position; empty for what has a body.
     pub(crate) parts: Vec<usize>,
     /// Whether another function consists of it.
@@ -52,6 +45,13 @@ pub(crate) struct Function<'a> {
     pub(crate) stages: Vec<usize>,
     /// The operations that its results need, those of the stages among them.
     pub(crate) cost: Cost,
+}
+
+impl Function<'_> {
+    /// Whether it refers to a component that stands there.
+    pub(crate) fn uses(&self, source: Source) -> bool {
+        self.body.uses(source) || self.pieces.iter().any(|(_, body)| body.uses(source))
+    }
 }
 
 impl<'a> Program<'a> {
@@ -76,39 +76,49 @@ impl<'a> Program<'a> {
             .collect();
         let decays = decay::rates(model, &mut dag, &roots);
         let prepared = Prepared::gather(&mut dag, model, &named, &decays);
-        let (prepare, fields) = prepare(&mut dag, model, document, &prepared);
         let parts = parts(model, &roots);
-        let own = named.iter().zip(&parts);
-        let own: Vec<_> = own.filter(|(_, parts)| parts.is_empty()).collect();
-        let own: Vec<(&str, &[Id])> = own.into_iter().map(|(function, _)| *function).collect();
-        let stages = stages::of(&mut dag, model, &prepared, &own);
+        let own = model.functions.iter().zip(&roots).zip(&parts);
+        let own = own.filter(|(_, parts)| parts.is_empty());
+        let own: Vec<(&ir::Function, &[Id])> = own.map(|((it, ids), _)| (it, &**ids)).collect();
+        let stages = stages::of(&mut dag, model, document, prepared.names(), &own);
         let mut functions = Vec::new();
         for (position, function) in model.functions.iter().enumerate() {
             let shapes = function.outputs.iter();
             let shapes = shapes.map(|output| Shape::of(model, document, output));
-            let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
-            let mut write = |stages: &[Stage<'a>]| {
-                let prepared = Some(&prepared);
+            let roots = &roots[position];
+            let mut write = |stages: &[Stage], roots: &[Id]| {
+                let prepared = Some(prepared.names());
                 let given = Given { prepared, stages };
-                body(&mut dag, model, given, &function.name, &roots[position])
+                body(&mut dag, model, given, &function.name, roots)
             };
-            let cost = write(&[]).cost();
-            let mut body = Body::default();
-            if parts[position].is_empty() {
-                body = write(&stages);
-            }
-            if matches!(shapes.as_slice(), [shape] if shape.axes.is_empty()) {
-                body.return_last();
-            }
-            functions.push(Function {
+            let mut written = Function {
                 ir: function,
-                shapes,
-                stages: needed(&body, &stages),
-                body,
-                is_part: parts.iter().any(|it| it.contains(&position)),
+                shapes: shapes.collect::<Result<Vec<_>, _>>()?,
+                cost: write(&[], roots).cost(),
+                stages: Vec::new(),
+                body: Body::default(),
+                pieces: Vec::new(),
                 parts: parts[position].clone(),
-                cost,
-            });
+                is_part: parts.iter().any(|it| it.contains(&position)),
+            };
+            if written.parts.is_empty() {
+                written.body = write(&stages, roots);
+                let lines = length(&written.body);
+                let mut of_group = |group: &Group| {
+                    let roots: Vec<Id> = group.entries.iter().map(|&it| roots[it]).collect();
+                    write(&stages, &roots)
+                };
+                let groups = groups(function, document, lines, |it| length(&of_group(it)));
+                if groups.len() > 1 {
+                    written.pieces = joined(groups, of_group);
+                    written.body = Body::default();
+                }
+            }
+            if matches!(written.shapes.as_slice(), [shape] if shape.axes.is_empty()) {
+                written.body.return_last();
+            }
+            written.stages = needed(&written, &stages);
+            functions.push(written);
         }
         for position in 0..functions.len() {
             let of_parts = functions[position].parts.iter();
@@ -123,16 +133,16 @@ impl<'a> Program<'a> {
         }
         let coloured = decays
             .iter()
-            .filter_map(|(state, rate)| Some((state.clone(), prepared.field(*rate)?.to_owned())));
+            .filter_map(|(state, rate)| Some((state.clone(), prepared.field(*rate)?.to_owned())))
+            .collect();
         Ok(Self {
+            prepared: prepare(&mut dag, model, document, &prepared),
             model,
             document,
             home,
-            prepare,
-            fields,
             stages,
             functions,
-            coloured: coloured.collect(),
+            coloured,
         })
     }
 
@@ -160,44 +170,23 @@ impl<'a> Program<'a> {
     }
 }
 
-/// The body of `prepare`, and the fields that it computes.
+/// The stage of what depends on parameters alone.
 fn prepare(
     dag: &mut Dag,
     model: &ir::Model,
     document: &ir::Document,
     prepared: &Prepared,
-) -> (Body, Vec<Field>) {
-    let computed = prepared.fields.iter().map(|field| field.id);
-    let computed = computed.filter(|&id| !matches!(dag.node(id), Node::Leaf(..)));
-    let computed: Vec<Id> = computed.collect();
-    let nothing = Given {
-        prepared: None,
-        stages: &[],
-    };
-    let body = body(dag, model, nothing, "prepared", &computed);
-    let mut fields = Vec::new();
-    let mut results = body.results.iter();
-    for field in &prepared.fields {
-        let (value, leaf) = match dag.node(field.id) {
-            Node::Leaf(kind, name) => (
-                Some(Expr::Component(Source::Argument(*kind), name.clone())),
-                Some(name),
-            ),
-            _ => (results.next().cloned(), None),
-        };
-        let quantity = dag.quantities(field.id).first();
-        let about = quantity.map(|&position| {
-            let quantity = &model.quantities[position];
-            described(&quantity.doc, &quantity.unit)
-        });
-        let about = about.or_else(|| leaf.map(|name| parameter_doc(document, name)));
-        fields.extend(value.map(|value| Field {
-            name: field.name.clone(),
-            value,
-            about,
-        }));
+) -> Stage {
+    let fields = prepared.fields.iter();
+    let fields: Vec<(Id, String)> = fields.map(|it| (it.id, it.name.clone())).collect();
+    let kind = &stages::PREPARED;
+    let mut stage = Stage::new(dag, model, Given::NOTHING, kind, fields);
+    for (field, prepared) in stage.fields.iter_mut().zip(&prepared.fields) {
+        if let Node::Leaf(_, name) = dag.node(prepared.id) {
+            field.about = Some(parameter_doc(document, name));
+        }
     }
-    (body, fields)
+    stage
 }
 
 /// For each function the others whose outputs, one after the other, are its own; none where it has outputs of its own.
@@ -233,13 +222,13 @@ fn parts(model: &ir::Model, roots: &[Vec<Id>]) -> Vec<Vec<usize>> {
     (0..outputs.len()).map(of).collect()
 }
 
-/// The stages that a body needs, and those that these need, by position.
-fn needed(body: &Body, stages: &[Stage<'_>]) -> Vec<usize> {
+/// The stages that a function needs, and those that these need, by position.
+fn needed(function: &Function<'_>, stages: &[Stage]) -> Vec<usize> {
     let mut needed = Vec::new();
     for (position, stage) in stages.iter().enumerate().rev() {
         let source = Source::Stage(stage.kind);
-        let by_stage = |&later: &usize| stages[later].body.uses(source);
-        if body.uses(source) || needed.iter().any(by_stage) {
+        let by_stage = |&later: &usize| stages[later].uses(source);
+        if function.uses(source) || needed.iter().any(by_stage) {
             needed.insert(0, position);
         }
     }

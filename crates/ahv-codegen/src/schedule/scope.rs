@@ -4,19 +4,26 @@ use std::collections::{HashMap, HashSet};
 
 use super::names::{Names, is_numbered};
 use super::stages::Given;
-use super::tree::Statement;
+use super::tree::{Expr, Source, Statement};
 use crate::graph::{Dag, Id, Node};
 use crate::ir;
 
 /// Arguments of emitted functions: no value may hide one.
-const RESERVED: [&str; 7] = ["x", "u", "p", "dw", "i", "s", "n"];
+const RESERVED: [&str; 11] = ["x", "u", "p", "dw", "c", "i", "s", "n", "m", "h", "q"];
+
+/// The struct that a function fills: its values have their names there.
+pub(super) struct Target<'a> {
+    pub(super) source: Source,
+    pub(super) names: &'a HashMap<Id, String>,
+}
 
 /// What is known while a body is written.
 pub(super) struct Scope<'a> {
     pub(super) dag: &'a mut Dag,
     pub(super) model: &'a ir::Model,
     pub(super) given: Given<'a>,
-    pub(super) bound: HashMap<Id, String>,
+    target: Option<Target<'a>>,
+    pub(super) bound: HashMap<Id, Expr>,
     bound_in_order: Vec<Id>,
     /// What nodes are called in names: what is given, and what is bound.
     spelled: HashMap<Id, String>,
@@ -34,10 +41,21 @@ pub(super) struct Scope<'a> {
 
 impl<'a> Scope<'a> {
     pub(super) fn new(dag: &'a mut Dag, model: &'a ir::Model, given: Given<'a>) -> Self {
+        Self::filling(dag, model, given, None)
+    }
+
+    /// The scope of a function that fills a struct.
+    pub(super) fn filling(
+        dag: &'a mut Dag,
+        model: &'a ir::Model,
+        given: Given<'a>,
+        target: Option<Target<'a>>,
+    ) -> Self {
         Self {
             dag,
             model,
             given,
+            target,
             bound: HashMap::new(),
             bound_in_order: Vec::new(),
             spelled: given.names(),
@@ -63,12 +81,9 @@ impl<'a> Scope<'a> {
 
     /// The values that are bound and whose names describe them, in the order in which they are.
     pub(super) fn described(&self) -> Vec<(Id, String)> {
-        let mut order = self.bound_in_order.clone();
-        order.retain(|id| !is_numbered(&self.bound[id]));
-        order
-            .into_iter()
-            .map(|id| (id, self.bound[&id].clone()))
-            .collect()
+        let names = self.bound_in_order.iter();
+        let names = names.map(|id| (*id, self.spelled[id].clone()));
+        names.filter(|(_, name)| !is_numbered(name)).collect()
     }
 
     /// Binds everything that the roots need and returns the statements.
@@ -99,6 +114,9 @@ impl<'a> Scope<'a> {
         for &root in roots {
             self.whole = Some(root).filter(|_| roots.len() == 1);
             self.visit(root);
+            if self.target.is_some() {
+                self.bind(root);
+            }
         }
         std::mem::take(&mut self.statements)
     }
@@ -161,15 +179,55 @@ impl<'a> Scope<'a> {
             .names()
             .quantity(id)
             .map(|position| self.model.quantities[position].unit.clone());
-        let name = self.take_name(id);
-        self.statements.push(Statement::Let {
-            name,
-            value,
-            unit: unit.unwrap_or_default(),
-        });
+        let unit = unit.unwrap_or_default();
+        let statement = match self.take(id) {
+            Expr::Component(source, field) => Statement::Set {
+                source,
+                field,
+                value,
+                unit,
+            },
+            Expr::Name(name) => Statement::Let { name, value, unit },
+            _ => return,
+        };
+        self.statements.push(statement);
     }
 
-    pub(super) fn take_name(&mut self, id: Id) -> String {
+    /// Fills fields with the arguments that they are.
+    pub(super) fn handed_on(&self, leaves: &[Id]) -> Vec<Statement> {
+        let target = self.target.as_ref();
+        let set = |leaf: &Id| {
+            let (target, Node::Leaf(kind, name)) = (target?, self.dag.node(*leaf)) else {
+                return None;
+            };
+            Some(Statement::Set {
+                source: target.source,
+                field: target.names.get(leaf)?.clone(),
+                value: Expr::Component(Source::Argument(*kind), name.clone()),
+                unit: String::new(),
+            })
+        };
+        leaves.iter().filter_map(set).collect()
+    }
+
+    /// A node's name or field from here on.
+    pub(super) fn take(&mut self, id: Id) -> Expr {
+        let target = self.target.as_ref();
+        let field = target.and_then(|it| Some((it.source, it.names.get(&id)?.clone())));
+        let (expr, name) = match field {
+            Some((source, name)) => (Expr::Component(source, name.clone()), name),
+            None => {
+                let name = self.new_name(id);
+                (Expr::Name(name.clone()), name)
+            }
+        };
+        self.bound.insert(id, expr.clone());
+        self.bound_in_order.push(id);
+        self.spelled.insert(id, name);
+        expr
+    }
+
+    fn new_name(&mut self, id: Id) -> String {
         let described = self.names().describe(id);
         let share = || self.names().describe_share(id, &self.owner, self.whole?);
         let described = described.or_else(share);
@@ -181,9 +239,6 @@ impl<'a> Scope<'a> {
                 .unwrap_or_default()
         });
         self.taken.insert(name.clone());
-        self.bound.insert(id, name.clone());
-        self.bound_in_order.push(id);
-        self.spelled.insert(id, name.clone());
         name
     }
 }

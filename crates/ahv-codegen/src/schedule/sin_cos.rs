@@ -30,7 +30,7 @@ impl Scope<'_> {
     /// Binds both in one statement.
     pub(super) fn bind_pair(&mut self, sin: Id, cos: Id, angle: Id) {
         let angle = self.reference(angle);
-        let (sin, cos) = (self.take_name(sin), self.take_name(cos));
+        let (sin, cos) = (self.take(sin), self.take(cos));
         self.statements.push(Statement::SinCos { sin, cos, angle });
     }
 }

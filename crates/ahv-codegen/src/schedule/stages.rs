@@ -1,21 +1,22 @@
-//! What several functions of a model need, computed once: the intermediates of the drift, the slopes of the Jacobians.
+//! What several functions of a model need, computed once into a struct: what is prepared from the parameters, the intermediates
+//! of the drift, the slopes of the Jacobians.
 //!
-//! A value of such a function that another function needs as well becomes a field of a struct. Functions take the struct, so
-//! that each formula stands once in a model. What parameters alone decide is in [`Prepared`] already.
+//! A value of such a function that another function needs as well becomes a field. Functions take the struct, so that each
+//! formula stands once in a model.
 
 use std::collections::{HashMap, HashSet};
 
-use super::prepared::Prepared;
-use super::scope::Scope;
+use super::pieces::{Group, LONGEST, groups, length, sliced};
+use super::scope::{Scope, Target};
 use super::tree::{Body, Source};
 use crate::graph::{Dag, Id, Node};
-use crate::ir;
+use crate::ir::{self, described};
 
 /// Fewer fields are no struct.
 const FEWEST: usize = 4;
 
 /// What a stage is called, and whose values it holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Kind {
     /// The function whose values they are.
     of: &'static str,
@@ -23,13 +24,22 @@ pub(crate) struct Kind {
     pub(crate) function: &'static str,
     /// The struct.
     pub(crate) type_name: &'static str,
-    /// The argument of functions that take it.
+    /// The struct as an argument.
     pub(crate) argument: &'static str,
     pub(crate) doc: &'static str,
 }
 
-/// The stages, each may take those before it.
-const KINDS: [Kind; 3] = [
+/// What depends on parameters alone. Functions take it as `p`; while it is computed, `p` are the parameters.
+pub(crate) const PREPARED: Kind = Kind {
+    of: "",
+    function: "prepare",
+    type_name: "Prepared",
+    argument: "c",
+    doc: "Parameters as the functions of this model use them",
+};
+
+/// The other stages, each may take those before it.
+const KINDS: [Kind; 6] = [
     Kind {
         of: "drift",
         function: "intermediates",
@@ -51,103 +61,194 @@ const KINDS: [Kind; 3] = [
         argument: "n",
         doc: "Quantities of the diffusion that other functions need",
     },
+    Kind {
+        of: "noise_derivatives",
+        function: "noise_slopes",
+        type_name: "NoiseSlopes",
+        argument: "m",
+        doc: "Quantities of the noise's derivatives that other functions, or several parts of these, need",
+    },
+    Kind {
+        of: "hessian",
+        function: "curvatures",
+        type_name: "Curvatures",
+        argument: "h",
+        doc: "Quantities of the second derivatives that several parts of these need",
+    },
+    Kind {
+        of: "parameter_jacobian",
+        function: "sensitivities",
+        type_name: "Sensitivities",
+        argument: "q",
+        doc: "Quantities of the derivatives with respect to parameters that several parts of these need",
+    },
 ];
 
 /// A stage of a model.
-pub(crate) struct Stage<'a> {
+pub(crate) struct Stage {
     pub(crate) kind: &'static Kind,
-    pub(crate) fields: Vec<Field<'a>>,
-    /// Its results are the fields.
-    pub(crate) body: Body,
+    pub(crate) fields: Vec<Field>,
+    /// What fills the fields, one part after the other.
+    pub(crate) parts: Vec<Body>,
     names: HashMap<Id, String>,
 }
 
 /// A field of a stage.
-pub(crate) struct Field<'a> {
+pub(crate) struct Field {
     pub(crate) name: String,
-    /// The quantity that it is; `None` where its formula says it.
-    pub(crate) quantity: Option<&'a ir::Quantity>,
+    /// What it is, as a sentence; `None` where its formula says it.
+    pub(crate) about: Option<String>,
 }
 
 /// What a body may refer to besides its arguments.
 #[derive(Clone, Copy)]
 pub(crate) struct Given<'a> {
-    pub(crate) prepared: Option<&'a Prepared>,
-    pub(crate) stages: &'a [Stage<'a>],
+    /// Names of prepared values; `None` in `prepare` itself.
+    pub(crate) prepared: Option<&'a HashMap<Id, String>>,
+    pub(crate) stages: &'a [Stage],
 }
 
 impl Given<'_> {
+    /// Nothing is given but arguments.
+    pub(crate) const NOTHING: Self = Self {
+        prepared: None,
+        stages: &[],
+    };
+
     /// Where a value is given, and its name there.
     pub(super) fn find(&self, id: Id) -> Option<(Source, &str)> {
-        let prepared = self.prepared.and_then(|it| it.field(id));
-        let prepared = prepared.map(|name| (Source::Argument(crate::graph::Kind::Parameter), name));
-        prepared.or_else(|| {
-            self.stages
-                .iter()
-                .find_map(|stage| Some((Source::Stage(stage.kind), stage.names.get(&id)?.as_str())))
-        })
+        if let Some(name) = self.prepared.and_then(|it| it.get(&id)) {
+            return Some((Source::Argument(crate::graph::Kind::Parameter), name));
+        }
+        let mut stages = self.stages.iter();
+        stages.find_map(|stage| Some((Source::Stage(stage.kind), &**stage.names.get(&id)?)))
     }
 
     /// What given values are called in names.
     pub(super) fn names(&self) -> HashMap<Id, String> {
-        let prepared = self.prepared.into_iter().flat_map(Prepared::names);
+        let prepared = self.prepared.into_iter().flatten();
         let stages = self.stages.iter().flat_map(|stage| &stage.names);
         let names = prepared.chain(stages);
         names.map(|(id, name)| (*id, name.clone())).collect()
     }
 }
 
-/// The stages of a model whose functions have these roots.
-pub(super) fn of<'a>(
+impl Stage {
+    /// The stage of this kind with these fields, in the order in which they are computed.
+    pub(super) fn new(
+        dag: &mut Dag,
+        model: &ir::Model,
+        given: Given<'_>,
+        kind: &'static Kind,
+        mut fields: Vec<(Id, String)>,
+    ) -> Self {
+        let (mut parts, others) = parts(dag, model, given, kind, &fields);
+        if parts.iter().any(|part| length(part) > LONGEST) {
+            // Its parts know each other's values as fields.
+            let ids: HashSet<Id> = fields.iter().map(|(id, _)| *id).collect();
+            fields.extend(others.into_iter().filter(|(id, _)| !ids.contains(id)));
+            parts = self::parts(dag, model, given, kind, &fields).0;
+        }
+        let about = |id: Id| {
+            let quantity = &model.quantities[*dag.quantities(id).first()?];
+            Some(described(&quantity.doc, &quantity.unit))
+        };
+        let field = |(id, name): (Id, String)| Field {
+            name,
+            about: about(id),
+        };
+        Self {
+            kind,
+            parts,
+            names: fields.iter().cloned().collect(),
+            fields: fields.into_iter().map(field).collect(),
+        }
+    }
+
+    /// Whether any part refers to a component that stands there.
+    pub(crate) fn uses(&self, source: Source) -> bool {
+        self.parts.iter().any(|part| part.uses(source))
+    }
+}
+
+/// What fills these fields, and what else is bound there by a name that describes it.
+fn parts(
     dag: &mut Dag,
-    model: &'a ir::Model,
-    prepared: &Prepared,
-    roots: &[(&str, &[Id])],
-) -> Vec<Stage<'a>> {
-    let mut stages: Vec<Stage<'a>> = Vec::new();
-    let mut done = Vec::new();
+    model: &ir::Model,
+    given: Given<'_>,
+    kind: &'static Kind,
+    fields: &[(Id, String)],
+) -> (Vec<Body>, Vec<(Id, String)>) {
+    // What is handed on unchanged comes first.
+    let is_leaf = |id: &Id| matches!(dag.node(*id), Node::Leaf(..));
+    let ids = fields.iter().map(|(id, _)| *id);
+    let (leaves, computed): (Vec<Id>, Vec<Id>) = ids.partition(is_leaf);
+    let names: HashMap<Id, String> = fields.iter().cloned().collect();
+    let target = Target {
+        source: Source::Stage(kind),
+        names: &names,
+    };
+    let mut scope = Scope::filling(dag, model, given, Some(target));
+    let owner = if kind.of.is_empty() {
+        "prepared"
+    } else {
+        kind.of
+    };
+    let mut statements = scope.handed_on(&leaves);
+    statements.extend(scope.write(owner, &computed));
+    (sliced(statements), scope.described())
+}
+
+/// The stages of a model whose functions have these roots.
+pub(super) fn of(
+    dag: &mut Dag,
+    model: &ir::Model,
+    document: &ir::Document,
+    prepared: &HashMap<Id, String>,
+    functions: &[(&ir::Function, &[Id])],
+) -> Vec<Stage> {
+    let mut stages: Vec<Stage> = Vec::new();
+    let mut done: Vec<&str> = Vec::new();
     for kind in &KINDS {
-        let Some(&(owner, own)) = roots.iter().find(|(name, _)| *name == kind.of) else {
+        let Some(&(function, own)) = functions.iter().find(|(it, _)| it.name == kind.of) else {
             continue;
         };
-        done.push(owner);
+        done.push(&function.name);
         let given = Given {
             prepared: Some(prepared),
             stages: &stages,
         };
         let mut scope = Scope::new(dag, model, given);
-        scope.write(owner, own);
+        let statements = scope.write(&function.name, own);
         let named = scope.described();
-        let others = roots.iter().filter(|(name, _)| !done.contains(name));
-        let needed: HashSet<Id> = others
+        let lines = statements.iter().map(super::pieces::lines).sum::<usize>() + own.len();
+        let others = functions
+            .iter()
+            .filter(|(it, _)| !done.contains(&&*it.name));
+        let mut needed: HashSet<Id> = others
             .flat_map(|(_, ids)| reached(dag, given, ids, &named))
             .collect();
-        // In the order in which they are computed.
-        let fields: Vec<(Id, String)> = named
-            .into_iter()
-            .filter(|(id, _)| needed.contains(id))
-            .collect();
+        // What is too long for one function is computed in several.
+        let mut once = HashSet::new();
+        let of_group = |group: &Group| group.entries.iter().map(|&it| own[it]).collect();
+        let length = |group: &Group| {
+            let roots: Vec<Id> = of_group(group);
+            length(&super::body(dag, model, given, &function.name, &roots))
+        };
+        for group in groups(function, document, lines, length) {
+            let roots: Vec<Id> = of_group(&group);
+            for id in reached(dag, given, &roots, &named) {
+                if !once.insert(id) {
+                    needed.insert(id);
+                }
+            }
+        }
+        let needed = |(id, _): &&(Id, String)| needed.contains(id);
+        let fields: Vec<(Id, String)> = named.iter().filter(needed).cloned().collect();
         if fields.len() < FEWEST {
             continue;
         }
-        let ids: Vec<Id> = fields.iter().map(|(id, _)| *id).collect();
-        let body = super::body(dag, model, given, owner, &ids);
-        let quantity = |id: Id| {
-            let position = dag.quantities(id).first();
-            position.map(|&position| &model.quantities[position])
-        };
-        stages.push(Stage {
-            kind,
-            fields: fields
-                .iter()
-                .map(|(id, name)| Field {
-                    name: name.clone(),
-                    quantity: quantity(*id),
-                })
-                .collect(),
-            body,
-            names: fields.into_iter().collect(),
-        });
+        stages.push(Stage::new(dag, model, given, kind, fields));
     }
     stages
 }

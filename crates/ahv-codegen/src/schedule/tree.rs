@@ -63,12 +63,15 @@ pub(crate) enum Statement {
         value: Expr,
         unit: String,
     },
-    /// Sine and cosine of one angle get their names.
-    SinCos {
-        sin: String,
-        cos: String,
-        angle: Expr,
+    /// A field of a struct gets its value.
+    Set {
+        source: Source,
+        field: String,
+        value: Expr,
+        unit: String,
     },
+    /// Sine and cosine of one angle get their names, or are set.
+    SinCos { sin: Expr, cos: Expr, angle: Expr },
 }
 
 /// What a function does: its statements, then its results in the order of its entries.
@@ -104,7 +107,7 @@ impl Statement {
     fn value(&self) -> Option<&Expr> {
         match self {
             Self::Section(_) => None,
-            Self::Let { value, .. } => Some(value),
+            Self::Let { value, .. } | Self::Set { value, .. } => Some(value),
             Self::SinCos { angle, .. } => Some(angle),
         }
     }

@@ -1,0 +1,198 @@
+//! Functions that a reviewer can hold: what is too long is computed in several pieces.
+
+use std::collections::BTreeSet;
+
+use super::tree::{Body, Expr, Statement};
+use crate::ir::{self, Basis};
+
+/// A function of more lines is computed in pieces; what a piece takes besides its statements is above that.
+pub(super) const LONGEST: usize = 100;
+/// Pieces are joined up to this many lines.
+const FULL: usize = 90;
+/// Characters of a line.
+const WIDTH: usize = 75;
+
+/// The entries of a function that are computed together.
+pub(crate) struct Group {
+    /// By what they are told from the others: the component that they are derivatives by.
+    pub(crate) label: String,
+    /// Positions among all entries of the function.
+    pub(crate) entries: Vec<usize>,
+}
+
+/// The groups of a function of so many lines, in the order in which their first entries stand; none where it is short enough.
+/// A group that is too long by itself is divided by rows.
+pub(super) fn groups(
+    function: &ir::Function,
+    document: &ir::Document,
+    lines: usize,
+    mut length: impl FnMut(&Group) -> usize,
+) -> Vec<Group> {
+    if lines <= LONGEST || !function.compressed {
+        return Vec::new();
+    }
+    let outputs = function.outputs.iter();
+    let entries = outputs.flat_map(|output| output.entries.iter().map(move |it| (output, it)));
+    let entries: Vec<_> = entries.collect();
+    let by = |position: &usize| {
+        let (output, entry) = entries[*position];
+        match (output.basis.get(1), entry.at.get(1)) {
+            (Some(Basis::Parameter), Some(name)) => {
+                let parameter = document.parameters.iter().find(|it| it.name == *name);
+                parameter.map_or_else(String::new, |it| identifier(&it.path.0))
+            }
+            (_, Some(name)) => name.clone(),
+            _ => String::new(),
+        }
+    };
+    let row = |position: &usize| entries[*position].1.at.first().cloned();
+    let mut groups = Vec::new();
+    for group in divided((0..entries.len()).collect(), by) {
+        if length(&group) <= LONGEST {
+            groups.push(group);
+            continue;
+        }
+        let rows = divided(group.entries, |it| row(it).unwrap_or_default());
+        groups.extend(rows.into_iter().map(|of_row| Group {
+            label: format!("{}_of_{}", group.label, of_row.label),
+            ..of_row
+        }));
+    }
+    groups
+}
+
+/// Entries by their labels, in the order in which the first of each stand.
+fn divided(entries: Vec<usize>, label: impl Fn(&usize) -> String) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for entry in entries {
+        let label = label(&entry);
+        match groups.iter_mut().find(|it| it.label == label) {
+            Some(group) => group.entries.push(entry),
+            None => groups.push(Group {
+                label,
+                entries: vec![entry],
+            }),
+        }
+    }
+    groups
+}
+
+/// A text in lower case, as a part of a name.
+fn identifier(text: &str) -> String {
+    let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    text.to_lowercase().chars().map(letter).collect()
+}
+
+/// Neighbours of the groups as one, as long as their bodies together are short enough.
+pub(super) fn joined(
+    groups: Vec<Group>,
+    mut body: impl FnMut(&Group) -> Body,
+) -> Vec<(Group, Body)> {
+    let mut found: Vec<(Group, Body, Vec<String>)> = Vec::new();
+    for group in groups {
+        let labels = vec![group.label.clone()];
+        let alone = body(&group);
+        if let Some((last, last_body, names)) = found.last_mut()
+            && length(last_body) + length(&alone) <= FULL
+        {
+            names.extend(labels);
+            last.entries.extend(group.entries);
+            last.label = match names.as_slice() {
+                [first, .., last] if names.len() > 2 => format!("{first}_to_{last}"),
+                names => names.join("_"),
+            };
+            *last_body = body(last);
+        } else {
+            found.push((group, alone, labels));
+        }
+    }
+    let parts = found.into_iter();
+    parts.map(|(group, body, _)| (group, body)).collect()
+}
+
+/// About how many lines a body has.
+pub(super) fn length(body: &Body) -> usize {
+    body.statements.iter().map(lines).sum::<usize>() + body.results.len()
+}
+
+/// About how many lines a statement has.
+pub(super) fn lines(statement: &Statement) -> usize {
+    match statement {
+        Statement::Section(_) => 2,
+        Statement::SinCos { .. } => 1,
+        Statement::Let { value, .. } | Statement::Set { value, .. } => match value {
+            Expr::Sum(addends) if addends.len() > 2 => addends.len(),
+            value => 1 + characters(value) / WIDTH,
+        },
+    }
+}
+
+fn characters(expr: &Expr) -> usize {
+    let mut count = 0;
+    expr.walk(&mut |part| {
+        count += 3 + match part {
+            Expr::Component(_, name) | Expr::Name(name) => name.len(),
+            _ => 0,
+        };
+    });
+    count
+}
+
+/// Statements that fill a struct, in parts that are short enough. No part needs a name of another.
+pub(super) fn sliced(statements: Vec<Statement>) -> Vec<Body> {
+    let total: usize = statements.iter().map(lines).sum();
+    if total <= LONGEST {
+        return vec![body_of(statements)];
+    }
+    let count = total.div_ceil(FULL);
+    let (mut parts, mut part, mut length) = (Vec::new(), Vec::new(), 0);
+    let mut rest = statements.into_iter().peekable();
+    while let Some(statement) = rest.next() {
+        length += lines(&statement);
+        part.push(statement);
+        let full = length >= total.div_ceil(count);
+        let cut = full && rest.peek().is_some() && is_free(&part, rest.clone());
+        if cut {
+            parts.push(body_of(std::mem::take(&mut part)));
+            length = 0;
+        }
+    }
+    parts.push(body_of(part));
+    parts
+}
+
+fn body_of(statements: Vec<Statement>) -> Body {
+    Body {
+        statements,
+        results: Vec::new(),
+    }
+}
+
+/// Whether nothing of the rest needs a name of a part.
+fn is_free(part: &[Statement], rest: impl Iterator<Item = Statement>) -> bool {
+    let mut names = BTreeSet::new();
+    for statement in part {
+        match statement {
+            Statement::Let { name, .. } => {
+                names.insert(name.clone());
+            }
+            Statement::SinCos { sin, cos, .. } => {
+                for value in [sin, cos] {
+                    if let Expr::Name(name) = value {
+                        names.insert(name.clone());
+                    }
+                }
+            }
+            Statement::Section(_) | Statement::Set { .. } => {}
+        }
+    }
+    // A heading belongs to what follows it.
+    let headed = matches!(part.last(), Some(Statement::Section(_)));
+    let mut free = !headed;
+    body_of(rest.collect()).walk(&mut |expr| {
+        if let Expr::Name(name) = expr {
+            free &= !names.contains(name);
+        }
+    });
+    free
+}
