@@ -132,7 +132,7 @@ fn evaluation(model: &Value) -> String {
                 let depth = list(&output["basis"]).len();
                 let _ = writeln!(
                     body,
-                    "    held{depth}(&model::{constant}_PATTERN, &{value}, &{dense});"
+                    "    held{depth}(&model::{constant}_PATTERN, &{value}.to_array(), &{dense});\n    assert!({value}.dense() == {dense});"
                 );
             }
             let _ = writeln!(body, "    let _ = {tuple};");

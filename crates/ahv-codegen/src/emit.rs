@@ -377,9 +377,13 @@ fn check_sets(subject: &Subject<'_>, tree: &Tree) -> Result<(), EmitError> {
     };
     for set in subject.document.sets.iter().skip(1) {
         for constant in rust::home::constants(&set.name) {
-            let definition = format!("\npub const {constant}:");
+            let constants = [
+                format!("\npub const {constant}:"),
+                format!(", {constant}: "),
+            ];
             let files = tree.iter().filter(|(path, _)| own(path));
-            if files.filter(|(_, text)| text.contains(&definition)).count() > 1 {
+            let defines = |text: &str| constants.iter().any(|it| text.contains(it));
+            if files.filter(|(_, text)| defines(text)).count() > 1 {
                 return Err(EmitError::Mismatch(format!(
                     "the set `{}` of {} would become the constant {constant}, which the models have already; choose another \
                      name",

@@ -36,7 +36,7 @@ pub(crate) fn visible(text: &str) -> String {
 
 /// A text in lines of a comment's width.
 pub(crate) fn wrapped(text: &str) -> Vec<String> {
-    const WIDTH: usize = 110;
+    const WIDTH: usize = 106;
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
         let last = lines.len() - 1;

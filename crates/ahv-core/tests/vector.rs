@@ -1,11 +1,11 @@
 //! Named vectors and their conversions, on a vector made as the generated code makes them.
 #![forbid(unsafe_code)]
 
-use ahv_core::{Bounds, Pattern, Real, Vector, at, first_outside};
+use ahv_core::{Bounds, Real, Vector, entries, first_outside};
 use nalgebra::{SMatrix, SVector};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct State<T> {
+pub struct State<T> {
     velocity: T,
     alpha: T,
     eta: T,
@@ -131,37 +131,75 @@ fn elementary_functions_have_fixed_bits() {
     assert!(!Real::is_finite(f32::NAN) && Real::is_finite(1.0_f32));
 }
 
-/// What the values of a compressed array stand for: the entries at their places, zero elsewhere, and mirror images.
-#[test]
-fn a_pattern_puts_values_into_their_places() {
-    type Matrix = State<State<f64>>;
-    let matrix = Pattern::new(
-        [3, 3],
-        &[
-            at!(State.velocity, State.alpha),
-            at!(State.eta, State.velocity),
-            at!(State.eta, State.eta),
-        ],
-    );
-    assert_eq!((matrix.len(), matrix.is_empty()), (3, false));
-    let dense: Matrix = matrix.dense(&[4.0, 5.0, 6.0]);
-    let expected = [[0.0, 4.0, 0.0], [0.0; 3], [5.0, 0.0, 6.0]];
-    assert_eq!(dense.to_matrix(), expected);
-    let none = Pattern::new([3, 3], &[]);
-    assert_eq!((none.len(), none.is_empty()), (0, true));
-    assert_eq!(
-        none.dense::<f64, State<f64>, Matrix>(&[]).to_matrix(),
-        [[0.0; 3]; 3]
-    );
+entries! {
+    /// Entries of a matrix.
+    pub struct Sparse, SPARSE: State<State> {
+        velocity_by_alpha: velocity.alpha,
+        eta_by_velocity: eta.velocity,
+        eta_by_eta: eta.eta,
+    }
+}
 
-    let of_matrices = |array: State<Matrix>| array.map_into(|matrix| matrix.to_matrix()).to_array();
-    let array = Pattern::new([3, 3, 3], &[[0, 1, 0], [0, 2, 2], [2, 0, 0]]);
-    let values = [7.0, 8.0, 9.0];
+entries! {
+    /// A matrix without entries.
+    pub struct Nothing, NOTHING: State<State> {
+    }
+}
+
+entries! {
+    /// Entries of an array of three indices.
+    pub struct Deep, DEEP: State<State<State>> {
+        velocity_by_alpha_velocity: velocity.alpha.velocity,
+        eta_by_velocity_velocity: eta.velocity.velocity,
+    }
+}
+
+entries! {
+    /// Entries that stand for their mirror images too.
+    pub struct Mirrored, MIRRORED: symmetric State<State<State>> {
+        velocity_by_alpha_velocity: velocity.alpha.velocity,
+        velocity_by_eta_eta: velocity.eta.eta,
+    }
+}
+
+/// What compressed arrays stand for: the entries at their places, zero elsewhere, and mirror images.
+#[test]
+fn entries_stand_at_their_places() {
+    let entries = Sparse {
+        velocity_by_alpha: 4.0,
+        eta_by_velocity: 5.0,
+        ..Sparse::splat(6.0)
+    };
+    assert_eq!(
+        (SPARSE.len(), SPARSE.is_empty(), SPARSE.shape),
+        (3, false, [3, 3])
+    );
+    assert_eq!(SPARSE.at, [[0, 1], [2, 0], [2, 2]]);
+    assert_eq!(entries.to_array(), [4.0, 5.0, 6.0]);
+    assert_eq!(entries.map_ref(|it| 2.0 * it).eta_by_velocity, 10.0);
+    let expected = [[0.0, 4.0, 0.0], [0.0; 3], [5.0, 0.0, 6.0]];
+    assert_eq!(entries.dense().to_matrix(), expected);
+    assert!(NOTHING.is_empty());
+    assert_eq!(Nothing::splat(1.0).dense().to_matrix(), [[0.0; 3]; 3]);
+
+    let of_matrices =
+        |array: State<State<State<f64>>>| array.map_into(|matrix| matrix.to_matrix()).to_array();
+    let deep = Deep {
+        velocity_by_alpha_velocity: 7.0,
+        eta_by_velocity_velocity: 9.0,
+    };
     let mut expected = [[[0.0; 3]; 3]; 3];
-    (expected[0][1][0], expected[0][2][2], expected[2][0][0]) = (7.0, 8.0, 9.0);
-    assert_eq!(of_matrices(array.dense(&values)), expected);
-    expected[0][0][1] = 7.0;
-    assert_eq!(of_matrices(array.symmetric(&values)), expected);
+    (expected[0][1][0], expected[2][0][0]) = (7.0, 9.0);
+    assert_eq!(DEEP.at, [[0, 1, 0], [2, 0, 0]]);
+    assert_eq!(of_matrices(deep.dense()), expected);
+    let mirrored = Mirrored {
+        velocity_by_alpha_velocity: 7.0,
+        velocity_by_eta_eta: 8.0,
+    };
+    let mut expected = [[[0.0; 3]; 3]; 3];
+    (expected[0][1][0], expected[0][0][1], expected[0][2][2]) = (7.0, 7.0, 8.0);
+    assert_eq!(MIRRORED.at, [[0, 1, 0], [0, 2, 2]]);
+    assert_eq!(of_matrices(mirrored.dense()), expected);
 }
 
 /// Structs and parameters with the names that a macro would give its own parameters.

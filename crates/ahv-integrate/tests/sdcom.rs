@@ -61,7 +61,7 @@ macro_rules! wrapped {
             ) -> Self::State {
                 let values = $module::noise_derivatives_values(x, u, &self.0.prepared);
                 let mut sum = $module::State::splat(0.0).to_array();
-                for (value, &[row, j, k]) in values.into_iter().zip($module::NOISE_DERIVATIVES_PATTERN.at) {
+                for (value, &[row, j, k]) in values.to_array().into_iter().zip($module::NOISE_DERIVATIVES_PATTERN.at) {
                     if let Some(component) = sum.get_mut(row) {
                         *component += value * integral(j, k);
                     }

@@ -126,19 +126,23 @@ ahv_core::record! {
         pub d_pitch_acceleration_d_eta_dot_2: R,
         /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_1, 1/s^2.
         pub d_eta_acceleration_1_d_eta_1: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_dot_1, 1/s.
+        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_dot_1,
+        /// 1/s.
         pub d_eta_acceleration_1_d_eta_dot_1: R,
         /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_2, 1/s^2.
         pub d_eta_acceleration_1_d_eta_2: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_dot_2, 1/s.
+        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_dot_2,
+        /// 1/s.
         pub d_eta_acceleration_1_d_eta_dot_2: R,
         /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_1, 1/s^2.
         pub d_eta_acceleration_2_d_eta_1: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_dot_1, 1/s.
+        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_dot_1,
+        /// 1/s.
         pub d_eta_acceleration_2_d_eta_dot_1: R,
         /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_2, 1/s^2.
         pub d_eta_acceleration_2_d_eta_2: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_dot_2, 1/s.
+        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_dot_2,
+        /// 1/s.
         pub d_eta_acceleration_2_d_eta_dot_2: R,
         /// `2 * c_d_delta_e_2`.
         pub two_c_d_delta_e_2: R,
@@ -260,6 +264,7 @@ ahv_core::record! {
         pub m_2: R,
     }
 }
+
 /// Fills a part of [`Prepared`].
 fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.t_phi_alpha_3 = p.t_phi_alpha_3;

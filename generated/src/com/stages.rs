@@ -80,6 +80,7 @@ ahv_core::record! {
         pub gamma_rate: R,
     }
 }
+
 /// Computes [`Intermediates`].
 #[inline(always)]
 pub fn intermediates<R: Real>(
@@ -223,6 +224,7 @@ ahv_core::record! {
         pub d_velocity_rate_d_delta_e: R,
     }
 }
+
 /// Computes [`Slopes`].
 #[inline(always)]
 pub fn slopes<R: Real>(

@@ -162,8 +162,8 @@ pub fn jacobians<R: Real>(
     (state.dense(), input.dense())
 }
 
-/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
-/// less than one after the other, eq. (1).
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input,
+/// for less than one after the other, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
@@ -181,8 +181,8 @@ pub fn drift_and_jacobians_values<R: Real>(
     (drift, state, input)
 }
 
-/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input, for
-/// less than one after the other, eq. (1).
+/// Time derivative of the state, and the derivatives of the drift with respect to the state and to the input,
+/// for less than one after the other, eq. (1).
 #[inline(always)]
 pub fn drift_and_jacobians<R: Real>(
     x: &State<R>,

@@ -130,6 +130,7 @@ ahv_core::record! {
         pub two_c_bar_c_m_alpha_2: R,
     }
 }
+
 /// Computes everything that depends on parameters alone.
 ///
 /// 42 operations: 38 multiplications, 4 divisions.

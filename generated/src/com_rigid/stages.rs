@@ -72,6 +72,7 @@ ahv_core::record! {
         pub pitch_acceleration: R,
     }
 }
+
 /// Computes [`Intermediates`].
 #[inline(always)]
 pub fn intermediates<R: Real>(
@@ -193,6 +194,7 @@ ahv_core::record! {
         pub d_velocity_rate_d_delta_e: R,
     }
 }
+
 /// Computes [`Slopes`].
 #[inline(always)]
 pub fn slopes<R: Real>(

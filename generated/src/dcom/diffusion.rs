@@ -62,8 +62,8 @@ pub fn diffusion_values_from<R: Real>(
     }
 }
 
-/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the columns of w_gamma, w_alpha
-/// and w_q are derivatives of the drift; the modes are driven as in (17), eq. (17).
+/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the columns of w_gamma,
+/// w_alpha and w_q are derivatives of the drift; the modes are driven as in (17), eq. (17).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
@@ -79,8 +79,8 @@ pub fn diffusion_values<R: Real>(
     diffusion_values_from(x, u, p, &i, &s)
 }
 
-/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the columns of w_gamma, w_alpha
-/// and w_q are derivatives of the drift; the modes are driven as in (17), eq. (17).
+/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the columns of w_gamma,
+/// w_alpha and w_q are derivatives of the drift; the modes are driven as in (17), eq. (17).
 #[inline(always)]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
     diffusion_values(x, u, p).dense()
@@ -154,7 +154,8 @@ pub fn noise_increment<R: Real>(
     noise_increment_from(x, u, p, dw, &i, &s)
 }
 
-/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq. (17).
+/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
+/// (17).
 ///
 /// 228 operations: 84 additions, 139 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]

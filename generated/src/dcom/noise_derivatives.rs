@@ -157,7 +157,8 @@ pub fn noise_derivatives<R: Real>(
     noise_derivatives_values(x, u, p).dense()
 }
 
-/// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (17).
+/// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq.
+/// (17).
 ///
 /// 192 operations: 55 additions, 132 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]

@@ -92,6 +92,7 @@ ahv_core::record! {
         pub pitch_acceleration: R,
     }
 }
+
 /// Fills a part of [`Intermediates`].
 #[inline(always)]
 fn intermediates_part_1<R: Real>(
@@ -298,18 +299,15 @@ ahv_core::record! {
         pub d_c_n_3_d_alpha: R,
         /// Derivative of generalized force of mode 3 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
         pub d_generalized_force_3_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and eta_1,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_1`.
         pub cos_alpha_c_t_eta_1: R,
         /// Derivative of coefficient of the force across the flight path with respect to eta_1, 1/ft^0.5/slug^0.5.
         pub d_normal_coefficient_d_eta_1: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and eta_2,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_2`.
         pub cos_alpha_c_t_eta_2: R,
         /// Derivative of coefficient of the force across the flight path with respect to eta_2, 1/ft^0.5/slug^0.5.
         pub d_normal_coefficient_d_eta_2: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and eta_3,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_3`.
         pub cos_alpha_c_t_eta_3: R,
         /// Derivative of coefficient of the force across the flight path with respect to eta_3, 1/ft^0.5/slug^0.5.
         pub d_normal_coefficient_d_eta_3: R,
@@ -329,6 +327,7 @@ ahv_core::record! {
         pub d_force_turn_d_delta_c: R,
     }
 }
+
 /// Computes [`Slopes`].
 #[inline(always)]
 pub fn slopes<R: Real>(
@@ -455,35 +454,35 @@ ahv_core::record! {
         pub d2_generalized_force_2_d_alpha_d_alpha: R,
         /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
         pub d2_generalized_force_3_d_alpha_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to altitude and gamma, 1/s^2/rad.
+        /// Derivative of rate of the velocity with respect to gamma and altitude, 1/s^2/rad.
         pub d2_velocity_rate_d_gamma_d_altitude: R,
-        /// Derivative of rate of the velocity with respect to velocity and alpha, 1/s/rad.
+        /// Derivative of rate of the velocity with respect to alpha and velocity, 1/s/rad.
         pub d2_velocity_rate_d_alpha_d_velocity: R,
-        /// Derivative of rate of the velocity with respect to altitude and alpha, 1/s^2/rad.
+        /// Derivative of rate of the velocity with respect to alpha and altitude, 1/s^2/rad.
         pub d2_velocity_rate_d_alpha_d_altitude: R,
-        /// Derivative of rate of the flight-path angle with respect to velocity and gamma, 1/ft.
+        /// Derivative of rate of the flight-path angle with respect to gamma and velocity, 1/ft.
         pub d2_gamma_rate_d_gamma_d_velocity: R,
-        /// Derivative of rate of the flight-path angle with respect to altitude and gamma, 1/s/ft.
+        /// Derivative of rate of the flight-path angle with respect to gamma and altitude, 1/s/ft.
         pub d2_gamma_rate_d_gamma_d_altitude: R,
-        /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha, 1/ft.
+        /// Derivative of turn rate by the force across the flight path with respect to alpha and velocity, 1/ft.
         pub d2_force_turn_d_alpha_d_velocity: R,
-        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha, 1/s/ft.
+        /// Derivative of turn rate by the force across the flight path with respect to alpha and altitude, 1/s/ft.
         pub d2_force_turn_d_alpha_d_altitude: R,
-        /// Derivative of pitch acceleration with respect to velocity and alpha, 1/s/ft.
+        /// Derivative of pitch acceleration with respect to alpha and velocity, 1/s/ft.
         pub d2_pitch_acceleration_d_alpha_d_velocity: R,
-        /// Derivative of pitch acceleration with respect to altitude and alpha, 1/s^2/ft.
+        /// Derivative of pitch acceleration with respect to alpha and altitude, 1/s^2/ft.
         pub d2_pitch_acceleration_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        /// Derivative of generalized force of mode 1 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_1_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        /// Derivative of generalized force of mode 1 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_1_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        /// Derivative of generalized force of mode 2 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_2_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        /// Derivative of generalized force of mode 2 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_2_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        /// Derivative of generalized force of mode 3 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_3_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        /// Derivative of generalized force of mode 3 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_3_d_alpha_d_altitude: R,
         /// `m.d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma`.
         pub d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma: R,
@@ -491,6 +490,7 @@ ahv_core::record! {
         pub d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha: R,
     }
 }
+
 /// Computes [`NoiseSlopes`].
 #[inline(always)]
 pub fn noise_slopes<R: Real>(
@@ -632,6 +632,7 @@ ahv_core::record! {
         pub reference_force_canard_deflection: R,
     }
 }
+
 /// Computes [`Sensitivities`].
 #[inline(always)]
 pub fn sensitivities<R: Real>(

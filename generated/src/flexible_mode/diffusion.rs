@@ -13,8 +13,8 @@ ahv_core::entries! {
     }
 }
 
-/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; mode (17) and coloured noise (24)
-/// share one white noise, eq. (17).
+/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; mode (17) and coloured noise
+/// (24) share one white noise, eq. (17).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
@@ -31,8 +31,8 @@ pub fn diffusion_values<R: Real>(
     }
 }
 
-/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; mode (17) and coloured noise (24)
-/// share one white noise, eq. (17).
+/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; mode (17) and coloured noise
+/// (24) share one white noise, eq. (17).
 #[inline(always)]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
     diffusion_values(x, u, p).dense()
@@ -69,7 +69,8 @@ pub fn noise_increment<R: Real>(
     }
 }
 
-/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq. (17).
+/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
+/// (17).
 ///
 /// 7 operations: 2 additions, 5 multiplications.
 #[inline(always)]

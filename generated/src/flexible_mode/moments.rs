@@ -20,8 +20,8 @@ pub fn reduction_printed<R: Real>(
     (decay, diffusion)
 }
 
-/// Stationary variance of the coloured noise that matches decay rate and gain at zero frequency, eq. (24). Unit:
-/// ft*slug.
+/// Stationary variance of the coloured noise that matches decay rate and gain at zero frequency, eq. (24).
+/// Unit: ft*slug.
 ///
 /// No operations.
 #[inline(always)]
@@ -244,7 +244,8 @@ pub fn eta_variance_at_critical<R: Real>(
                 * (R::ONE + R::TWO * scaled_time + R::TWO * scaled_time_2))
 }
 
-/// Stationary autocorrelation of the mode at a lag, for zeta = 1, whatever zeta says, eq. (17). Unit: ft*slug.
+/// Stationary autocorrelation of the mode at a lag, for zeta = 1, whatever zeta says, eq. (17). Unit:
+/// ft*slug.
 ///
 /// 5 operations: 1 addition, 3 multiplications, 1 exp.
 #[inline(always)]

@@ -96,6 +96,7 @@ ahv_core::record! {
         pub eta_autocorrelation_overdamped_constant_1: R,
     }
 }
+
 /// Computes everything that depends on parameters alone.
 ///
 /// 94 operations: 13 additions, 71 multiplications, 8 divisions, 2 sqrt.

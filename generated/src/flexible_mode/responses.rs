@@ -109,8 +109,8 @@ pub fn transition_critical<R: Real>(
     }
 }
 
-/// State after a time under a constant force and no noise, for zeta = 1, whatever zeta says; (15) has one sign
-/// wrong, eq. (15).
+/// State after a time under a constant force and no noise, for zeta = 1, whatever zeta says; (15) has one
+/// sign wrong, eq. (15).
 ///
 /// 19 operations: 6 additions, 11 multiplications, 2 exp.
 #[inline(always)]

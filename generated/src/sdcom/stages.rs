@@ -104,6 +104,7 @@ ahv_core::record! {
         pub pitch_acceleration: R,
     }
 }
+
 /// Fills a part of [`Intermediates`].
 #[inline(always)]
 fn intermediates_part_1<R: Real>(
@@ -327,8 +328,7 @@ ahv_core::record! {
         pub d_c_m_d_alpha: R,
         /// Derivative of pitch acceleration with respect to alpha, 1/s^2.
         pub d_pitch_acceleration_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_1,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_1`.
         pub cos_alpha_c_t_eta_1: R,
         /// Derivative of rate of the velocity with respect to chi_1, ft^0.5/s^2/slug^0.5.
         pub d_velocity_rate_d_chi_1: R,
@@ -338,8 +338,7 @@ ahv_core::record! {
         pub d_force_turn_d_chi_1: R,
         /// Derivative of pitch acceleration with respect to chi_1, rad/s^2/ft^0.5/slug^0.5.
         pub d_pitch_acceleration_d_chi_1: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_2,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_2`.
         pub cos_alpha_c_t_eta_2: R,
         /// Derivative of rate of the velocity with respect to chi_2, ft^0.5/s^2/slug^0.5.
         pub d_velocity_rate_d_chi_2: R,
@@ -349,8 +348,7 @@ ahv_core::record! {
         pub d_force_turn_d_chi_2: R,
         /// Derivative of pitch acceleration with respect to chi_2, rad/s^2/ft^0.5/slug^0.5.
         pub d_pitch_acceleration_d_chi_2: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_3,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_3`.
         pub cos_alpha_c_t_eta_3: R,
         /// Derivative of rate of the velocity with respect to chi_3, ft^0.5/s^2/slug^0.5.
         pub d_velocity_rate_d_chi_3: R,
@@ -380,6 +378,7 @@ ahv_core::record! {
         pub d_force_turn_d_delta_c: R,
     }
 }
+
 /// Fills a part of [`Slopes`].
 #[inline(always)]
 fn slopes_part_1<R: Real>(
@@ -674,23 +673,23 @@ ahv_core::record! {
         pub d2_force_turn_d_alpha_d_chi_3: R,
         /// Derivative of pitch acceleration with respect to alpha and alpha, 1/s^2/rad.
         pub d2_pitch_acceleration_d_alpha_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to altitude and gamma, 1/s^2/rad.
+        /// Derivative of rate of the velocity with respect to gamma and altitude, 1/s^2/rad.
         pub d2_velocity_rate_d_gamma_d_altitude: R,
-        /// Derivative of rate of the velocity with respect to velocity and alpha, 1/s/rad.
+        /// Derivative of rate of the velocity with respect to alpha and velocity, 1/s/rad.
         pub d2_velocity_rate_d_alpha_d_velocity: R,
-        /// Derivative of rate of the velocity with respect to altitude and alpha, 1/s^2/rad.
+        /// Derivative of rate of the velocity with respect to alpha and altitude, 1/s^2/rad.
         pub d2_velocity_rate_d_alpha_d_altitude: R,
-        /// Derivative of rate of the flight-path angle with respect to velocity and gamma, 1/ft.
+        /// Derivative of rate of the flight-path angle with respect to gamma and velocity, 1/ft.
         pub d2_gamma_rate_d_gamma_d_velocity: R,
-        /// Derivative of rate of the flight-path angle with respect to altitude and gamma, 1/s/ft.
+        /// Derivative of rate of the flight-path angle with respect to gamma and altitude, 1/s/ft.
         pub d2_gamma_rate_d_gamma_d_altitude: R,
-        /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha, 1/ft.
+        /// Derivative of turn rate by the force across the flight path with respect to alpha and velocity, 1/ft.
         pub d2_force_turn_d_alpha_d_velocity: R,
-        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha, 1/s/ft.
+        /// Derivative of turn rate by the force across the flight path with respect to alpha and altitude, 1/s/ft.
         pub d2_force_turn_d_alpha_d_altitude: R,
-        /// Derivative of pitch acceleration with respect to velocity and alpha, 1/s/ft.
+        /// Derivative of pitch acceleration with respect to alpha and velocity, 1/s/ft.
         pub d2_pitch_acceleration_d_alpha_d_velocity: R,
-        /// Derivative of pitch acceleration with respect to altitude and alpha, 1/s^2/ft.
+        /// Derivative of pitch acceleration with respect to alpha and altitude, 1/s^2/ft.
         pub d2_pitch_acceleration_d_alpha_d_altitude: R,
         /// `m.d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma`.
         pub d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma: R,
@@ -710,8 +709,8 @@ ahv_core::record! {
         pub d2_generalized_force_3_d_alpha_d_alpha: R,
         /// Derivative of static flexible coordinate of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
         pub d2_eta_static_3_d_alpha_d_alpha: R,
-        /// Derivative of slope of the thrust coefficient in the fuel equivalence ratio with respect to alpha and alpha,
-        /// 1/rad^2.
+        /// Derivative of slope of the thrust coefficient in the fuel equivalence ratio with respect to alpha and
+        /// alpha, 1/rad^2.
         pub d2_c_t_phi_d_alpha_d_alpha: R,
         /// Derivative of thrust coefficient with respect to alpha and alpha, 1/rad^2.
         pub d2_c_t_d_alpha_d_alpha: R,
@@ -739,68 +738,77 @@ ahv_core::record! {
         pub d2_c_m_d_alpha_d_alpha: R,
         /// Derivative of pitching moment with respect to alpha and alpha, lb/rad^2.
         pub d2_pitching_moment_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        /// Derivative of generalized force of mode 1 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_1_d_alpha_d_velocity: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 1 with respect to alpha and velocity,
+        /// slug^0.5*s/ft^0.5/rad.
         pub d2_eta_static_1_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        /// Derivative of generalized force of mode 2 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_2_d_alpha_d_velocity: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 2 with respect to alpha and velocity,
+        /// slug^0.5*s/ft^0.5/rad.
         pub d2_eta_static_2_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        /// Derivative of generalized force of mode 3 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_3_d_alpha_d_velocity: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 3 with respect to alpha and velocity,
+        /// slug^0.5*s/ft^0.5/rad.
         pub d2_eta_static_3_d_alpha_d_velocity: R,
-        /// Derivative of thrust coefficient with respect to velocity and alpha, s/ft/rad.
+        /// Derivative of thrust coefficient with respect to alpha and velocity, s/rad/ft.
         pub d2_c_t_d_alpha_d_velocity: R,
-        /// Derivative of thrust with respect to velocity and alpha, lb*s/ft^2/rad.
+        /// Derivative of thrust with respect to alpha and velocity, lb*s/ft^2/rad.
         pub d2_thrust_d_alpha_d_velocity: R,
-        /// Derivative of drag coefficient with respect to velocity and alpha, s/ft/rad.
+        /// Derivative of drag coefficient with respect to alpha and velocity, s/rad/ft.
         pub d2_c_d_d_alpha_d_velocity: R,
-        /// Derivative of drag with respect to velocity and alpha, lb*s/ft^2/rad.
+        /// Derivative of drag with respect to alpha and velocity, lb*s/ft^2/rad.
         pub d2_drag_d_alpha_d_velocity: R,
-        /// Derivative of force along the flight path with respect to velocity and alpha, lb*s/ft^2/rad.
+        /// Derivative of force along the flight path with respect to alpha and velocity, lb*s/ft^2/rad.
         pub d2_path_force_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        /// Derivative of generalized force of mode 1 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_1_d_alpha_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 1 with respect to alpha and altitude,
+        /// slug^0.5/ft^0.5/rad.
         pub d2_eta_static_1_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        /// Derivative of generalized force of mode 2 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_2_d_alpha_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 2 with respect to alpha and altitude,
+        /// slug^0.5/ft^0.5/rad.
         pub d2_eta_static_2_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        /// Derivative of generalized force of mode 3 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_3_d_alpha_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 3 with respect to alpha and altitude,
+        /// slug^0.5/ft^0.5/rad.
         pub d2_eta_static_3_d_alpha_d_altitude: R,
-        /// Derivative of thrust coefficient with respect to altitude and alpha, 1/ft/rad.
+        /// Derivative of thrust coefficient with respect to alpha and altitude, 1/rad/ft.
         pub d2_c_t_d_alpha_d_altitude: R,
-        /// Derivative of thrust with respect to altitude and alpha, lb/ft^2/rad.
+        /// Derivative of thrust with respect to alpha and altitude, lb/ft^2/rad.
         pub d2_thrust_d_alpha_d_altitude: R,
-        /// Derivative of drag coefficient with respect to altitude and alpha, 1/ft/rad.
+        /// Derivative of drag coefficient with respect to alpha and altitude, 1/rad/ft.
         pub d2_c_d_d_alpha_d_altitude: R,
-        /// Derivative of drag with respect to altitude and alpha, lb/ft^2/rad.
+        /// Derivative of drag with respect to alpha and altitude, lb/ft^2/rad.
         pub d2_drag_d_alpha_d_altitude: R,
-        /// Derivative of force along the flight path with respect to altitude and alpha, lb/ft^2/rad.
+        /// Derivative of force along the flight path with respect to alpha and altitude, lb/ft^2/rad.
         pub d2_path_force_d_alpha_d_altitude: R,
-        /// Derivative of lift coefficient with respect to velocity and alpha, s/ft/rad.
+        /// Derivative of lift coefficient with respect to alpha and velocity, s/rad/ft.
         pub d2_c_l_d_alpha_d_velocity: R,
-        /// Derivative of coefficient of the force across the flight path with respect to velocity and alpha, s/ft/rad.
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and velocity,
+        /// s/rad/ft.
         pub d2_normal_coefficient_d_alpha_d_velocity: R,
-        /// Derivative of lift coefficient with respect to altitude and alpha, 1/ft/rad.
+        /// Derivative of lift coefficient with respect to alpha and altitude, 1/rad/ft.
         pub d2_c_l_d_alpha_d_altitude: R,
-        /// Derivative of coefficient of the force across the flight path with respect to altitude and alpha, 1/ft/rad.
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and altitude,
+        /// 1/rad/ft.
         pub d2_normal_coefficient_d_alpha_d_altitude: R,
-        /// Derivative of pitching-moment coefficient with respect to velocity and alpha, s/ft/rad.
+        /// Derivative of pitching-moment coefficient with respect to alpha and velocity, s/rad/ft.
         pub d2_c_m_d_alpha_d_velocity: R,
-        /// Derivative of pitching moment with respect to velocity and alpha, lb*s/ft/rad.
+        /// Derivative of pitching moment with respect to alpha and velocity, lb*s/rad/ft.
         pub d2_pitching_moment_d_alpha_d_velocity: R,
-        /// Derivative of pitching-moment coefficient with respect to altitude and alpha, 1/ft/rad.
+        /// Derivative of pitching-moment coefficient with respect to alpha and altitude, 1/rad/ft.
         pub d2_c_m_d_alpha_d_altitude: R,
-        /// Derivative of pitching moment with respect to altitude and alpha, lb/ft/rad.
+        /// Derivative of pitching moment with respect to alpha and altitude, lb/rad/ft.
         pub d2_pitching_moment_d_alpha_d_altitude: R,
     }
 }
+
 /// Fills a part of [`NoiseSlopes`].
 #[inline(always)]
 fn noise_slopes_part_1<R: Real>(
@@ -1052,6 +1060,7 @@ ahv_core::record! {
         pub d_gamma_rate_d_r_e: R,
     }
 }
+
 /// Computes [`Sensitivities`].
 #[inline(always)]
 pub fn sensitivities<R: Real>(

@@ -18,8 +18,8 @@ ahv_core::entries! {
     }
 }
 
-/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the gust is an Ornstein-Uhlenbeck
-/// process of rms gust_rms, eq. (27).
+/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the gust is an
+/// Ornstein-Uhlenbeck process of rms gust_rms, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
@@ -41,8 +41,8 @@ pub fn diffusion_values<R: Real>(
     }
 }
 
-/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the gust is an Ornstein-Uhlenbeck
-/// process of rms gust_rms, eq. (27).
+/// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the gust is an
+/// Ornstein-Uhlenbeck process of rms gust_rms, eq. (27).
 #[inline(always)]
 pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffusion<R> {
     diffusion_values(x, u, p).dense()
@@ -88,7 +88,8 @@ pub fn noise_increment<R: Real>(
     }
 }
 
-/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq. (27).
+/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
+/// (27).
 ///
 /// 160 operations: 60 additions, 95 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]

@@ -36,7 +36,8 @@ pub fn noise_derivatives<R: Real>(
     noise_derivatives_values(x, u, p).dense()
 }
 
-/// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
+/// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq.
+/// (27).
 ///
 /// No operations.
 #[inline(always)]

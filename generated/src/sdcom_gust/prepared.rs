@@ -433,6 +433,7 @@ ahv_core::record! {
         pub sqrt_two_over_gust_time: R,
     }
 }
+
 /// Fills a part of [`Prepared`].
 fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.rho_0 = p.rho_0;

@@ -106,6 +106,7 @@ ahv_core::record! {
         pub pitch_acceleration: R,
     }
 }
+
 /// Fills a part of [`Intermediates`].
 #[inline(always)]
 fn intermediates_part_1<R: Real>(
@@ -307,14 +308,14 @@ ahv_core::record! {
         pub d_cos_gamma_d_gamma: R,
         /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
         pub d_cos_alpha_d_alpha: R,
-        /// Partial derivative of generalized-force coefficient of mode 1 with respect to angle of attack against the air,
-        /// which moves with the gust, ft^0.5/slug^0.5/rad.
+        /// Partial derivative of generalized-force coefficient of mode 1 with respect to angle of attack against the
+        /// air, which moves with the gust, ft^0.5/slug^0.5/rad.
         pub slope_of_c_n_1_in_incidence: R,
-        /// Partial derivative of generalized-force coefficient of mode 2 with respect to angle of attack against the air,
-        /// which moves with the gust, ft^0.5/slug^0.5/rad.
+        /// Partial derivative of generalized-force coefficient of mode 2 with respect to angle of attack against the
+        /// air, which moves with the gust, ft^0.5/slug^0.5/rad.
         pub slope_of_c_n_2_in_incidence: R,
-        /// Partial derivative of generalized-force coefficient of mode 3 with respect to angle of attack against the air,
-        /// which moves with the gust, ft^0.5/slug^0.5/rad.
+        /// Partial derivative of generalized-force coefficient of mode 3 with respect to angle of attack against the
+        /// air, which moves with the gust, ft^0.5/slug^0.5/rad.
         pub slope_of_c_n_3_in_incidence: R,
         /// Derivative of thrust coefficient with respect to alpha, 1/rad.
         pub d_c_t_d_alpha: R,
@@ -328,18 +329,15 @@ ahv_core::record! {
         pub d_c_m_d_alpha: R,
         /// Derivative of pitch acceleration with respect to alpha, 1/s^2.
         pub d_pitch_acceleration_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_1,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_1`.
         pub cos_alpha_c_t_eta_1: R,
         /// Derivative of coefficient of the force across the flight path with respect to chi_1, 1/ft^0.5/slug^0.5.
         pub d_normal_coefficient_d_chi_1: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_2,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_2`.
         pub cos_alpha_c_t_eta_2: R,
         /// Derivative of coefficient of the force across the flight path with respect to chi_2, 1/ft^0.5/slug^0.5.
         pub d_normal_coefficient_d_chi_2: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and chi_3,
-        /// 1/rad/ft^0.5/slug^0.5.
+        /// `i.cos_alpha * c_t_eta_3`.
         pub cos_alpha_c_t_eta_3: R,
         /// Derivative of coefficient of the force across the flight path with respect to chi_3, 1/ft^0.5/slug^0.5.
         pub d_normal_coefficient_d_chi_3: R,
@@ -361,6 +359,7 @@ ahv_core::record! {
         pub d_force_turn_d_delta_c: R,
     }
 }
+
 /// Fills a part of [`Slopes`].
 #[inline(always)]
 fn slopes_part_1<R: Real>(
@@ -602,7 +601,7 @@ pub fn slopes<R: Real>(
 ahv_core::record! {
     /// Quantities of the second derivatives that several parts of these need.
     pub struct Curvatures<R> {
-        /// Derivative of air density over its reference with respect to h_0, 1/ft.
+        /// `i.density_ratio * inv_h_s`.
         pub density_ratio_over_h_s: R,
         /// Derivative of rate of the flight-path angle with respect to velocity and altitude, rad/ft^2.
         pub d2_gamma_rate_d_velocity_d_altitude: R,
@@ -614,7 +613,8 @@ ahv_core::record! {
         pub d2_gamma_rate_d_altitude_d_altitude: R,
         /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha, 1/s/ft.
         pub d2_force_turn_d_altitude_d_alpha: R,
-        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha_gust, 1/s/ft.
+        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha_gust,
+        /// 1/s/ft.
         pub d2_force_turn_d_altitude_d_alpha_gust: R,
         /// Derivative of turn rate by the force across the flight path with respect to alpha and alpha, 1/s/rad.
         pub d2_force_turn_d_alpha_d_alpha: R,
@@ -635,29 +635,35 @@ ahv_core::record! {
         pub d2_reference_force_d_velocity_d_altitude: R,
         /// Derivative of generalized force of mode 1 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
         pub d2_generalized_force_1_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and altitude, slug^0.5*s/ft^1.5.
+        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
         pub d2_eta_static_1_d_velocity_d_altitude: R,
         /// Derivative of generalized force of mode 2 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
         pub d2_generalized_force_2_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and altitude, slug^0.5*s/ft^1.5.
+        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
         pub d2_eta_static_2_d_velocity_d_altitude: R,
         /// Derivative of generalized force of mode 3 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
         pub d2_generalized_force_3_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and altitude, slug^0.5*s/ft^1.5.
+        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
         pub d2_eta_static_3_d_velocity_d_altitude: R,
         /// Derivative of thrust coefficient with respect to velocity and altitude, s/ft^2.
         pub d2_c_t_d_velocity_d_altitude: R,
         /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_1_d_velocity_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and alpha,
+        /// slug^0.5*s/ft^0.5/rad.
         pub d2_eta_static_1_d_velocity_d_alpha: R,
         /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_2_d_velocity_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and alpha,
+        /// slug^0.5*s/ft^0.5/rad.
         pub d2_eta_static_2_d_velocity_d_alpha: R,
         /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
         pub d2_generalized_force_3_d_velocity_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and alpha, slug^0.5*s/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and alpha,
+        /// slug^0.5*s/ft^0.5/rad.
         pub d2_eta_static_3_d_velocity_d_alpha: R,
         /// Derivative of thrust coefficient with respect to velocity and alpha, s/ft/rad.
         pub d2_c_t_d_velocity_d_alpha: R,
@@ -696,22 +702,25 @@ ahv_core::record! {
         pub d2_c_t_d_altitude_d_altitude: R,
         /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_1_d_altitude_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and alpha,
+        /// slug^0.5/ft^0.5/rad.
         pub d2_eta_static_1_d_altitude_d_alpha: R,
         /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_2_d_altitude_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and alpha,
+        /// slug^0.5/ft^0.5/rad.
         pub d2_eta_static_2_d_altitude_d_alpha: R,
         /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_3_d_altitude_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/rad.
+        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and alpha,
+        /// slug^0.5/ft^0.5/rad.
         pub d2_eta_static_3_d_altitude_d_alpha: R,
         /// Derivative of thrust coefficient with respect to altitude and alpha, 1/ft/rad.
         pub d2_c_t_d_altitude_d_alpha: R,
         /// Derivative of thrust with respect to altitude and alpha, lb/ft^2/rad.
         pub d2_thrust_d_altitude_d_alpha: R,
-        /// Derivative of partial derivative of thrust coefficient with respect to angle of attack against the air, which
-        /// moves with the gust with respect to alpha, 1/rad^2.
+        /// Derivative of partial derivative of thrust coefficient with respect to angle of attack against the air,
+        /// which moves with the gust with respect to alpha, 1/rad^2.
         pub d_slope_of_c_t_in_incidence_d_alpha: R,
         /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
         pub d2_generalized_force_1_d_alpha_d_alpha: R,
@@ -725,8 +734,8 @@ ahv_core::record! {
         pub d2_generalized_force_3_d_alpha_d_alpha: R,
         /// Derivative of static flexible coordinate of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
         pub d2_eta_static_3_d_alpha_d_alpha: R,
-        /// Derivative of partial derivative of slope of the thrust coefficient in the fuel equivalence ratio with respect
-        /// to angle of attack against the air, which moves with the gust with respect to alpha, 1/rad^2.
+        /// Derivative of partial derivative of slope of the thrust coefficient in the fuel equivalence ratio with
+        /// respect to angle of attack against the air, which moves with the gust with respect to alpha, 1/rad^2.
         pub d_slope_of_c_t_phi_in_incidence_d_alpha: R,
         /// Derivative of thrust coefficient with respect to alpha and alpha, 1/rad^2.
         pub d2_c_t_d_alpha_d_alpha: R,
@@ -735,20 +744,23 @@ ahv_core::record! {
         /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
         /// velocity and altitude, 1/ft^2.
         pub d2_gravity_turn_d_velocity_d_altitude: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity and altitude,
-        /// 1/ft^2.
+        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity and
+        /// altitude, 1/ft^2.
         pub d2_turn_factor_d_velocity_d_altitude: R,
         /// Derivative of lift coefficient with respect to velocity and altitude, s/ft^2.
         pub d2_c_l_d_velocity_d_altitude: R,
-        /// Derivative of coefficient of the force across the flight path with respect to velocity and altitude, s/ft^2.
+        /// Derivative of coefficient of the force across the flight path with respect to velocity and altitude,
+        /// s/ft^2.
         pub d2_normal_coefficient_d_velocity_d_altitude: R,
-        /// Derivative of turn rate by the force across the flight path with respect to velocity and altitude, rad/ft^2.
+        /// Derivative of turn rate by the force across the flight path with respect to velocity and altitude,
+        /// rad/ft^2.
         pub d2_force_turn_d_velocity_d_altitude: R,
         /// Derivative of lift coefficient with respect to velocity and alpha, s/ft/rad.
         pub d2_c_l_d_velocity_d_alpha: R,
         /// `i.sin_alpha * h.d2_c_t_d_velocity_d_alpha`.
         pub sin_alpha_times_d2_c_t_d_velocity_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to velocity and alpha, s/ft/rad.
+        /// Derivative of coefficient of the force across the flight path with respect to velocity and alpha,
+        /// s/ft/rad.
         pub d2_normal_coefficient_d_velocity_d_alpha: R,
         /// Derivative of coefficient of the force across the flight path with respect to velocity and alpha_gust,
         /// s/ft/rad.
@@ -756,20 +768,23 @@ ahv_core::record! {
         /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
         /// altitude and altitude, 1/s/ft^2.
         pub d2_gravity_turn_d_altitude_d_altitude: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude and altitude,
-        /// 1/s/ft^2.
+        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude and
+        /// altitude, 1/s/ft^2.
         pub d2_turn_factor_d_altitude_d_altitude: R,
         /// Derivative of lift coefficient with respect to altitude and altitude, 1/ft^2.
         pub d2_c_l_d_altitude_d_altitude: R,
-        /// Derivative of coefficient of the force across the flight path with respect to altitude and altitude, 1/ft^2.
+        /// Derivative of coefficient of the force across the flight path with respect to altitude and altitude,
+        /// 1/ft^2.
         pub d2_normal_coefficient_d_altitude_d_altitude: R,
-        /// Derivative of turn rate by the force across the flight path with respect to altitude and altitude, rad/s/ft^2.
+        /// Derivative of turn rate by the force across the flight path with respect to altitude and altitude,
+        /// rad/s/ft^2.
         pub d2_force_turn_d_altitude_d_altitude: R,
         /// Derivative of lift coefficient with respect to altitude and alpha, 1/ft/rad.
         pub d2_c_l_d_altitude_d_alpha: R,
         /// `i.sin_alpha * h.d2_c_t_d_altitude_d_alpha`.
         pub sin_alpha_times_d2_c_t_d_altitude_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to altitude and alpha, 1/ft/rad.
+        /// Derivative of coefficient of the force across the flight path with respect to altitude and alpha,
+        /// 1/ft/rad.
         pub d2_normal_coefficient_d_altitude_d_alpha: R,
         /// Derivative of coefficient of the force across the flight path with respect to altitude and alpha_gust,
         /// 1/ft/rad.
@@ -782,7 +797,8 @@ ahv_core::record! {
         pub sin_alpha_times_d2_c_t_d_alpha_d_alpha: R,
         /// Derivative of coefficient of the force across the flight path with respect to alpha and alpha, 1/rad^2.
         pub d2_normal_coefficient_d_alpha_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and alpha_gust, 1/rad^2.
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and alpha_gust,
+        /// 1/rad^2.
         pub d2_normal_coefficient_d_alpha_d_alpha_gust: R,
         /// Derivative of coefficient of the force across the flight path with respect to alpha_gust and alpha_gust,
         /// 1/rad^2.
@@ -801,6 +817,7 @@ ahv_core::record! {
         pub d2_pitching_moment_d_alpha_d_alpha: R,
     }
 }
+
 /// Fills a part of [`Curvatures`].
 #[inline(always)]
 fn curvatures_part_1<R: Real>(
@@ -1098,6 +1115,7 @@ ahv_core::record! {
         pub d_gamma_rate_d_r_e: R,
     }
 }
+
 /// Computes [`Sensitivities`].
 #[inline(always)]
 pub fn sensitivities<R: Real>(

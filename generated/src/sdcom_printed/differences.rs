@@ -133,7 +133,8 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
     alpha_rate - i.alpha_rate_printed
 }
 
-/// Delta f of (27): the pitch_rate rate of the exact form less that of the printed one, eq. (27). Unit: rad/s^2.
+/// Delta f of (27): the pitch_rate rate of the exact form less that of the printed one, eq. (27). Unit:
+/// rad/s^2.
 ///
 /// 119 operations: 49 additions, 69 multiplications, 1 exp.
 #[inline(always)]

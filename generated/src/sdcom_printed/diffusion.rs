@@ -134,7 +134,8 @@ pub fn noise_increment<R: Real>(
     noise_increment_from(x, u, p, dw, &i, &s, &n)
 }
 
-/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq. (27).
+/// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
+/// (27).
 ///
 /// 208 operations: 73 additions, 130 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]

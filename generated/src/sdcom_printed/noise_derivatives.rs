@@ -91,7 +91,8 @@ pub fn noise_derivatives<R: Real>(
     noise_derivatives_values(x, u, p).dense()
 }
 
-/// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq. (27).
+/// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq.
+/// (27).
 ///
 /// 51 operations: 8 additions, 41 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]

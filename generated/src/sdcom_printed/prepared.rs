@@ -408,6 +408,7 @@ ahv_core::record! {
         pub inv_c_l_delta_c_2: R,
     }
 }
+
 /// Fills a part of [`Prepared`].
 fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.rho_0 = p.rho_0;

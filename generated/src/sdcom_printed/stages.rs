@@ -60,15 +60,15 @@ ahv_core::record! {
         pub altitude_rate: R,
         /// `i.cos_alpha * c_t_eta_1 - c_d_eta_1`.
         pub cos_alpha_c_t_eta_1_minus_c_d_eta_1: R,
-        /// Static flexible coordinate of mode 1, (ft*slug)^0.5.
+        /// `i.generalized_force_1 * inv_omega_1_2`.
         pub generalized_force_1_inv_omega_1_2: R,
         /// `i.cos_alpha * c_t_eta_2 - c_d_eta_2`.
         pub cos_alpha_c_t_eta_2_minus_c_d_eta_2: R,
-        /// Static flexible coordinate of mode 2, (ft*slug)^0.5.
+        /// `i.generalized_force_2 * inv_omega_2_2`.
         pub generalized_force_2_inv_omega_2_2: R,
         /// `i.cos_alpha * c_t_eta_3 - c_d_eta_3`.
         pub cos_alpha_c_t_eta_3_minus_c_d_eta_3: R,
-        /// Static flexible coordinate of mode 3, (ft*slug)^0.5.
+        /// `i.generalized_force_3 * inv_omega_3_2`.
         pub generalized_force_3_inv_omega_3_2: R,
         /// F of the velocity row, flexible part, ft/s^2.
         pub f_velocity_eta: R,
@@ -78,31 +78,27 @@ ahv_core::record! {
         pub f_velocity: R,
         /// G of the velocity row, ft/s^2.
         pub g_velocity: R,
-        /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
-        /// coefficient across the flight path with respect to chi_1, rad/ft^0.5/slug^0.5.
+        /// `i.sin_alpha * c_t_eta_1 + c_l_eta_1`.
         pub sin_alpha_c_t_eta_1_plus_c_l_eta_1: R,
-        /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
-        /// coefficient across the flight path with respect to chi_2, rad/ft^0.5/slug^0.5.
+        /// `i.sin_alpha * c_t_eta_2 + c_l_eta_2`.
         pub sin_alpha_c_t_eta_2_plus_c_l_eta_2: R,
-        /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
-        /// coefficient across the flight path with respect to chi_3, rad/ft^0.5/slug^0.5.
+        /// `i.sin_alpha * c_t_eta_3 + c_l_eta_3`.
         pub sin_alpha_c_t_eta_3_plus_c_l_eta_3: R,
-        /// Partial derivative of f of the gamma row, flexible part with respect to turn rate per force coefficient across
-        /// the flight path, rad.
+        /// `i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * i.generalized_force_1_inv_omega_1_2 +
+        /// i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * i.generalized_force_2_inv_omega_2_2 +
+        /// i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * i.generalized_force_3_inv_omega_3_2`.
         pub f_gamma_eta_over_turn_factor: R,
         /// F of the gamma row, flexible part, rad/s.
         pub f_gamma_eta: R,
         /// `c_t_phi * u.phi`.
         pub c_t_phi_phi: R,
-        /// Partial derivative of f of the gamma row with respect to turn rate per force coefficient across the flight
-        /// path, rad.
+        /// `c_l_0 + i.sin_alpha * (i.c_t_phi_phi + c_t_0)`.
         pub c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha: R,
         /// `i.gravity_turn * i.cos_gamma`.
         pub gravity_turn_cos_gamma: R,
         /// F of the gamma row, rad/s.
         pub f_gamma: R,
-        /// Partial derivative of g of the gamma row with respect to turn rate per force coefficient across the flight
-        /// path, dimensionless.
+        /// `c_l_alpha + i.sin_alpha * (c_t_alpha + c_t_phi_alpha * u.phi)`.
         pub g_gamma_over_turn_factor: R,
         /// G of the gamma row, 1/s.
         pub g_gamma: R,
@@ -132,6 +128,7 @@ ahv_core::record! {
         pub pitch_rate_rate_printed: R,
     }
 }
+
 /// Fills a part of [`Intermediates`].
 #[inline(always)]
 fn intermediates_part_1<R: Real>(
@@ -325,8 +322,8 @@ ahv_core::record! {
         pub slope_of_g_velocity_in_dynamic_pressure: R,
         /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
         pub d_turn_factor_d_velocity: R,
-        /// Partial derivative of rate of gamma in the printed form with respect to turn rate per force coefficient across
-        /// the flight path, rad.
+        /// Partial derivative of rate of gamma in the printed form with respect to turn rate per force coefficient
+        /// across the flight path, rad.
         pub slope_of_gamma_rate_printed_in_turn_factor: R,
         /// `i.inv_velocity * i.inv_velocity`.
         pub inv_velocity_2: R,
@@ -344,14 +341,14 @@ ahv_core::record! {
         pub slope_of_f_gamma_eta_in_generalized_force_3: R,
         /// Derivative of g of the gamma row with respect to velocity, 1/ft.
         pub d_g_gamma_d_velocity: R,
-        /// Partial derivative of rate of alpha in the printed form with respect to turn rate per force coefficient across
-        /// the flight path, rad.
+        /// Partial derivative of rate of alpha in the printed form with respect to turn rate per force coefficient
+        /// across the flight path, rad.
         pub slope_of_alpha_rate_printed_in_turn_factor: R,
         /// Partial derivative of f of the alpha row with respect to turn rate per force coefficient across the flight
         /// path, rad.
         pub slope_of_f_alpha_in_turn_factor: R,
-        /// Partial derivative of f of the alpha row, flexible part with respect to turn rate per force coefficient across
-        /// the flight path, rad.
+        /// Partial derivative of f of the alpha row, flexible part with respect to turn rate per force coefficient
+        /// across the flight path, rad.
         pub slope_of_f_alpha_eta_in_turn_factor: R,
         /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 1,
         /// rad*s/ft^0.5/slug^0.5.
@@ -395,11 +392,13 @@ ahv_core::record! {
         pub d_cos_alpha_d_alpha: R,
         /// `x.chi_1 * c_t_eta_1 + x.chi_2 * c_t_eta_2 + x.chi_3 * c_t_eta_3`.
         pub chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3: R,
-        /// Partial derivative of rate of velocity in the printed form with respect to cos of the angle of attack, ft/s^2.
+        /// Partial derivative of rate of velocity in the printed form with respect to cos of the angle of attack,
+        /// ft/s^2.
         pub slope_of_velocity_rate_printed_in_cos_alpha: R,
         /// Partial derivative of f of the velocity row with respect to cos of the angle of attack, ft/s^2.
         pub slope_of_f_velocity_in_cos_alpha: R,
-        /// Partial derivative of f of the velocity row, flexible part with respect to cos of the angle of attack, ft/s^2.
+        /// Partial derivative of f of the velocity row, flexible part with respect to cos of the angle of attack,
+        /// ft/s^2.
         pub slope_of_f_velocity_eta_in_cos_alpha: R,
         /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, ft^0.5/slug^0.5/rad.
         pub d_c_n_1_d_alpha: R,
@@ -469,6 +468,7 @@ ahv_core::record! {
         pub d_f_gamma_eta_d_delta_c: R,
     }
 }
+
 /// Fills a part of [`Slopes`].
 #[inline(always)]
 fn slopes_part_1<R: Real>(
@@ -675,8 +675,7 @@ pub fn slopes<R: Real>(
 ahv_core::record! {
     /// Quantities of the diffusion that other functions need.
     pub struct NoiseTerms<R> {
-        /// Derivative of partial derivative of g of the gamma row with respect to turn rate per force coefficient across
-        /// the flight path with respect to alpha, 1/rad.
+        /// `i.cos_alpha * s.c_t_alpha_plus_c_t_phi_alpha_phi`.
         pub c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha: R,
         /// H of the velocity row, ft/s^2/rad.
         pub alpha_slope_velocity: R,
@@ -686,6 +685,7 @@ ahv_core::record! {
         pub alpha_slope_pitch_rate: R,
     }
 }
+
 /// Computes [`NoiseTerms`].
 #[inline(always)]
 pub fn noise_terms<R: Real>(
@@ -723,6 +723,7 @@ ahv_core::record! {
         pub d_alpha_slope_pitch_rate_d_velocity: R,
     }
 }
+
 /// Computes [`NoiseSlopes`].
 #[inline(always)]
 pub fn noise_slopes<R: Real>(
@@ -771,14 +772,15 @@ ahv_core::record! {
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
         pub slope_of_radius_ratio_in_earth_curvature: R,
-        /// Reduced flexible coordinate of mode 1, (ft*slug)^0.5.
+        /// `i.generalized_force_1_inv_omega_1_2 + x.chi_1`.
         pub generalized_force_1_inv_omega_1_2_plus_chi_1: R,
-        /// Reduced flexible coordinate of mode 2, (ft*slug)^0.5.
+        /// `i.generalized_force_2_inv_omega_2_2 + x.chi_2`.
         pub generalized_force_2_inv_omega_2_2_plus_chi_2: R,
-        /// Reduced flexible coordinate of mode 3, (ft*slug)^0.5.
+        /// `i.generalized_force_3_inv_omega_3_2 + x.chi_3`.
         pub generalized_force_3_inv_omega_3_2_plus_chi_3: R,
     }
 }
+
 /// Computes [`Sensitivities`].
 #[inline(always)]
 pub fn sensitivities<R: Real>(

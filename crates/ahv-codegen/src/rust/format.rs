@@ -140,7 +140,7 @@ fn record<'a>(out: &mut String, lines: &mut impl Iterator<Item = &'a str>) {
             break;
         }
     }
-    *out += "}\n";
+    *out += "}\n\n";
 }
 
 /// Whether a blank line separates an item from what stands before it.

@@ -25,7 +25,7 @@ struct Emitted {
 /// Statements and results as Rust; comments and units of no account.
 fn printed(body: &Body) -> (Vec<String>, Vec<String>) {
     let statements = body.statements.iter().filter_map(|it| match it {
-        Statement::Section(_) => None,
+        Statement::Section(_) | Statement::Set { .. } => None,
         Statement::Let { name, value, .. } => Some(format!("let {name} = {};", expression(value))),
         Statement::SinCos { .. } => Some(statement(it)),
     });
@@ -35,7 +35,7 @@ fn printed(body: &Body) -> (Vec<String>, Vec<String>) {
 
 fn given(prepared: Option<&Prepared>) -> Given<'_> {
     Given {
-        prepared,
+        prepared: prepared.map(Prepared::names),
         stages: &[],
     }
 }

@@ -149,13 +149,15 @@ impl Stage {
             fields.extend(others.into_iter().filter(|(id, _)| !ids.contains(id)));
             parts = self::parts(dag, model, given, kind, &fields).0;
         }
-        let about = |id: Id| {
-            let quantity = &model.quantities[*dag.quantities(id).first()?];
-            Some(described(&quantity.doc, &quantity.unit))
+        // A value that is a quantity of another function is named from what it is, and so described.
+        let about = |id: Id, name: &str| {
+            let mut quantities = dag.quantities(id).iter().map(|&it| &model.quantities[it]);
+            let own = quantities.find(|it| it.name == name)?;
+            Some(described(&own.doc, &own.unit))
         };
         let field = |(id, name): (Id, String)| Field {
+            about: about(id, &name),
             name,
-            about: about(id),
         };
         Self {
             kind,
