@@ -223,11 +223,27 @@ macro_rules! functions {
     )+};
 }
 
+/// DCOM with compressed Jacobians as arrays.
+mod arrays {
+    use ahv_core::Real;
+    pub(super) use ahv_models::dcom::*;
+
+    #[inline(always)]
+    pub(super) fn drift_and_jacobians<R: Real>(
+        x: &State<R>,
+        u: &Input<R>,
+        p: &Prepared<R>,
+    ) -> (State<R>, [R; 48], [R; 18]) {
+        let (drift, by_state, by_input) = drift_and_jacobians_values(x, u, p);
+        (drift, by_state.to_array(), by_input.to_array())
+    }
+}
+
 functions! {
     /// Drift of DCOM.
     DcomDrift = dcom::drift -> dcom::State<R>;
     /// Drift of DCOM, and the entries of both Jacobians that are not 0 by structure.
-    DcomDriftJacobians = dcom::drift_and_jacobians_values -> (dcom::State<R>, [R; 48], [R; 18]);
+    DcomDriftJacobians = arrays::drift_and_jacobians -> (dcom::State<R>, [R; 48], [R; 18]);
     /// Drift and diffusion of SDCOM.
     SdcomDriftDiffusion = sdcom::drift_and_diffusion -> (sdcom::State<R>, sdcom::Diffusion<R>);
 }

@@ -115,7 +115,8 @@ pub unsafe extern "C" fn dcom_drift_jacobians(
         f_x: &mut [f64; dcom::STATE_JACOBIAN_PATTERN.len()],
         f_u: &mut [f64; dcom::INPUT_JACOBIAN_PATTERN.len()],
     ) {
-        (*f, *f_x, *f_u) = dcom::drift_and_jacobians_values(x, u, p);
+        let (drift, by_state, by_input) = dcom::drift_and_jacobians_values(x, u, p);
+        (*f, *f_x, *f_u) = (drift, by_state.to_array(), by_input.to_array());
     }
     // SAFETY: the caller's promise.
     unsafe {

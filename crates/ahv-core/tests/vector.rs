@@ -5,6 +5,7 @@ use ahv_core::{Bounds, Real, Vector, entries, first_outside};
 use nalgebra::{SMatrix, SVector};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+/// A state.
 pub struct State<T> {
     velocity: T,
     alpha: T,

@@ -60,11 +60,10 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`hessian_values`]: derivatives by velocity_altitude.
+/// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
-fn hessian_by_velocity_altitude<R: Real>(
+fn hessian_by_velocity<R: Real>(
     hessian: &mut HessianEntries<R>,
-    x: &State<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
@@ -73,7 +72,38 @@ fn hessian_by_velocity_altitude<R: Real>(
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
     let d2_velocity_rate_d_velocity_d_velocity = -d2_drag_d_velocity_d_velocity
         * p.inv_m; // 1/ft
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
+    let inverse_momentum_3 = i.inverse_momentum * s.inverse_momentum_2;
+    let d2_force_turn_d_velocity_d_velocity = i.thrust * i.sin_alpha * p.two_m_2
+        * inverse_momentum_3; // rad*s/ft^2
+    let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+    let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
+    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
+        * p.inv_effective_inertia; // rad/ft^2
+    let d2_eta_acceleration_1_d_velocity_d_velocity = -p.psi_1
+        * d2_pitch_acceleration_d_velocity_d_velocity; // slug^0.5/ft^1.5
+    let d2_eta_acceleration_2_d_velocity_d_velocity = -p.psi_2
+        * d2_pitch_acceleration_d_velocity_d_velocity; // slug^0.5/ft^1.5
 
+    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
+    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
+    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
+    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
+    hessian.eta_dot_1_by_velocity_velocity = d2_eta_acceleration_1_d_velocity_d_velocity;
+    hessian.eta_dot_2_by_velocity_velocity = d2_eta_acceleration_2_d_velocity_d_velocity;
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude.
+#[inline(always)]
+fn hessian_by_altitude<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s
@@ -99,17 +129,6 @@ fn hessian_by_velocity_altitude<R: Real>(
     let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
     let d2_velocity_rate_d_altitude_d_altitude = -(i.sin_gamma
         * d2_gravity_d_altitude_d_altitude + d2_drag_d_altitude_d_altitude * p.inv_m); // 1/s^2/ft
-
-    // Derivatives with respect to velocity
-    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
-    let inverse_momentum_3 = i.inverse_momentum * s.inverse_momentum_2;
-    let d2_force_turn_d_velocity_d_velocity = i.thrust * i.sin_alpha * p.two_m_2
-        * inverse_momentum_3; // rad*s/ft^2
-    let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
-        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
-
-    // Derivatives with respect to altitude
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
@@ -126,13 +145,6 @@ fn hessian_by_velocity_altitude<R: Real>(
         * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
-
-    // Derivatives with respect to velocity
-    let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
-    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
-        * p.inv_effective_inertia; // rad/ft^2
-
-    // Derivatives with respect to altitude
     let d2_pitching_moment_d_velocity_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
     let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
@@ -141,33 +153,15 @@ fn hessian_by_velocity_altitude<R: Real>(
         * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
     let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
         * p.inv_effective_inertia; // rad/s^2/ft^2
-
-    // Derivatives with respect to velocity
-    let d2_eta_acceleration_1_d_velocity_d_velocity = -p.psi_1
-        * d2_pitch_acceleration_d_velocity_d_velocity; // slug^0.5/ft^1.5
-
-    // Derivatives with respect to altitude
     let d2_eta_acceleration_1_d_velocity_d_altitude = -p.psi_1
         * d2_pitch_acceleration_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_eta_acceleration_1_d_altitude_d_altitude = -p.psi_1
         * d2_pitch_acceleration_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
-    // Derivatives with respect to velocity
-    let d2_eta_acceleration_2_d_velocity_d_velocity = -p.psi_2
-        * d2_pitch_acceleration_d_velocity_d_velocity; // slug^0.5/ft^1.5
-
-    // Derivatives with respect to altitude
     let d2_eta_acceleration_2_d_velocity_d_altitude = -p.psi_2
         * d2_pitch_acceleration_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_eta_acceleration_2_d_altitude_d_altitude = -p.psi_2
         * d2_pitch_acceleration_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
 
-    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
-    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
-    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
-    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
-    hessian.eta_dot_1_by_velocity_velocity = d2_eta_acceleration_1_d_velocity_d_velocity;
-    hessian.eta_dot_2_by_velocity_velocity = d2_eta_acceleration_2_d_velocity_d_velocity;
     hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
     hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
     hessian.gamma_by_altitude_velocity = d2_gamma_rate_d_velocity_d_altitude;
@@ -182,9 +176,40 @@ fn hessian_by_velocity_altitude<R: Real>(
     hessian.eta_dot_2_by_altitude_altitude = d2_eta_acceleration_2_d_altitude_d_altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by gamma_alpha.
+/// Entries of [`hessian_values`]: derivatives by gamma.
 #[inline(always)]
-fn hessian_by_gamma_alpha<R: Real>(
+fn hessian_by_gamma<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to gamma
+    let d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
+    let d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+
+    hessian.velocity_by_gamma_altitude = d2_velocity_rate_d_altitude_d_gamma;
+    hessian.velocity_by_gamma_gamma = d2_velocity_rate_d_gamma_d_gamma;
+    hessian.altitude_by_gamma_velocity = i.cos_gamma;
+    hessian.altitude_by_gamma_gamma = d2_altitude_rate_d_gamma_d_gamma;
+    hessian.gamma_by_gamma_velocity = d2_gamma_rate_d_velocity_d_gamma;
+    hessian.gamma_by_gamma_altitude = d2_gamma_rate_d_altitude_d_gamma;
+    hessian.gamma_by_gamma_gamma = d2_gamma_rate_d_gamma_d_gamma;
+    hessian.alpha_by_gamma_velocity = -d2_gamma_rate_d_velocity_d_gamma;
+    hessian.alpha_by_gamma_altitude = -d2_gamma_rate_d_altitude_d_gamma;
+    hessian.alpha_by_gamma_gamma = -d2_gamma_rate_d_gamma_d_gamma;
+}
+
+/// Entries of [`hessian_values`]: derivatives by alpha.
+#[inline(always)]
+fn hessian_by_alpha<R: Real>(
     hessian: &mut HessianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
@@ -195,18 +220,8 @@ fn hessian_by_gamma_alpha<R: Real>(
     // Derivatives with respect to alpha
     let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
     let d2_velocity_rate_d_velocity_d_alpha = -d2_drag_d_velocity_d_alpha * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to alpha
     let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
     let d2_velocity_rate_d_altitude_d_alpha = -d2_drag_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d2_thrust_phi_d_alpha_d_alpha = p.six_t_phi_alpha_3 * x.alpha
         + R::TWO * p.t_phi_alpha_2; // lb/ft/rad^2
@@ -219,29 +234,10 @@ fn hessian_by_gamma_alpha<R: Real>(
         + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
-
-    // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to alpha
     let d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity * p.c_l_alpha
         - s.inverse_momentum_2 * p.m
             * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha); // 1/ft
-
-    // Derivatives with respect to gamma
-    let d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to alpha
     let d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude * p.c_l_alpha; // 1/s/ft
-
-    // Derivatives with respect to gamma
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to alpha
     let d2_force_turn_d_alpha_d_alpha = i.inverse_momentum
         * (R::TWO * i.cos_alpha * s.d_thrust_d_alpha
             + i.sin_alpha * d2_thrust_d_alpha_d_alpha
@@ -272,16 +268,6 @@ fn hessian_by_gamma_alpha<R: Real>(
     let d2_eta_acceleration_2_d_alpha_d_alpha = R::TWO * p.n_2_alpha_2
         - p.psi_2 * d2_pitch_acceleration_d_alpha_d_alpha; // ft^0.5*slug^0.5/s^2/rad^2
 
-    hessian.velocity_by_gamma_altitude = d2_velocity_rate_d_altitude_d_gamma;
-    hessian.velocity_by_gamma_gamma = d2_velocity_rate_d_gamma_d_gamma;
-    hessian.altitude_by_gamma_velocity = i.cos_gamma;
-    hessian.altitude_by_gamma_gamma = d2_altitude_rate_d_gamma_d_gamma;
-    hessian.gamma_by_gamma_velocity = d2_gamma_rate_d_velocity_d_gamma;
-    hessian.gamma_by_gamma_altitude = d2_gamma_rate_d_altitude_d_gamma;
-    hessian.gamma_by_gamma_gamma = d2_gamma_rate_d_gamma_d_gamma;
-    hessian.alpha_by_gamma_velocity = -d2_gamma_rate_d_velocity_d_gamma;
-    hessian.alpha_by_gamma_altitude = -d2_gamma_rate_d_altitude_d_gamma;
-    hessian.alpha_by_gamma_gamma = -d2_gamma_rate_d_gamma_d_gamma;
     hessian.velocity_by_alpha_velocity = d2_velocity_rate_d_velocity_d_alpha;
     hessian.velocity_by_alpha_altitude = d2_velocity_rate_d_altitude_d_alpha;
     hessian.velocity_by_alpha_alpha = d2_velocity_rate_d_alpha_d_alpha;
@@ -316,8 +302,10 @@ pub fn hessian_values<R: Real>(
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let mut hessian = HessianEntries::splat(R::ZERO);
-    hessian_by_velocity_altitude(&mut hessian, x, p, &i, &s);
-    hessian_by_gamma_alpha(&mut hessian, x, u, p, &i, &s);
+    hessian_by_velocity(&mut hessian, p, &i, &s);
+    hessian_by_altitude(&mut hessian, x, p, &i, &s);
+    hessian_by_gamma(&mut hessian, x, &i, &s);
+    hessian_by_alpha(&mut hessian, x, u, p, &i, &s);
     hessian
 }
 

@@ -71,9 +71,9 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity to eta_dot_2.
+/// Entries of [`jacobians_values`]: derivatives by velocity to eta_2.
 #[inline(always)]
-fn jacobians_by_velocity_to_eta_dot_2<R: Real>(
+fn jacobians_by_velocity_to_eta_2<R: Real>(
     state: &mut StateJacobianEntries<R>,
     x: &State<R>,
     p: &Prepared<R>,
@@ -165,15 +165,12 @@ fn jacobians_by_velocity_to_eta_dot_2<R: Real>(
     state.pitch_rate_by_eta_2 = p.d_pitch_acceleration_d_eta_2;
     state.eta_dot_1_by_eta_2 = p.d_eta_acceleration_1_d_eta_2;
     state.eta_dot_2_by_eta_2 = p.d_eta_acceleration_2_d_eta_2;
-    state.pitch_rate_by_eta_dot_2 = p.d_pitch_acceleration_d_eta_dot_2;
-    state.eta_dot_1_by_eta_dot_2 = p.d_eta_acceleration_1_d_eta_dot_2;
-    state.eta_2_by_eta_dot_2 = R::ONE;
-    state.eta_dot_2_by_eta_dot_2 = p.d_eta_acceleration_2_d_eta_dot_2;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by phi_delta_e.
+/// Entries of [`jacobians_values`]: derivatives by eta_dot_2 to delta_e.
 #[inline(always)]
-fn jacobians_by_phi_delta_e<R: Real>(
+fn jacobians_by_eta_dot_2_to_delta_e<R: Real>(
+    state: &mut StateJacobianEntries<R>,
     input: &mut InputJacobianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
@@ -193,6 +190,10 @@ fn jacobians_by_phi_delta_e<R: Real>(
     let d_eta_acceleration_2_d_delta_e = p.n_2_delta_e
         - p.psi_2 * d_pitch_acceleration_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
 
+    state.pitch_rate_by_eta_dot_2 = p.d_pitch_acceleration_d_eta_dot_2;
+    state.eta_dot_1_by_eta_dot_2 = p.d_eta_acceleration_1_d_eta_dot_2;
+    state.eta_2_by_eta_dot_2 = R::ONE;
+    state.eta_dot_2_by_eta_dot_2 = p.d_eta_acceleration_2_d_eta_dot_2;
     input.velocity_by_phi = s.d_velocity_rate_d_phi;
     input.gamma_by_phi = s.d_force_turn_d_phi;
     input.alpha_by_phi = -s.d_force_turn_d_phi;
@@ -218,8 +219,8 @@ pub fn jacobians_values_from<R: Real>(
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
-    jacobians_by_velocity_to_eta_dot_2(&mut state, x, p, i, s);
-    jacobians_by_phi_delta_e(&mut input, p, i, s);
+    jacobians_by_velocity_to_eta_2(&mut state, x, p, i, s);
+    jacobians_by_eta_dot_2_to_delta_e(&mut state, &mut input, p, i, s);
     (state, input)
 }
 

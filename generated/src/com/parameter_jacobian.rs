@@ -170,9 +170,9 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle to choices.
+/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle_environment.
 #[inline(always)]
-fn parameter_jacobian_by_vehicle_to_choices<R: Real>(
+fn parameter_jacobian_by_vehicle_environment<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     x: &State<R>,
     p: &Prepared<R>,
@@ -210,19 +210,13 @@ fn parameter_jacobian_by_vehicle_to_choices<R: Real>(
     let d_eta_acceleration_1_d_h_s = -p.psi_1 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_eta_acceleration_2_d_h_s = -p.psi_2 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
     let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
-    let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
-        * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
-            * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
+            * (x.velocity
+                - p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-    let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (i.radius_ratio
-            * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
-            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
 
     parameter.velocity_by_m = -i.path_force * p.inv_m_2;
     parameter.velocity_by_s = -i.c_d * i.dynamic_pressure * p.inv_m;
@@ -277,21 +271,30 @@ fn parameter_jacobian_by_vehicle_to_choices<R: Real>(
         * i.c_m * i.velocity_2 * i.density_ratio;
     parameter.eta_dot_2_by_h_0 = d_eta_acceleration_2_d_h_0;
     parameter.eta_dot_2_by_h_s = d_eta_acceleration_2_d_h_s;
-    parameter.velocity_by_spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e
-        * i.radius_ratio * slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_spherical_earth = d_gamma_rate_d_spherical_earth;
-    parameter.alpha_by_spherical_earth = -d_gamma_rate_d_spherical_earth;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by t to c_l.
+/// Entries of [`parameter_jacobian_values`]: derivatives by choices to c_l.
 #[inline(always)]
-fn parameter_jacobian_by_t_to_c_l<R: Real>(
+fn parameter_jacobian_by_choices_to_c_l<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) {
+    // Derivatives with respect to parameters
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+    let d_gravity_turn_d_spherical_earth = p.inv_r_e
+        * (i.radius_ratio
+            * (p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity
+                - x.velocity)
+            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
+    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+
+    parameter.velocity_by_spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e
+        * i.radius_ratio * slope_of_radius_ratio_in_earth_curvature;
+    parameter.gamma_by_spherical_earth = d_gamma_rate_d_spherical_earth;
+    parameter.alpha_by_spherical_earth = -d_gamma_rate_d_spherical_earth;
     parameter.velocity_by_t_phi_alpha_3 = i.cos_alpha * u.phi * i.alpha_3 * p.inv_m;
     parameter.velocity_by_t_phi_alpha_2 = i.cos_alpha * u.phi * i.alpha_2 * p.inv_m;
     parameter.velocity_by_t_phi_alpha = i.cos_alpha * u.phi * x.alpha * p.inv_m;
@@ -365,9 +368,9 @@ fn parameter_jacobian_by_t_to_c_l<R: Real>(
     parameter.alpha_by_c_l_0 = -i.turn_factor;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by modes to n_2.
+/// Entries of [`parameter_jacobian_values`]: derivatives by modes to n_1.
 #[inline(always)]
-fn parameter_jacobian_by_modes_to_n_2<R: Real>(
+fn parameter_jacobian_by_modes_to_n_1<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
@@ -407,16 +410,6 @@ fn parameter_jacobian_by_modes_to_n_2<R: Real>(
         + p.psi_1_2_over_effective_inertia * i.alpha_2; // rad^2
     let d_eta_acceleration_1_d_n_1_alpha = x.alpha
         + p.psi_1_2_over_effective_inertia * x.alpha; // rad
-    let d_eta_acceleration_2_d_n_2_alpha_2 = i.alpha_2
-        + p.psi_2_2_over_effective_inertia * i.alpha_2; // rad^2
-    let d_eta_acceleration_2_d_n_2_alpha = x.alpha
-        + p.psi_2_2_over_effective_inertia * x.alpha; // rad
-    let d_eta_acceleration_2_d_n_2_delta_e = u.delta_e
-        + p.psi_2_2_over_effective_inertia * u.delta_e; // rad
-    let psi_1_psi_2_over_effective_inertia_alpha_2 = p.psi_1_psi_2_over_effective_inertia
-        * i.alpha_2;
-    let psi_1_psi_2_over_effective_inertia_alpha = p.psi_1_psi_2_over_effective_inertia
-        * x.alpha;
 
     parameter.pitch_rate_by_omega_1 = d_pitch_acceleration_d_omega_1;
     parameter.pitch_rate_by_omega_2 = d_pitch_acceleration_d_omega_2;
@@ -469,15 +462,36 @@ fn parameter_jacobian_by_modes_to_n_2<R: Real>(
     parameter.eta_dot_1_by_n_1_alpha_2 = d_eta_acceleration_1_d_n_1_alpha_2;
     parameter.eta_dot_1_by_n_1_alpha = d_eta_acceleration_1_d_n_1_alpha;
     parameter.eta_dot_1_by_n_1_0 = p.d_eta_acceleration_1_d_n_1_0;
-    parameter.eta_dot_2_by_n_1_alpha_2 = psi_1_psi_2_over_effective_inertia_alpha_2;
-    parameter.eta_dot_2_by_n_1_alpha = psi_1_psi_2_over_effective_inertia_alpha;
+    parameter.eta_dot_2_by_n_1_alpha_2 = p.psi_1_psi_2_over_effective_inertia
+        * i.alpha_2;
+    parameter.eta_dot_2_by_n_1_alpha = p.psi_1_psi_2_over_effective_inertia * x.alpha;
     parameter.eta_dot_2_by_n_1_0 = p.psi_1_psi_2_over_effective_inertia;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by n_2.
+#[inline(always)]
+fn parameter_jacobian_by_n_2<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) {
+    // Derivatives with respect to parameters
+    let d_eta_acceleration_2_d_n_2_alpha_2 = i.alpha_2
+        + p.psi_2_2_over_effective_inertia * i.alpha_2; // rad^2
+    let d_eta_acceleration_2_d_n_2_alpha = x.alpha
+        + p.psi_2_2_over_effective_inertia * x.alpha; // rad
+    let d_eta_acceleration_2_d_n_2_delta_e = u.delta_e
+        + p.psi_2_2_over_effective_inertia * u.delta_e; // rad
+
     parameter.pitch_rate_by_n_2_alpha_2 = -p.psi_2_over_effective_inertia * i.alpha_2;
     parameter.pitch_rate_by_n_2_alpha = -p.psi_2_over_effective_inertia * x.alpha;
     parameter.pitch_rate_by_n_2_delta_e = -p.psi_2_over_effective_inertia * u.delta_e;
     parameter.pitch_rate_by_n_2_0 = p.minus_psi_2_over_effective_inertia;
-    parameter.eta_dot_1_by_n_2_alpha_2 = psi_1_psi_2_over_effective_inertia_alpha_2;
-    parameter.eta_dot_1_by_n_2_alpha = psi_1_psi_2_over_effective_inertia_alpha;
+    parameter.eta_dot_1_by_n_2_alpha_2 = p.psi_1_psi_2_over_effective_inertia
+        * i.alpha_2;
+    parameter.eta_dot_1_by_n_2_alpha = p.psi_1_psi_2_over_effective_inertia * x.alpha;
     parameter.eta_dot_1_by_n_2_delta_e = p.psi_1_psi_2_over_effective_inertia
         * u.delta_e;
     parameter.eta_dot_1_by_n_2_0 = p.psi_1_psi_2_over_effective_inertia;
@@ -501,9 +515,10 @@ pub fn parameter_jacobian_values<R: Real>(
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
-    parameter_jacobian_by_vehicle_to_choices(&mut parameter, x, p, &i, &s);
-    parameter_jacobian_by_t_to_c_l(&mut parameter, x, u, p, &i);
-    parameter_jacobian_by_modes_to_n_2(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_vehicle_environment(&mut parameter, x, p, &i, &s);
+    parameter_jacobian_by_choices_to_c_l(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_modes_to_n_1(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_n_2(&mut parameter, x, u, p, &i);
     parameter
 }
 

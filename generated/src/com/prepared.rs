@@ -342,11 +342,11 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
     // Derivatives with respect to eta_dot_2
     c.d_pitch_acceleration_d_eta_dot_2 = p.psi_2 * c.inv_effective_inertia * c.damping_2; // rad/s/ft^0.5/slug^0.5
+    c.d_eta_acceleration_1_d_eta_dot_2 = -p.psi_1 * c.d_pitch_acceleration_d_eta_dot_2; // 1/s
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    c.d_eta_acceleration_1_d_eta_dot_2 = -p.psi_1 * c.d_pitch_acceleration_d_eta_dot_2; // 1/s
     c.d_eta_acceleration_2_d_eta_dot_2 = -(c.damping_2
         + p.psi_2 * c.d_pitch_acceleration_d_eta_dot_2); // 1/s
 

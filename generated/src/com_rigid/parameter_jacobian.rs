@@ -3,8 +3,7 @@
 //! Functions of COM_RIGID. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Slopes, State,
-    intermediates, slopes,
+    Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes,
 };
 
 use ahv_core::Real;
@@ -93,15 +92,20 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle to choices.
+/// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 235 operations: 25 additions, 205 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-fn parameter_jacobian_by_vehicle_to_choices<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
+pub fn parameter_jacobian_values<R: Real>(
     x: &State<R>,
+    u: &Input<R>,
     p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
+) -> ParameterJacobianEntries<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+
     // Derivatives with respect to parameters
     let d_force_turn_d_m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
         + i.c_l * s.d_reference_force_d_velocity * p.half_inv_m_2); // rad*ft/s/slug
@@ -140,125 +144,90 @@ fn parameter_jacobian_by_vehicle_to_choices<R: Real>(
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
 
-    parameter.velocity_by_m = -i.path_force * p.inv_m_2;
-    parameter.velocity_by_s = -i.c_d * i.dynamic_pressure * p.inv_m;
-    parameter.gamma_by_m = d_force_turn_d_m;
-    parameter.gamma_by_s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
-    parameter.alpha_by_m = -d_force_turn_d_m;
-    parameter.alpha_by_s = i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
-    parameter.pitch_rate_by_i_yy = -i.pitch_acceleration * p.inv_i_yy;
-    parameter.pitch_rate_by_s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
-    parameter.pitch_rate_by_c_bar = i.c_m * i.reference_force * p.inv_i_yy;
-    parameter.pitch_rate_by_z_t = i.thrust * p.inv_i_yy;
-    parameter.velocity_by_rho_0 = i.c_d * p.minus_half_s_over_m * i.velocity_2
-        * i.density_ratio;
-    parameter.velocity_by_h_0 = d_velocity_rate_d_h_0;
-    parameter.velocity_by_h_s = d_velocity_rate_d_h_s;
-    parameter.velocity_by_g = -i.sin_gamma * i.radius_ratio_2;
-    parameter.velocity_by_r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e
-        * i.radius_ratio * slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_rho_0 = i.c_l * p.half_s_over_m * x.velocity * i.density_ratio;
-    parameter.gamma_by_h_0 = d_force_turn_d_h_0;
-    parameter.gamma_by_h_s = d_force_turn_d_h_s;
-    parameter.gamma_by_g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.gamma_by_r_e = d_gamma_rate_d_r_e;
-    parameter.alpha_by_rho_0 = i.c_l * p.minus_half_s_over_m * x.velocity
-        * i.density_ratio;
-    parameter.alpha_by_h_0 = -d_force_turn_d_h_0;
-    parameter.alpha_by_h_s = -d_force_turn_d_h_s;
-    parameter.alpha_by_g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.alpha_by_r_e = -d_gamma_rate_d_r_e;
-    parameter.pitch_rate_by_rho_0 = i.c_m * p.half_c_bar_s_over_i_yy * i.velocity_2
-        * i.density_ratio;
-    parameter.pitch_rate_by_h_0 = d_pitch_acceleration_d_h_0;
-    parameter.pitch_rate_by_h_s = d_pitch_acceleration_d_h_s;
-    parameter.velocity_by_spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e
-        * i.radius_ratio * slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_spherical_earth = d_gamma_rate_d_spherical_earth;
-    parameter.alpha_by_spherical_earth = -d_gamma_rate_d_spherical_earth;
-}
-
-/// Entries of [`parameter_jacobian_values`]: derivatives by t to c_m.
-#[inline(always)]
-fn parameter_jacobian_by_t_to_c_m<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) {
-    parameter.velocity_by_t_phi_alpha_3 = i.cos_alpha * u.phi * i.alpha_3 * p.inv_m;
-    parameter.velocity_by_t_phi_alpha_2 = i.cos_alpha * u.phi * i.alpha_2 * p.inv_m;
-    parameter.velocity_by_t_phi_alpha = i.cos_alpha * u.phi * x.alpha * p.inv_m;
-    parameter.velocity_by_t_phi = i.cos_alpha * u.phi * p.inv_m;
-    parameter.velocity_by_t_alpha_3 = i.cos_alpha * i.alpha_3 * p.inv_m;
-    parameter.velocity_by_t_alpha_2 = i.cos_alpha * i.alpha_2 * p.inv_m;
-    parameter.velocity_by_t_alpha = i.cos_alpha * x.alpha * p.inv_m;
-    parameter.velocity_by_t_0 = i.cos_alpha * p.inv_m;
-    parameter.gamma_by_t_phi_alpha_3 = i.inverse_momentum * i.sin_alpha * u.phi
-        * i.alpha_3;
-    parameter.gamma_by_t_phi_alpha_2 = i.inverse_momentum * i.sin_alpha * u.phi
-        * i.alpha_2;
-    parameter.gamma_by_t_phi_alpha = i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
-    parameter.gamma_by_t_phi = i.inverse_momentum * i.sin_alpha * u.phi;
-    parameter.gamma_by_t_alpha_3 = i.inverse_momentum * i.sin_alpha * i.alpha_3;
-    parameter.gamma_by_t_alpha_2 = i.inverse_momentum * i.sin_alpha * i.alpha_2;
-    parameter.gamma_by_t_alpha = i.inverse_momentum * i.sin_alpha * x.alpha;
-    parameter.gamma_by_t_0 = i.inverse_momentum * i.sin_alpha;
-    parameter.alpha_by_t_phi_alpha_3 = -i.inverse_momentum * i.sin_alpha * u.phi
-        * i.alpha_3;
-    parameter.alpha_by_t_phi_alpha_2 = -i.inverse_momentum * i.sin_alpha * u.phi
-        * i.alpha_2;
-    parameter.alpha_by_t_phi_alpha = -i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
-    parameter.alpha_by_t_phi = -i.inverse_momentum * i.sin_alpha * u.phi;
-    parameter.alpha_by_t_alpha_3 = -i.inverse_momentum * i.sin_alpha * i.alpha_3;
-    parameter.alpha_by_t_alpha_2 = -i.inverse_momentum * i.sin_alpha * i.alpha_2;
-    parameter.alpha_by_t_alpha = -i.inverse_momentum * i.sin_alpha * x.alpha;
-    parameter.alpha_by_t_0 = -i.inverse_momentum * i.sin_alpha;
-    parameter.pitch_rate_by_t_phi_alpha_3 = p.z_t_over_i_yy * u.phi * i.alpha_3;
-    parameter.pitch_rate_by_t_phi_alpha_2 = p.z_t_over_i_yy * u.phi * i.alpha_2;
-    parameter.pitch_rate_by_t_phi_alpha = p.z_t_over_i_yy * u.phi * x.alpha;
-    parameter.pitch_rate_by_t_phi = p.z_t_over_i_yy * u.phi;
-    parameter.pitch_rate_by_t_alpha_3 = p.z_t_over_i_yy * i.alpha_3;
-    parameter.pitch_rate_by_t_alpha_2 = p.z_t_over_i_yy * i.alpha_2;
-    parameter.pitch_rate_by_t_alpha = p.z_t_over_i_yy * x.alpha;
-    parameter.pitch_rate_by_t_0 = p.z_t_over_i_yy;
-    parameter.velocity_by_c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
-    parameter.velocity_by_c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
-    parameter.velocity_by_c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
-    parameter.velocity_by_c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
-    parameter.velocity_by_c_d_0 = -i.reference_force * p.inv_m;
-    parameter.gamma_by_c_l_alpha = i.turn_factor * x.alpha;
-    parameter.gamma_by_c_l_delta_e = i.turn_factor * u.delta_e;
-    parameter.gamma_by_c_l_0 = i.turn_factor;
-    parameter.alpha_by_c_l_alpha = -i.turn_factor * x.alpha;
-    parameter.alpha_by_c_l_delta_e = -i.turn_factor * u.delta_e;
-    parameter.alpha_by_c_l_0 = -i.turn_factor;
-    parameter.pitch_rate_by_c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy
-        * i.alpha_2;
-    parameter.pitch_rate_by_c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
-    parameter.pitch_rate_by_c_m_delta_e = i.reference_force * p.c_bar_over_i_yy
-        * u.delta_e;
-    parameter.pitch_rate_by_c_m_0 = i.reference_force * p.c_bar_over_i_yy;
-}
-
-/// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 235 operations: 25 additions, 205 multiplications, 2 divisions, 2 sin_cos, 1 exp.
-#[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobianEntries<R> {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
-    parameter_jacobian_by_vehicle_to_choices(&mut parameter, x, p, &i, &s);
-    parameter_jacobian_by_t_to_c_m(&mut parameter, x, u, p, &i);
-    parameter
+    ParameterJacobianEntries {
+        velocity_by_m: -i.path_force * p.inv_m_2,
+        velocity_by_s: -i.c_d * i.dynamic_pressure * p.inv_m,
+        velocity_by_rho_0: i.c_d * p.minus_half_s_over_m * i.velocity_2
+            * i.density_ratio,
+        velocity_by_h_0: d_velocity_rate_d_h_0,
+        velocity_by_h_s: d_velocity_rate_d_h_s,
+        velocity_by_g: -i.sin_gamma * i.radius_ratio_2,
+        velocity_by_r_e: i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
+            * slope_of_radius_ratio_in_earth_curvature,
+        velocity_by_spherical_earth: i.sin_gamma * p.minus_two_g_over_r_e
+            * i.radius_ratio * slope_of_radius_ratio_in_earth_curvature,
+        velocity_by_t_phi_alpha_3: i.cos_alpha * u.phi * i.alpha_3 * p.inv_m,
+        velocity_by_t_phi_alpha_2: i.cos_alpha * u.phi * i.alpha_2 * p.inv_m,
+        velocity_by_t_phi_alpha: i.cos_alpha * u.phi * x.alpha * p.inv_m,
+        velocity_by_t_phi: i.cos_alpha * u.phi * p.inv_m,
+        velocity_by_t_alpha_3: i.cos_alpha * i.alpha_3 * p.inv_m,
+        velocity_by_t_alpha_2: i.cos_alpha * i.alpha_2 * p.inv_m,
+        velocity_by_t_alpha: i.cos_alpha * x.alpha * p.inv_m,
+        velocity_by_t_0: i.cos_alpha * p.inv_m,
+        velocity_by_c_d_alpha_2: -i.reference_force * i.alpha_2 * p.inv_m,
+        velocity_by_c_d_alpha: -i.reference_force * x.alpha * p.inv_m,
+        velocity_by_c_d_delta_e_2: -i.reference_force * i.delta_e_2 * p.inv_m,
+        velocity_by_c_d_delta_e: -i.reference_force * u.delta_e * p.inv_m,
+        velocity_by_c_d_0: -i.reference_force * p.inv_m,
+        gamma_by_m: d_force_turn_d_m,
+        gamma_by_s: i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m,
+        gamma_by_rho_0: i.c_l * p.half_s_over_m * x.velocity * i.density_ratio,
+        gamma_by_h_0: d_force_turn_d_h_0,
+        gamma_by_h_s: d_force_turn_d_h_s,
+        gamma_by_g: -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
+        gamma_by_r_e: d_gamma_rate_d_r_e,
+        gamma_by_spherical_earth: d_gamma_rate_d_spherical_earth,
+        gamma_by_t_phi_alpha_3: i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3,
+        gamma_by_t_phi_alpha_2: i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2,
+        gamma_by_t_phi_alpha: i.inverse_momentum * i.sin_alpha * u.phi * x.alpha,
+        gamma_by_t_phi: i.inverse_momentum * i.sin_alpha * u.phi,
+        gamma_by_t_alpha_3: i.inverse_momentum * i.sin_alpha * i.alpha_3,
+        gamma_by_t_alpha_2: i.inverse_momentum * i.sin_alpha * i.alpha_2,
+        gamma_by_t_alpha: i.inverse_momentum * i.sin_alpha * x.alpha,
+        gamma_by_t_0: i.inverse_momentum * i.sin_alpha,
+        gamma_by_c_l_alpha: i.turn_factor * x.alpha,
+        gamma_by_c_l_delta_e: i.turn_factor * u.delta_e,
+        gamma_by_c_l_0: i.turn_factor,
+        alpha_by_m: -d_force_turn_d_m,
+        alpha_by_s: i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m,
+        alpha_by_rho_0: i.c_l * p.minus_half_s_over_m * x.velocity * i.density_ratio,
+        alpha_by_h_0: -d_force_turn_d_h_0,
+        alpha_by_h_s: -d_force_turn_d_h_s,
+        alpha_by_g: i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
+        alpha_by_r_e: -d_gamma_rate_d_r_e,
+        alpha_by_spherical_earth: -d_gamma_rate_d_spherical_earth,
+        alpha_by_t_phi_alpha_3: -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3,
+        alpha_by_t_phi_alpha_2: -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2,
+        alpha_by_t_phi_alpha: -i.inverse_momentum * i.sin_alpha * u.phi * x.alpha,
+        alpha_by_t_phi: -i.inverse_momentum * i.sin_alpha * u.phi,
+        alpha_by_t_alpha_3: -i.inverse_momentum * i.sin_alpha * i.alpha_3,
+        alpha_by_t_alpha_2: -i.inverse_momentum * i.sin_alpha * i.alpha_2,
+        alpha_by_t_alpha: -i.inverse_momentum * i.sin_alpha * x.alpha,
+        alpha_by_t_0: -i.inverse_momentum * i.sin_alpha,
+        alpha_by_c_l_alpha: -i.turn_factor * x.alpha,
+        alpha_by_c_l_delta_e: -i.turn_factor * u.delta_e,
+        alpha_by_c_l_0: -i.turn_factor,
+        pitch_rate_by_i_yy: -i.pitch_acceleration * p.inv_i_yy,
+        pitch_rate_by_s: i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure,
+        pitch_rate_by_c_bar: i.c_m * i.reference_force * p.inv_i_yy,
+        pitch_rate_by_z_t: i.thrust * p.inv_i_yy,
+        pitch_rate_by_rho_0: i.c_m * p.half_c_bar_s_over_i_yy * i.velocity_2
+            * i.density_ratio,
+        pitch_rate_by_h_0: d_pitch_acceleration_d_h_0,
+        pitch_rate_by_h_s: d_pitch_acceleration_d_h_s,
+        pitch_rate_by_t_phi_alpha_3: p.z_t_over_i_yy * u.phi * i.alpha_3,
+        pitch_rate_by_t_phi_alpha_2: p.z_t_over_i_yy * u.phi * i.alpha_2,
+        pitch_rate_by_t_phi_alpha: p.z_t_over_i_yy * u.phi * x.alpha,
+        pitch_rate_by_t_phi: p.z_t_over_i_yy * u.phi,
+        pitch_rate_by_t_alpha_3: p.z_t_over_i_yy * i.alpha_3,
+        pitch_rate_by_t_alpha_2: p.z_t_over_i_yy * i.alpha_2,
+        pitch_rate_by_t_alpha: p.z_t_over_i_yy * x.alpha,
+        pitch_rate_by_t_0: p.z_t_over_i_yy,
+        pitch_rate_by_c_m_alpha_2: i.reference_force * p.c_bar_over_i_yy * i.alpha_2,
+        pitch_rate_by_c_m_alpha: i.reference_force * p.c_bar_over_i_yy * x.alpha,
+        pitch_rate_by_c_m_delta_e: i.reference_force * p.c_bar_over_i_yy * u.delta_e,
+        pitch_rate_by_c_m_0: i.reference_force * p.c_bar_over_i_yy,
+    }
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).

@@ -100,11 +100,10 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`hessian_values`]: derivatives by velocity_altitude.
+/// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
-fn hessian_by_velocity_altitude<R: Real>(
+fn hessian_by_velocity<R: Real>(
     hessian: &mut HessianEntries<R>,
-    x: &State<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
@@ -116,7 +115,36 @@ fn hessian_by_velocity_altitude<R: Real>(
         * d2_thrust_d_velocity_d_velocity - d2_drag_d_velocity_d_velocity; // lb*s^2/ft^3
     let d2_velocity_rate_d_velocity_d_velocity = d2_path_force_d_velocity_d_velocity
         * p.inv_m; // 1/ft
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
+    let d2_gamma_rate_d_velocity_d_velocity = -i.cos_gamma
+        * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+    let d2_pitching_moment_d_velocity_d_velocity = p.c_bar_s * i.c_m * i.density
+        + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
+    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
+        * p.inv_i_yy; // rad/ft^2
+    let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
+    let d2_generalized_force_2_d_velocity_d_velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
+    let d2_generalized_force_3_d_velocity_d_velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
 
+    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
+    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
+    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
+    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
+    hessian.eta_dot_1_by_velocity_velocity = d2_generalized_force_1_d_velocity_d_velocity;
+    hessian.eta_dot_2_by_velocity_velocity = d2_generalized_force_2_d_velocity_d_velocity;
+    hessian.eta_dot_3_by_velocity_velocity = d2_generalized_force_3_d_velocity_d_velocity;
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude.
+#[inline(always)]
+fn hessian_by_altitude<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s
@@ -150,14 +178,6 @@ fn hessian_by_velocity_altitude<R: Real>(
         * d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude; // lb/ft^3
     let d2_velocity_rate_d_altitude_d_altitude = d2_path_force_d_altitude_d_altitude
         * p.inv_m - i.sin_gamma * d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
-
-    // Derivatives with respect to velocity
-    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
-    let d2_gamma_rate_d_velocity_d_velocity = -i.cos_gamma
-        * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
-
-    // Derivatives with respect to altitude
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
@@ -174,14 +194,6 @@ fn hessian_by_velocity_altitude<R: Real>(
         * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
-
-    // Derivatives with respect to velocity
-    let d2_pitching_moment_d_velocity_d_velocity = p.c_bar_s * i.c_m * i.density
-        + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
-    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
-        * p.inv_i_yy; // rad/ft^2
-
-    // Derivatives with respect to altitude
     let d2_pitching_moment_d_velocity_d_altitude = p.c_bar * i.c_m
         * d2_reference_force_d_velocity_d_altitude
         + p.z_t * d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
@@ -192,41 +204,19 @@ fn hessian_by_velocity_altitude<R: Real>(
         + p.z_t * d2_thrust_d_altitude_d_altitude; // lb/ft^2
     let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
         * p.inv_i_yy; // rad/s^2/ft^2
-
-    // Derivatives with respect to velocity
-    let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
-
-    // Derivatives with respect to altitude
     let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
-    // Derivatives with respect to velocity
-    let d2_generalized_force_2_d_velocity_d_velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
-
-    // Derivatives with respect to altitude
     let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
-    // Derivatives with respect to velocity
-    let d2_generalized_force_3_d_velocity_d_velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
-
-    // Derivatives with respect to altitude
     let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
         * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
 
-    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
-    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
-    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
-    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
-    hessian.eta_dot_1_by_velocity_velocity = d2_generalized_force_1_d_velocity_d_velocity;
-    hessian.eta_dot_2_by_velocity_velocity = d2_generalized_force_2_d_velocity_d_velocity;
-    hessian.eta_dot_3_by_velocity_velocity = d2_generalized_force_3_d_velocity_d_velocity;
     hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
     hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
     hessian.gamma_by_altitude_velocity = d2_gamma_rate_d_velocity_d_altitude;
@@ -455,7 +445,8 @@ pub fn hessian_values<R: Real>(
     let s = slopes(x, u, p, &i);
     let m = noise_slopes(x, u, p, &i, &s);
     let mut hessian = HessianEntries::splat(R::ZERO);
-    hessian_by_velocity_altitude(&mut hessian, x, p, &i, &s);
+    hessian_by_velocity(&mut hessian, p, &i, &s);
+    hessian_by_altitude(&mut hessian, x, p, &i, &s);
     hessian_by_gamma_to_eta_1(&mut hessian, p, &i, &s, &m);
     hessian_by_eta_2_eta_3(&mut hessian, p, &i, &s);
     hessian

@@ -87,9 +87,9 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity to pitch_rate.
+/// Entries of [`jacobians_values`]: derivatives by velocity to eta_2.
 #[inline(always)]
-fn jacobians_by_velocity_to_pitch_rate<R: Real>(
+fn jacobians_by_velocity_to_eta_2<R: Real>(
     state: &mut StateJacobianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
@@ -142,14 +142,6 @@ fn jacobians_by_velocity_to_pitch_rate<R: Real>(
         * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
-    // Derivatives with respect to eta_3
-    let d_path_force_d_eta_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_3 = i.turn_factor * s.d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_3 = i.reference_force
-        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
     state.velocity_by_velocity = d_velocity_rate_d_velocity;
     state.altitude_by_velocity = i.sin_gamma;
     state.gamma_by_velocity = d_gamma_rate_d_velocity;
@@ -186,23 +178,25 @@ fn jacobians_by_velocity_to_pitch_rate<R: Real>(
     state.alpha_by_eta_2 = -d_force_turn_d_eta_2;
     state.pitch_rate_by_eta_2 = d_pitch_acceleration_d_eta_2;
     state.eta_dot_2_by_eta_2 = p.minus_stiffness_2;
-    state.velocity_by_eta_3 = d_velocity_rate_d_eta_3;
-    state.gamma_by_eta_3 = d_force_turn_d_eta_3;
-    state.alpha_by_eta_3 = -d_force_turn_d_eta_3;
-    state.pitch_rate_by_eta_3 = d_pitch_acceleration_d_eta_3;
-    state.eta_dot_3_by_eta_3 = p.minus_stiffness_3;
-    state.alpha_by_pitch_rate = R::ONE;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by eta_dot_1 to delta_c.
+/// Entries of [`jacobians_values`]: derivatives by eta_3 to delta_c.
 #[inline(always)]
-fn jacobians_by_eta_dot_1_to_delta_c<R: Real>(
+fn jacobians_by_eta_3_to_delta_c<R: Real>(
     state: &mut StateJacobianEntries<R>,
     input: &mut InputJacobianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
+    // Derivatives with respect to eta_3
+    let d_path_force_d_eta_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
+    let d_force_turn_d_eta_3 = i.turn_factor * s.d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_3 = i.reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
+    let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+
     // Derivatives with respect to phi
     let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
@@ -226,6 +220,12 @@ fn jacobians_by_eta_dot_1_to_delta_c<R: Real>(
     let d_generalized_force_3_d_delta_c = i.reference_force
         * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
 
+    state.velocity_by_eta_3 = d_velocity_rate_d_eta_3;
+    state.gamma_by_eta_3 = d_force_turn_d_eta_3;
+    state.alpha_by_eta_3 = -d_force_turn_d_eta_3;
+    state.pitch_rate_by_eta_3 = d_pitch_acceleration_d_eta_3;
+    state.eta_dot_3_by_eta_3 = p.minus_stiffness_3;
+    state.alpha_by_pitch_rate = R::ONE;
     state.eta_1_by_eta_dot_1 = R::ONE;
     state.eta_dot_1_by_eta_dot_1 = p.minus_damping_1;
     state.eta_2_by_eta_dot_2 = R::ONE;
@@ -263,8 +263,8 @@ pub fn jacobians_values_from<R: Real>(
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
-    jacobians_by_velocity_to_pitch_rate(&mut state, p, i, s);
-    jacobians_by_eta_dot_1_to_delta_c(&mut state, &mut input, p, i, s);
+    jacobians_by_velocity_to_eta_2(&mut state, p, i, s);
+    jacobians_by_eta_3_to_delta_c(&mut state, &mut input, p, i, s);
     (state, input)
 }
 

@@ -179,21 +179,49 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle_environment.
+/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle.
 #[inline(always)]
-fn parameter_jacobian_by_vehicle_environment<R: Real>(
+fn parameter_jacobian_by_vehicle<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-    q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_path_force_d_s = i.dynamic_pressure * (i.c_t * i.cos_alpha - i.c_d); // lb/ft^2
     let d_velocity_rate_d_s = d_path_force_d_s * p.inv_m; // 1/s^2
     let d_pitching_moment_d_s = i.dynamic_pressure * (p.c_bar * i.c_m + p.z_t * i.c_t); // lb/ft
     let d_pitch_acceleration_d_s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
+
+    parameter.velocity_by_m = -i.path_force * p.inv_m_2;
+    parameter.velocity_by_s = d_velocity_rate_d_s;
+    parameter.gamma_by_m = i.normal_coefficient * s.d_reference_force_d_velocity
+        * p.minus_half_inv_m_2;
+    parameter.gamma_by_s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity
+        * p.half_over_m;
+    parameter.alpha_by_m = i.normal_coefficient * s.d_reference_force_d_velocity
+        * p.half_inv_m_2;
+    parameter.alpha_by_s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity
+        * p.minus_half_over_m;
+    parameter.pitch_rate_by_i_yy = -i.pitch_acceleration * p.inv_i_yy;
+    parameter.pitch_rate_by_s = d_pitch_acceleration_d_s;
+    parameter.pitch_rate_by_c_bar = i.reference_force * i.c_m * p.inv_i_yy;
+    parameter.pitch_rate_by_z_t = i.thrust * p.inv_i_yy;
+    parameter.eta_dot_1_by_s = i.c_n_1 * i.dynamic_pressure;
+    parameter.eta_dot_2_by_s = i.c_n_2 * i.dynamic_pressure;
+    parameter.eta_dot_3_by_s = i.c_n_3 * i.dynamic_pressure;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment.
+#[inline(always)]
+fn parameter_jacobian_by_environment<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    q: &Sensitivities<R>,
+) {
+    // Derivatives with respect to parameters
     let d_path_force_d_rho_0 = p.s * i.density_ratio
         * (R::HALF * i.cos_alpha * i.c_t * i.velocity_2
             - R::HALF * i.c_d * i.velocity_2); // lb*ft^2/slug
@@ -241,23 +269,6 @@ fn parameter_jacobian_by_vehicle_environment<R: Real>(
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
 
-    parameter.velocity_by_m = -i.path_force * p.inv_m_2;
-    parameter.velocity_by_s = d_velocity_rate_d_s;
-    parameter.gamma_by_m = i.normal_coefficient * s.d_reference_force_d_velocity
-        * p.minus_half_inv_m_2;
-    parameter.gamma_by_s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity
-        * p.half_over_m;
-    parameter.alpha_by_m = i.normal_coefficient * s.d_reference_force_d_velocity
-        * p.half_inv_m_2;
-    parameter.alpha_by_s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity
-        * p.minus_half_over_m;
-    parameter.pitch_rate_by_i_yy = -i.pitch_acceleration * p.inv_i_yy;
-    parameter.pitch_rate_by_s = d_pitch_acceleration_d_s;
-    parameter.pitch_rate_by_c_bar = i.reference_force * i.c_m * p.inv_i_yy;
-    parameter.pitch_rate_by_z_t = i.thrust * p.inv_i_yy;
-    parameter.eta_dot_1_by_s = i.c_n_1 * i.dynamic_pressure;
-    parameter.eta_dot_2_by_s = i.c_n_2 * i.dynamic_pressure;
-    parameter.eta_dot_3_by_s = i.c_n_3 * i.dynamic_pressure;
     parameter.velocity_by_rho_0 = d_velocity_rate_d_rho_0;
     parameter.velocity_by_h_0 = d_velocity_rate_d_h_0;
     parameter.velocity_by_h_s = d_velocity_rate_d_h_s;
@@ -521,7 +532,8 @@ pub fn parameter_jacobian_values<R: Real>(
     let s = slopes(x, u, p, &i);
     let q = sensitivities(x, u, p, &i);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
-    parameter_jacobian_by_vehicle_environment(&mut parameter, x, p, &i, &s, &q);
+    parameter_jacobian_by_vehicle(&mut parameter, p, &i, &s);
+    parameter_jacobian_by_environment(&mut parameter, x, p, &i, &q);
     parameter_jacobian_by_choices_c_t(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_l_to_c_n_3(&mut parameter, x, u, p, &i, &s, &q);
     parameter

@@ -93,14 +93,15 @@ ahv_core::record! {
     }
 }
 
-/// Fills a part of [`Intermediates`].
+/// Computes [`Intermediates`].
 #[inline(always)]
-fn intermediates_part_1<R: Real>(
-    i: &mut Intermediates<R>,
+pub fn intermediates<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) {
+) -> Intermediates<R> {
+    let mut i = Intermediates::splat(R::ZERO);
+
     // Air, (2)
     i.density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     i.density = p.rho_0 * i.density_ratio; // slug/ft^3
@@ -161,16 +162,6 @@ fn intermediates_part_1<R: Real>(
         + p.c_d_eta_1 * x.eta_1
         + p.c_d_eta_2 * x.eta_2
         + p.c_d_eta_3 * x.eta_3;
-}
-
-/// Fills a part of [`Intermediates`].
-#[inline(always)]
-fn intermediates_part_2<R: Real>(
-    i: &mut Intermediates<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) {
     i.c_m = p.c_m_0
         + p.c_m_alpha_2 * i.alpha_2
         + p.c_m_alpha * x.alpha
@@ -215,18 +206,6 @@ fn intermediates_part_2<R: Real>(
     i.altitude_rate = x.velocity * i.sin_gamma; // ft/s
     i.gamma_rate = force_turn - i.gravity_turn * i.cos_gamma; // rad/s
     i.pitch_acceleration = i.pitching_moment * p.inv_i_yy; // rad/s^2
-}
-
-/// Computes [`Intermediates`].
-#[inline(always)]
-pub fn intermediates<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> Intermediates<R> {
-    let mut i = Intermediates::splat(R::ZERO);
-    intermediates_part_1(&mut i, x, u, p);
-    intermediates_part_2(&mut i, x, u, p);
     i
 }
 
@@ -491,17 +470,16 @@ ahv_core::record! {
     }
 }
 
-/// Computes [`NoiseSlopes`].
+/// Fills a part of [`NoiseSlopes`].
 #[inline(always)]
-pub fn noise_slopes<R: Real>(
+fn noise_slopes_part_1<R: Real>(
+    m: &mut NoiseSlopes<R>,
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) -> NoiseSlopes<R> {
-    let mut m = NoiseSlopes::splat(R::ZERO);
-
+) {
     // Derivatives with respect to gamma
     m.d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
@@ -585,7 +563,11 @@ pub fn noise_slopes<R: Real>(
         * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
     m.d2_pitch_acceleration_d_alpha_d_altitude = d2_pitching_moment_d_alpha_d_altitude
         * p.inv_i_yy; // 1/s^2/ft
+}
 
+/// Fills a part of [`NoiseSlopes`].
+#[inline(always)]
+fn noise_slopes_part_2<R: Real>(m: &mut NoiseSlopes<R>, s: &Slopes<R>) {
     // Derivatives with respect to velocity
     m.d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
         * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
@@ -613,6 +595,20 @@ pub fn noise_slopes<R: Real>(
         .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
     m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = m
         .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
+}
+
+/// Computes [`NoiseSlopes`].
+#[inline(always)]
+pub fn noise_slopes<R: Real>(
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) -> NoiseSlopes<R> {
+    let mut m = NoiseSlopes::splat(R::ZERO);
+    noise_slopes_part_1(&mut m, x, u, p, i, s);
+    noise_slopes_part_2(&mut m, s);
     m
 }
 

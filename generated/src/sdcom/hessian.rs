@@ -419,9 +419,9 @@ fn hessian_by_altitude_of_alpha<R: Real>(
     hessian.alpha_by_altitude_altitude = -d2_gamma_rate_d_altitude_d_altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate to alpha.
+/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate_gamma.
 #[inline(always)]
-fn hessian_by_altitude_of_pitch_rate_to_alpha<R: Real>(
+fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
     hessian: &mut HessianEntries<R>,
     x: &State<R>,
     p: &Prepared<R>,
@@ -512,23 +512,11 @@ fn hessian_by_altitude_of_pitch_rate_to_alpha<R: Real>(
     hessian.alpha_by_gamma_velocity = -m.d2_gamma_rate_d_gamma_d_velocity;
     hessian.alpha_by_gamma_altitude = -m.d2_gamma_rate_d_gamma_d_altitude;
     hessian.alpha_by_gamma_gamma = -m.d2_gamma_rate_d_gamma_d_gamma;
-    hessian.velocity_by_alpha_velocity = m.d2_velocity_rate_d_alpha_d_velocity;
-    hessian.velocity_by_alpha_altitude = m.d2_velocity_rate_d_alpha_d_altitude;
-    hessian.velocity_by_alpha_alpha = m.d2_velocity_rate_d_alpha_d_alpha;
-    hessian.gamma_by_alpha_velocity = m.d2_force_turn_d_alpha_d_velocity;
-    hessian.gamma_by_alpha_altitude = m.d2_force_turn_d_alpha_d_altitude;
-    hessian.gamma_by_alpha_alpha = m.d2_force_turn_d_alpha_d_alpha;
-    hessian.alpha_by_alpha_velocity = -m.d2_force_turn_d_alpha_d_velocity;
-    hessian.alpha_by_alpha_altitude = -m.d2_force_turn_d_alpha_d_altitude;
-    hessian.alpha_by_alpha_alpha = -m.d2_force_turn_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_velocity = m.d2_pitch_acceleration_d_alpha_d_velocity;
-    hessian.pitch_rate_by_alpha_altitude = m.d2_pitch_acceleration_d_alpha_d_altitude;
-    hessian.pitch_rate_by_alpha_alpha = m.d2_pitch_acceleration_d_alpha_d_alpha;
 }
 
-/// Entries of [`hessian_values`]: derivatives by chi_1_chi_2.
+/// Entries of [`hessian_values`]: derivatives by alpha to chi_2.
 #[inline(always)]
-fn hessian_by_chi_1_chi_2<R: Real>(
+fn hessian_by_alpha_to_chi_2<R: Real>(
     hessian: &mut HessianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
@@ -603,6 +591,18 @@ fn hessian_by_chi_1_chi_2<R: Real>(
     let d2_pitch_acceleration_d_altitude_d_chi_2 = d2_pitching_moment_d_altitude_d_chi_2
         * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
+    hessian.velocity_by_alpha_velocity = m.d2_velocity_rate_d_alpha_d_velocity;
+    hessian.velocity_by_alpha_altitude = m.d2_velocity_rate_d_alpha_d_altitude;
+    hessian.velocity_by_alpha_alpha = m.d2_velocity_rate_d_alpha_d_alpha;
+    hessian.gamma_by_alpha_velocity = m.d2_force_turn_d_alpha_d_velocity;
+    hessian.gamma_by_alpha_altitude = m.d2_force_turn_d_alpha_d_altitude;
+    hessian.gamma_by_alpha_alpha = m.d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha_by_alpha_velocity = -m.d2_force_turn_d_alpha_d_velocity;
+    hessian.alpha_by_alpha_altitude = -m.d2_force_turn_d_alpha_d_altitude;
+    hessian.alpha_by_alpha_alpha = -m.d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate_by_alpha_velocity = m.d2_pitch_acceleration_d_alpha_d_velocity;
+    hessian.pitch_rate_by_alpha_altitude = m.d2_pitch_acceleration_d_alpha_d_altitude;
+    hessian.pitch_rate_by_alpha_alpha = m.d2_pitch_acceleration_d_alpha_d_alpha;
     hessian.velocity_by_chi_1_velocity = d2_velocity_rate_d_velocity_d_chi_1;
     hessian.velocity_by_chi_1_altitude = d2_velocity_rate_d_altitude_d_chi_1;
     hessian.velocity_by_chi_1_alpha = m.d2_velocity_rate_d_alpha_d_chi_1;
@@ -692,8 +692,8 @@ pub fn hessian_values<R: Real>(
     hessian_by_altitude_of_velocity(&mut hessian, x, p, &i, &s);
     hessian_by_altitude_of_gamma(&mut hessian, x, p, &i, &s);
     hessian_by_altitude_of_alpha(&mut hessian, x, p, &i, &s);
-    hessian_by_altitude_of_pitch_rate_to_alpha(&mut hessian, x, p, &i, &s, &m);
-    hessian_by_chi_1_chi_2(&mut hessian, p, &i, &s, &m);
+    hessian_by_altitude_of_pitch_rate_gamma(&mut hessian, x, p, &i, &s, &m);
+    hessian_by_alpha_to_chi_2(&mut hessian, p, &i, &s, &m);
     hessian_by_chi_3(&mut hessian, p, &i, &s, &m);
     hessian
 }

@@ -413,36 +413,6 @@ ahv_core::record! {
         pub half_w_alpha_2: R,
         /// `c_bar * inv_i_yy * c_m_of_g_pitch_rate`.
         pub c_bar_c_m_of_g_pitch_rate_over_i_yy: R,
-        /// `R::ONE - moment_matching`.
-        pub one_minus_moment_matching: R,
-        /// `1 / zeta_1`.
-        pub inv_zeta_1: R,
-        /// `moment_matching * inv_zeta_1`.
-        pub moment_matching_over_zeta_1: R,
-        /// `1 / zeta_2`.
-        pub inv_zeta_2: R,
-        /// `moment_matching * inv_zeta_2`.
-        pub moment_matching_over_zeta_2: R,
-        /// `1 / zeta_3`.
-        pub inv_zeta_3: R,
-        /// `moment_matching * inv_zeta_3`.
-        pub moment_matching_over_zeta_3: R,
-        /// `inv_zeta_1 * inv_zeta_1`.
-        pub inv_zeta_1_2: R,
-        /// `inv_zeta_2 * inv_zeta_2`.
-        pub inv_zeta_2_2: R,
-        /// `inv_zeta_3 * inv_zeta_3`.
-        pub inv_zeta_3_2: R,
-        /// `R::ONE - variance_matching - moment_matching`.
-        pub one_minus_variance_matching_minus_moment_matching: R,
-        /// Diffusion of the coloured noise of mode 1 over sigma/omega, dimensionless.
-        pub chi_share_1: R,
-        /// Diffusion of the coloured noise of mode 2 over sigma/omega, dimensionless.
-        pub chi_share_2: R,
-        /// Diffusion of the coloured noise of mode 3 over sigma/omega, dimensionless.
-        pub chi_share_3: R,
-        /// `inv_c_l_delta_c * inv_c_l_delta_c`.
-        pub inv_c_l_delta_c_2: R,
     }
 }
 
@@ -517,30 +487,30 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
     // Canard, (4)
     c.inv_c_l_delta_c = p.c_l_delta_c.recip();
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.canard_gain = -p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c;
     c.d_elevator_lift_d_c_l_delta_e = R::ONE - p.canard_slaving;
     c.elevator_lift = p.c_l_delta_e * c.d_elevator_lift_d_c_l_delta_e; // 1/rad
 
     // Coloured noise, (23)
-    c.one_minus_moment_matching = R::ONE - p.moment_matching;
-    c.inv_zeta_1 = p.zeta_1.recip();
-    c.moment_matching_over_zeta_1 = p.moment_matching * c.inv_zeta_1;
-    c.d_chi_decay_1_d_omega_1 = p.zeta_1 * c.one_minus_moment_matching
-        + R::HALF * c.moment_matching_over_zeta_1; // 1/rad
+    let one_minus_moment_matching = R::ONE - p.moment_matching;
+    let inv_zeta_1 = p.zeta_1.recip();
+    let moment_matching_over_zeta_1 = p.moment_matching * inv_zeta_1;
+    c.d_chi_decay_1_d_omega_1 = p.zeta_1 * one_minus_moment_matching
+        + R::HALF * moment_matching_over_zeta_1; // 1/rad
     c.chi_decay_1 = p.omega_1 * c.d_chi_decay_1_d_omega_1; // 1/s
-    c.inv_zeta_2 = p.zeta_2.recip();
-    c.moment_matching_over_zeta_2 = p.moment_matching * c.inv_zeta_2;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    c.d_chi_decay_2_d_omega_2 = p.zeta_2 * c.one_minus_moment_matching
-        + R::HALF * c.moment_matching_over_zeta_2; // 1/rad
+    let inv_zeta_2 = p.zeta_2.recip();
+    let moment_matching_over_zeta_2 = p.moment_matching * inv_zeta_2;
+    c.d_chi_decay_2_d_omega_2 = p.zeta_2 * one_minus_moment_matching
+        + R::HALF * moment_matching_over_zeta_2; // 1/rad
     c.chi_decay_2 = p.omega_2 * c.d_chi_decay_2_d_omega_2; // 1/s
-    c.inv_zeta_3 = p.zeta_3.recip();
-    c.moment_matching_over_zeta_3 = p.moment_matching * c.inv_zeta_3;
-    c.d_chi_decay_3_d_omega_3 = p.zeta_3 * c.one_minus_moment_matching
-        + R::HALF * c.moment_matching_over_zeta_3; // 1/rad
+    let inv_zeta_3 = p.zeta_3.recip();
+    let moment_matching_over_zeta_3 = p.moment_matching * inv_zeta_3;
+    c.d_chi_decay_3_d_omega_3 = p.zeta_3 * one_minus_moment_matching
+        + R::HALF * moment_matching_over_zeta_3; // 1/rad
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
 
     // Derivatives with respect to delta_e
@@ -549,44 +519,48 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
 
     // Derivatives with respect to parameters
-    c.inv_zeta_1_2 = c.inv_zeta_1 * c.inv_zeta_1;
+    let inv_zeta_1_2 = inv_zeta_1 * inv_zeta_1;
     c.d_chi_decay_1_d_zeta_1 = p.omega_1
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_1_2) + R::ONE); // 1/s
-    c.inv_zeta_2_2 = c.inv_zeta_2 * c.inv_zeta_2;
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_1_2) + R::ONE); // 1/s
+    let inv_zeta_2_2 = inv_zeta_2 * inv_zeta_2;
     c.d_chi_decay_2_d_zeta_2 = p.omega_2
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_2_2) + R::ONE); // 1/s
-    c.inv_zeta_3_2 = c.inv_zeta_3 * c.inv_zeta_3;
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_2_2) + R::ONE); // 1/s
+    let inv_zeta_3_2 = inv_zeta_3 * inv_zeta_3;
     c.d_chi_decay_3_d_zeta_3 = p.omega_3
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_3_2) + R::ONE); // 1/s
-    c.d_chi_decay_1_d_moment_matching = p.omega_1 * (R::HALF * c.inv_zeta_1 - p.zeta_1); // 1/s
-    c.d_chi_decay_2_d_moment_matching = p.omega_2 * (R::HALF * c.inv_zeta_2 - p.zeta_2); // 1/s
-    c.d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * c.inv_zeta_3 - p.zeta_3); // 1/s
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_3_2) + R::ONE); // 1/s
+    c.d_chi_decay_1_d_moment_matching = p.omega_1 * (R::HALF * inv_zeta_1 - p.zeta_1); // 1/s
+    c.d_chi_decay_2_d_moment_matching = p.omega_2 * (R::HALF * inv_zeta_2 - p.zeta_2); // 1/s
+    c.d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
-    c.one_minus_variance_matching_minus_moment_matching = R::ONE
+    let one_minus_variance_matching_minus_moment_matching = R::ONE
         - p.variance_matching
         - p.moment_matching;
-    c.chi_share_1 = p.zeta_1 * c.one_minus_variance_matching_minus_moment_matching
+    let chi_share_1 = p.zeta_1 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * c.moment_matching_over_zeta_1;
+        + R::HALF * moment_matching_over_zeta_1;
     c.inv_omega_1 = p.omega_1.recip();
-    c.chi_diffusion_1 = c.chi_share_1 * p.sigma_1 * c.inv_omega_1; // (ft*slug)^0.5/s^0.5
-    c.chi_share_2 = p.zeta_2 * c.one_minus_variance_matching_minus_moment_matching
+    c.chi_diffusion_1 = chi_share_1 * p.sigma_1 * c.inv_omega_1; // (ft*slug)^0.5/s^0.5
+    let chi_share_2 = p.zeta_2 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * c.moment_matching_over_zeta_2;
+        + R::HALF * moment_matching_over_zeta_2;
     c.inv_omega_2 = p.omega_2.recip();
-    c.chi_diffusion_2 = c.chi_share_2 * p.sigma_2 * c.inv_omega_2; // (ft*slug)^0.5/s^0.5
-    c.chi_share_3 = p.zeta_3 * c.one_minus_variance_matching_minus_moment_matching
+    c.chi_diffusion_2 = chi_share_2 * p.sigma_2 * c.inv_omega_2; // (ft*slug)^0.5/s^0.5
+    let chi_share_3 = p.zeta_3 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * c.moment_matching_over_zeta_3;
+        + R::HALF * moment_matching_over_zeta_3;
     c.inv_omega_3 = p.omega_3.recip();
-    c.chi_diffusion_3 = c.chi_share_3 * p.sigma_3 * c.inv_omega_3; // (ft*slug)^0.5/s^0.5
+    c.chi_diffusion_3 = chi_share_3 * p.sigma_3 * c.inv_omega_3; // (ft*slug)^0.5/s^0.5
 
     // Noise of the modes, (16)
     c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
 
     // Strict-feedback form, (34)
     c.c_m_of_g_pitch_rate = p.c_m_delta_e + p.c_m_delta_c * c.canard_gain; // 1/rad
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.inv_h_s = p.h_s.recip();
     c.inv_omega_1_2 = c.inv_omega_1 * c.inv_omega_1;
     c.inv_omega_2_2 = c.inv_omega_2 * c.inv_omega_2;
@@ -619,10 +593,6 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_c_d_delta_e_2 = R::TWO * p.c_d_delta_e_2;
     c.two_c_d_delta_c_2 = R::TWO * p.c_d_delta_c_2;
     c.c_n_1_delta_c_canard_command = p.c_n_1_delta_c * p.canard_command;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_n_2_delta_c_canard_command = p.c_n_2_delta_c * p.canard_command;
     c.c_n_3_delta_c_canard_command = p.c_n_3_delta_c * p.canard_command;
     c.c_l_delta_c_canard_command = p.c_l_delta_c * p.canard_command;
@@ -659,11 +629,15 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 = p.c_d_eta_3 * p.c_n_3_delta_c
         * c.inv_omega_3_2;
     c.c_l_delta_e_over_c_l_delta_c = p.c_l_delta_e * c.inv_c_l_delta_c;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_4<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
     c.canard_slaving_over_c_l_delta_c = p.canard_slaving * c.inv_c_l_delta_c;
-    c.inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
+    let inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
     c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.canard_slaving * p.c_l_delta_e
-        * c.inv_c_l_delta_c_2;
+        * inv_c_l_delta_c_2;
     c.minus_half_inv_m_2 = R::from_f64(-0.5) * c.inv_m_2;
     c.half_over_m = R::HALF * c.inv_m;
     c.c_l_eta_1_inv_omega_1_2 = p.c_l_eta_1 * c.inv_omega_1_2;
@@ -732,5 +706,6 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     prepare_part_1(&mut c, p);
     prepare_part_2(&mut c, p);
     prepare_part_3(&mut c, p);
+    prepare_part_4(&mut c, p);
     c
 }

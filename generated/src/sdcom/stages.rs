@@ -105,14 +105,15 @@ ahv_core::record! {
     }
 }
 
-/// Fills a part of [`Intermediates`].
+/// Computes [`Intermediates`].
 #[inline(always)]
-fn intermediates_part_1<R: Real>(
-    i: &mut Intermediates<R>,
+pub fn intermediates<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) {
+) -> Intermediates<R> {
+    let mut i = Intermediates::splat(R::ZERO);
+
     // Air, (2)
     i.density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     i.density = p.rho_0 * i.density_ratio; // slug/ft^3
@@ -169,16 +170,7 @@ fn intermediates_part_1<R: Real>(
     i.eta_2 = i.eta_static_2 + x.chi_2; // (ft*slug)^0.5
     i.eta_static_3 = i.generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
     i.eta_3 = i.eta_static_3 + x.chi_3; // (ft*slug)^0.5
-}
 
-/// Fills a part of [`Intermediates`].
-#[inline(always)]
-fn intermediates_part_2<R: Real>(
-    i: &mut Intermediates<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) {
     // Curve fits, (3)
     i.alpha_3 = x.alpha * i.alpha_2;
     i.c_t_phi = p.c_t_phi
@@ -234,18 +226,6 @@ fn intermediates_part_2<R: Real>(
     i.altitude_rate = x.velocity * i.sin_gamma; // ft/s
     i.gamma_rate = force_turn - i.gravity_turn * i.cos_gamma; // rad/s
     i.pitch_acceleration = i.pitching_moment * p.inv_i_yy; // rad/s^2
-}
-
-/// Computes [`Intermediates`].
-#[inline(always)]
-pub fn intermediates<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> Intermediates<R> {
-    let mut i = Intermediates::splat(R::ZERO);
-    intermediates_part_1(&mut i, x, u, p);
-    intermediates_part_2(&mut i, x, u, p);
     i
 }
 
@@ -542,6 +522,12 @@ fn slopes_part_2<R: Real>(
     s.d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
     s.d_normal_coefficient_d_chi_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
     s.d_force_turn_d_chi_3 = i.turn_factor * s.d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_3 = i.reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
+    s.d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+
+    // Derivatives with respect to phi
+    s.d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
 }
 
 /// Fills a part of [`Slopes`].
@@ -552,12 +538,6 @@ fn slopes_part_3<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) {
-    let d_pitching_moment_d_chi_3 = i.reference_force
-        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
-    s.d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to phi
-    s.d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_path_force_d_phi = i.cos_alpha * s.d_thrust_d_phi; // lb/ft
     s.d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
     let d_normal_coefficient_d_phi = i.sin_alpha * i.c_t_phi;
@@ -695,117 +675,6 @@ ahv_core::record! {
         pub d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma: R,
         /// `m.d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha`.
         pub d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha: R,
-        /// Derivative of cos of the angle of attack with respect to alpha and alpha, 1/rad^2.
-        pub d2_cos_alpha_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_1_d_alpha_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
-        pub d2_eta_static_1_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_2_d_alpha_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
-        pub d2_eta_static_2_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_3_d_alpha_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
-        pub d2_eta_static_3_d_alpha_d_alpha: R,
-        /// Derivative of slope of the thrust coefficient in the fuel equivalence ratio with respect to alpha and
-        /// alpha, 1/rad^2.
-        pub d2_c_t_phi_d_alpha_d_alpha: R,
-        /// Derivative of thrust coefficient with respect to alpha and alpha, 1/rad^2.
-        pub d2_c_t_d_alpha_d_alpha: R,
-        /// Derivative of thrust with respect to alpha and alpha, lb/ft/rad^2.
-        pub d2_thrust_d_alpha_d_alpha: R,
-        /// Derivative of drag coefficient with respect to alpha and alpha, 1/rad^2.
-        pub d2_c_d_d_alpha_d_alpha: R,
-        /// Derivative of drag with respect to alpha and alpha, lb/ft/rad^2.
-        pub d2_drag_d_alpha_d_alpha: R,
-        /// Derivative of force along the flight path with respect to alpha and alpha, lb/ft/rad^2.
-        pub d2_path_force_d_alpha_d_alpha: R,
-        /// Derivative of force along the flight path with respect to alpha and chi_1, lb/ft^1.5/rad/slug^0.5.
-        pub d2_path_force_d_alpha_d_chi_1: R,
-        /// Derivative of force along the flight path with respect to alpha and chi_2, lb/ft^1.5/rad/slug^0.5.
-        pub d2_path_force_d_alpha_d_chi_2: R,
-        /// Derivative of force along the flight path with respect to alpha and chi_3, lb/ft^1.5/rad/slug^0.5.
-        pub d2_path_force_d_alpha_d_chi_3: R,
-        /// Derivative of cos of the flight-path angle with respect to gamma and gamma, 1/rad^2.
-        pub d2_cos_gamma_d_gamma_d_gamma: R,
-        /// Derivative of lift coefficient with respect to alpha and alpha, 1/rad^2.
-        pub d2_c_l_d_alpha_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and alpha, 1/rad^2.
-        pub d2_normal_coefficient_d_alpha_d_alpha: R,
-        /// Derivative of pitching-moment coefficient with respect to alpha and alpha, 1/rad^2.
-        pub d2_c_m_d_alpha_d_alpha: R,
-        /// Derivative of pitching moment with respect to alpha and alpha, lb/rad^2.
-        pub d2_pitching_moment_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_1_d_alpha_d_velocity: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to alpha and velocity,
-        /// slug^0.5*s/ft^0.5/rad.
-        pub d2_eta_static_1_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_2_d_alpha_d_velocity: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to alpha and velocity,
-        /// slug^0.5*s/ft^0.5/rad.
-        pub d2_eta_static_2_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_3_d_alpha_d_velocity: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to alpha and velocity,
-        /// slug^0.5*s/ft^0.5/rad.
-        pub d2_eta_static_3_d_alpha_d_velocity: R,
-        /// Derivative of thrust coefficient with respect to alpha and velocity, s/rad/ft.
-        pub d2_c_t_d_alpha_d_velocity: R,
-        /// Derivative of thrust with respect to alpha and velocity, lb*s/ft^2/rad.
-        pub d2_thrust_d_alpha_d_velocity: R,
-        /// Derivative of drag coefficient with respect to alpha and velocity, s/rad/ft.
-        pub d2_c_d_d_alpha_d_velocity: R,
-        /// Derivative of drag with respect to alpha and velocity, lb*s/ft^2/rad.
-        pub d2_drag_d_alpha_d_velocity: R,
-        /// Derivative of force along the flight path with respect to alpha and velocity, lb*s/ft^2/rad.
-        pub d2_path_force_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_1_d_alpha_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to alpha and altitude,
-        /// slug^0.5/ft^0.5/rad.
-        pub d2_eta_static_1_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_2_d_alpha_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to alpha and altitude,
-        /// slug^0.5/ft^0.5/rad.
-        pub d2_eta_static_2_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_3_d_alpha_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to alpha and altitude,
-        /// slug^0.5/ft^0.5/rad.
-        pub d2_eta_static_3_d_alpha_d_altitude: R,
-        /// Derivative of thrust coefficient with respect to alpha and altitude, 1/rad/ft.
-        pub d2_c_t_d_alpha_d_altitude: R,
-        /// Derivative of thrust with respect to alpha and altitude, lb/ft^2/rad.
-        pub d2_thrust_d_alpha_d_altitude: R,
-        /// Derivative of drag coefficient with respect to alpha and altitude, 1/rad/ft.
-        pub d2_c_d_d_alpha_d_altitude: R,
-        /// Derivative of drag with respect to alpha and altitude, lb/ft^2/rad.
-        pub d2_drag_d_alpha_d_altitude: R,
-        /// Derivative of force along the flight path with respect to alpha and altitude, lb/ft^2/rad.
-        pub d2_path_force_d_alpha_d_altitude: R,
-        /// Derivative of lift coefficient with respect to alpha and velocity, s/rad/ft.
-        pub d2_c_l_d_alpha_d_velocity: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and velocity,
-        /// s/rad/ft.
-        pub d2_normal_coefficient_d_alpha_d_velocity: R,
-        /// Derivative of lift coefficient with respect to alpha and altitude, 1/rad/ft.
-        pub d2_c_l_d_alpha_d_altitude: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and altitude,
-        /// 1/rad/ft.
-        pub d2_normal_coefficient_d_alpha_d_altitude: R,
-        /// Derivative of pitching-moment coefficient with respect to alpha and velocity, s/rad/ft.
-        pub d2_c_m_d_alpha_d_velocity: R,
-        /// Derivative of pitching moment with respect to alpha and velocity, lb*s/rad/ft.
-        pub d2_pitching_moment_d_alpha_d_velocity: R,
-        /// Derivative of pitching-moment coefficient with respect to alpha and altitude, 1/rad/ft.
-        pub d2_c_m_d_alpha_d_altitude: R,
-        /// Derivative of pitching moment with respect to alpha and altitude, lb/rad/ft.
-        pub d2_pitching_moment_d_alpha_d_altitude: R,
     }
 }
 
@@ -823,66 +692,66 @@ fn noise_slopes_part_1<R: Real>(
     m.d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
-    m.d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    m.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    m.d2_eta_static_1_d_alpha_d_alpha = m.d2_generalized_force_1_d_alpha_d_alpha
+    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_eta_static_1_d_alpha_d_alpha = d2_generalized_force_1_d_alpha_d_alpha
         * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
-    m.d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    m.d2_eta_static_2_d_alpha_d_alpha = m.d2_generalized_force_2_d_alpha_d_alpha
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_eta_static_2_d_alpha_d_alpha = d2_generalized_force_2_d_alpha_d_alpha
         * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
-    m.d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    m.d2_eta_static_3_d_alpha_d_alpha = m.d2_generalized_force_3_d_alpha_d_alpha
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_eta_static_3_d_alpha_d_alpha = d2_generalized_force_3_d_alpha_d_alpha
         * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
-    m.d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
+    let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
         + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
-    m.d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
+    let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
         + R::TWO * p.c_t_alpha_2
-        + p.c_t_eta_1 * m.d2_eta_static_1_d_alpha_d_alpha
-        + p.c_t_eta_2 * m.d2_eta_static_2_d_alpha_d_alpha
-        + p.c_t_eta_3 * m.d2_eta_static_3_d_alpha_d_alpha
-        + u.phi * m.d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    m.d2_thrust_d_alpha_d_alpha = i.reference_force * m.d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    m.d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
-        + p.c_d_eta_1 * m.d2_eta_static_1_d_alpha_d_alpha
-        + p.c_d_eta_2 * m.d2_eta_static_2_d_alpha_d_alpha
-        + p.c_d_eta_3 * m.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    m.d2_drag_d_alpha_d_alpha = i.reference_force * m.d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    m.d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
-        + i.thrust * m.d2_cos_alpha_d_alpha_d_alpha
-        + i.cos_alpha * m.d2_thrust_d_alpha_d_alpha
-        - m.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    m.d2_velocity_rate_d_alpha_d_alpha = m.d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
+        + p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_alpha
+        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_alpha
+        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_alpha
+        + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
+    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
+        + p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_alpha
+        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_alpha
+        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
+        - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
+    m.d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to chi_1
-    m.d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
+    let d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
-    m.d2_velocity_rate_d_alpha_d_chi_1 = m.d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    m.d2_velocity_rate_d_alpha_d_chi_1 = d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
-    m.d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
+    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
-    m.d2_velocity_rate_d_alpha_d_chi_2 = m.d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    m.d2_velocity_rate_d_alpha_d_chi_2 = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_3
-    m.d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
+    let d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
-    m.d2_velocity_rate_d_alpha_d_chi_3 = m.d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    m.d2_velocity_rate_d_alpha_d_chi_3 = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to gamma
     m.d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    m.d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    m.d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * m.d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    m.d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    m.d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * m.d2_eta_static_1_d_alpha_d_alpha
-        + p.c_l_eta_2 * m.d2_eta_static_2_d_alpha_d_alpha
-        + p.c_l_eta_3 * m.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    m.d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
-        + i.sin_alpha * m.d2_c_t_d_alpha_d_alpha
+    let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
+        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
+        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
         + i.c_t * s.d_cos_alpha_d_alpha
-        + m.d2_c_l_d_alpha_d_alpha; // 1/rad^2
+        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
     m.d2_force_turn_d_alpha_d_alpha = i.turn_factor
-        * m.d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
+        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
     m.d2_force_turn_d_alpha_d_chi_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
@@ -894,27 +763,14 @@ fn noise_slopes_part_1<R: Real>(
     m.d2_force_turn_d_alpha_d_chi_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha
-    m.d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
-        + p.c_m_eta_1 * m.d2_eta_static_1_d_alpha_d_alpha
-        + p.c_m_eta_2 * m.d2_eta_static_2_d_alpha_d_alpha
-        + p.c_m_eta_3 * m.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    m.d2_pitching_moment_d_alpha_d_alpha = p.z_t * m.d2_thrust_d_alpha_d_alpha
-        + p.c_bar * i.reference_force * m.d2_c_m_d_alpha_d_alpha; // lb/rad^2
-    m.d2_pitch_acceleration_d_alpha_d_alpha = m.d2_pitching_moment_d_alpha_d_alpha
+    let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
+        + p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_alpha
+        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_alpha
+        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
+        + p.c_bar * i.reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
+    m.d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
-
-    // Derivatives with respect to altitude
-    m.d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    m.d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    m.d2_eta_static_1_d_alpha_d_velocity = m.d2_generalized_force_1_d_alpha_d_velocity
-        * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
-    m.d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    m.d2_eta_static_2_d_alpha_d_velocity = m.d2_generalized_force_2_d_alpha_d_velocity
-        * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
 }
 
 /// Fills a part of [`NoiseSlopes`].
@@ -925,52 +781,64 @@ fn noise_slopes_part_2<R: Real>(
     i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
-    m.d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
+    // Derivatives with respect to altitude
+    m.d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+
+    // Derivatives with respect to velocity
+    let d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_eta_static_1_d_alpha_d_velocity = d2_generalized_force_1_d_alpha_d_velocity
+        * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
+    let d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    let d2_eta_static_2_d_alpha_d_velocity = d2_generalized_force_2_d_alpha_d_velocity
+        * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
+    let d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
         * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    m.d2_eta_static_3_d_alpha_d_velocity = m.d2_generalized_force_3_d_alpha_d_velocity
+    let d2_eta_static_3_d_alpha_d_velocity = d2_generalized_force_3_d_alpha_d_velocity
         * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
-    m.d2_c_t_d_alpha_d_velocity = p.c_t_eta_1 * m.d2_eta_static_1_d_alpha_d_velocity
-        + p.c_t_eta_2 * m.d2_eta_static_2_d_alpha_d_velocity
-        + p.c_t_eta_3 * m.d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    m.d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
-        + i.reference_force * m.d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
-    m.d2_c_d_d_alpha_d_velocity = p.c_d_eta_1 * m.d2_eta_static_1_d_alpha_d_velocity
-        + p.c_d_eta_2 * m.d2_eta_static_2_d_alpha_d_velocity
-        + p.c_d_eta_3 * m.d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    m.d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
-        + i.reference_force * m.d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
-    m.d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * m.d2_thrust_d_alpha_d_velocity
-        - m.d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
-    m.d2_velocity_rate_d_alpha_d_velocity = m.d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
+    let d2_c_t_d_alpha_d_velocity = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_velocity
+        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_velocity
+        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
+    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
+        + i.reference_force * d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
+    let d2_c_d_d_alpha_d_velocity = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_velocity
+        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_velocity
+        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
+    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
+        + i.reference_force * d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
+    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
+        - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
+    m.d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to altitude
-    m.d2_generalized_force_1_d_alpha_d_altitude = s.d_reference_force_d_altitude
+    let d2_generalized_force_1_d_alpha_d_altitude = s.d_reference_force_d_altitude
         * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    m.d2_eta_static_1_d_alpha_d_altitude = m.d2_generalized_force_1_d_alpha_d_altitude
+    let d2_eta_static_1_d_alpha_d_altitude = d2_generalized_force_1_d_alpha_d_altitude
         * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
-    m.d2_generalized_force_2_d_alpha_d_altitude = s.d_reference_force_d_altitude
+    let d2_generalized_force_2_d_alpha_d_altitude = s.d_reference_force_d_altitude
         * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    m.d2_eta_static_2_d_alpha_d_altitude = m.d2_generalized_force_2_d_alpha_d_altitude
+    let d2_eta_static_2_d_alpha_d_altitude = d2_generalized_force_2_d_alpha_d_altitude
         * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
-    m.d2_generalized_force_3_d_alpha_d_altitude = s.d_reference_force_d_altitude
+    let d2_generalized_force_3_d_alpha_d_altitude = s.d_reference_force_d_altitude
         * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    m.d2_eta_static_3_d_alpha_d_altitude = m.d2_generalized_force_3_d_alpha_d_altitude
+    let d2_eta_static_3_d_alpha_d_altitude = d2_generalized_force_3_d_alpha_d_altitude
         * p.inv_omega_3_2; // slug^0.5/ft^0.5/rad
-    m.d2_c_t_d_alpha_d_altitude = p.c_t_eta_1 * m.d2_eta_static_1_d_alpha_d_altitude
-        + p.c_t_eta_2 * m.d2_eta_static_2_d_alpha_d_altitude
-        + p.c_t_eta_3 * m.d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    m.d2_thrust_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
-        + i.reference_force * m.d2_c_t_d_alpha_d_altitude; // lb/ft^2/rad
-    m.d2_c_d_d_alpha_d_altitude = p.c_d_eta_1 * m.d2_eta_static_1_d_alpha_d_altitude
-        + p.c_d_eta_2 * m.d2_eta_static_2_d_alpha_d_altitude
-        + p.c_d_eta_3 * m.d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    m.d2_drag_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
-        + i.reference_force * m.d2_c_d_d_alpha_d_altitude; // lb/ft^2/rad
-    m.d2_path_force_d_alpha_d_altitude = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * m.d2_thrust_d_alpha_d_altitude
-        - m.d2_drag_d_alpha_d_altitude; // lb/ft^2/rad
-    m.d2_velocity_rate_d_alpha_d_altitude = m.d2_path_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
+    let d2_c_t_d_alpha_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_altitude
+        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_altitude
+        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
+    let d2_thrust_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
+        + i.reference_force * d2_c_t_d_alpha_d_altitude; // lb/ft^2/rad
+    let d2_c_d_d_alpha_d_altitude = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_altitude
+        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_altitude
+        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
+    let d2_drag_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
+        + i.reference_force * d2_c_d_d_alpha_d_altitude; // lb/ft^2/rad
+    let d2_path_force_d_alpha_d_altitude = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_alpha_d_altitude
+        - d2_drag_d_alpha_d_altitude; // lb/ft^2/rad
+    m.d2_velocity_rate_d_alpha_d_altitude = d2_path_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to velocity
     m.d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
@@ -981,48 +849,53 @@ fn noise_slopes_part_2<R: Real>(
         * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to velocity
-    m.d2_c_l_d_alpha_d_velocity = p.c_l_eta_1 * m.d2_eta_static_1_d_alpha_d_velocity
-        + p.c_l_eta_2 * m.d2_eta_static_2_d_alpha_d_velocity
-        + p.c_l_eta_3 * m.d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    m.d2_normal_coefficient_d_alpha_d_velocity = s.d_c_t_d_velocity * i.cos_alpha
-        + i.sin_alpha * m.d2_c_t_d_alpha_d_velocity
-        + m.d2_c_l_d_alpha_d_velocity; // s/rad/ft
+    let d2_c_l_d_alpha_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_velocity
+        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_velocity
+        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
+    let d2_normal_coefficient_d_alpha_d_velocity = s.d_c_t_d_velocity * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_velocity
+        + d2_c_l_d_alpha_d_velocity; // s/rad/ft
     m.d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
         * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * m.d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
+        + i.turn_factor * d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
 
     // Derivatives with respect to altitude
-    m.d2_c_l_d_alpha_d_altitude = p.c_l_eta_1 * m.d2_eta_static_1_d_alpha_d_altitude
-        + p.c_l_eta_2 * m.d2_eta_static_2_d_alpha_d_altitude
-        + p.c_l_eta_3 * m.d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    m.d2_normal_coefficient_d_alpha_d_altitude = s.d_c_t_d_altitude * i.cos_alpha
-        + i.sin_alpha * m.d2_c_t_d_alpha_d_altitude
-        + m.d2_c_l_d_alpha_d_altitude; // 1/rad/ft
+    let d2_c_l_d_alpha_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_altitude
+        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_altitude
+        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
+    let d2_normal_coefficient_d_alpha_d_altitude = s.d_c_t_d_altitude * i.cos_alpha
+        + i.sin_alpha * d2_c_t_d_alpha_d_altitude
+        + d2_c_l_d_alpha_d_altitude; // 1/rad/ft
     m.d2_force_turn_d_alpha_d_altitude = s.d_turn_factor_d_altitude
         * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * m.d2_normal_coefficient_d_alpha_d_altitude; // 1/s/ft
+        + i.turn_factor * d2_normal_coefficient_d_alpha_d_altitude; // 1/s/ft
 
     // Derivatives with respect to velocity
-    m.d2_c_m_d_alpha_d_velocity = p.c_m_eta_1 * m.d2_eta_static_1_d_alpha_d_velocity
-        + p.c_m_eta_2 * m.d2_eta_static_2_d_alpha_d_velocity
-        + p.c_m_eta_3 * m.d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    m.d2_pitching_moment_d_alpha_d_velocity = p.c_bar
+    let d2_c_m_d_alpha_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_velocity
+        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_velocity
+        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
+    let d2_pitching_moment_d_alpha_d_velocity = p.c_bar
         * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
-            + i.reference_force * m.d2_c_m_d_alpha_d_velocity)
-        + p.z_t * m.d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
-    m.d2_pitch_acceleration_d_alpha_d_velocity = m.d2_pitching_moment_d_alpha_d_velocity
+            + i.reference_force * d2_c_m_d_alpha_d_velocity)
+        + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
+    m.d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
         * p.inv_i_yy; // 1/s/ft
 
     // Derivatives with respect to altitude
-    m.d2_c_m_d_alpha_d_altitude = p.c_m_eta_1 * m.d2_eta_static_1_d_alpha_d_altitude
-        + p.c_m_eta_2 * m.d2_eta_static_2_d_alpha_d_altitude
-        + p.c_m_eta_3 * m.d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    m.d2_pitching_moment_d_alpha_d_altitude = p.c_bar
+    let d2_c_m_d_alpha_d_altitude = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_altitude
+        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_altitude
+        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
+    let d2_pitching_moment_d_alpha_d_altitude = p.c_bar
         * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
-            + i.reference_force * m.d2_c_m_d_alpha_d_altitude)
-        + p.z_t * m.d2_thrust_d_alpha_d_altitude; // lb/rad/ft
-    m.d2_pitch_acceleration_d_alpha_d_altitude = m.d2_pitching_moment_d_alpha_d_altitude
+            + i.reference_force * d2_c_m_d_alpha_d_altitude)
+        + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
+    m.d2_pitch_acceleration_d_alpha_d_altitude = d2_pitching_moment_d_alpha_d_altitude
         * p.inv_i_yy; // 1/s^2/ft
+}
+
+/// Fills a part of [`NoiseSlopes`].
+#[inline(always)]
+fn noise_slopes_part_3<R: Real>(m: &mut NoiseSlopes<R>, s: &Slopes<R>) {
     m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = m
         .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
     m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = m
@@ -1041,6 +914,7 @@ pub fn noise_slopes<R: Real>(
     let mut m = NoiseSlopes::splat(R::ZERO);
     noise_slopes_part_1(&mut m, x, u, p, i, s);
     noise_slopes_part_2(&mut m, p, i, s);
+    noise_slopes_part_3(&mut m, s);
     m
 }
 

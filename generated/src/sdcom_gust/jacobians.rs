@@ -71,9 +71,9 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity to chi_3.
+/// Entries of [`jacobians_values`]: derivatives by velocity to chi_2.
 #[inline(always)]
-fn jacobians_by_velocity_to_chi_3<R: Real>(
+fn jacobians_by_velocity_to_chi_2<R: Real>(
     state: &mut StateJacobianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
@@ -138,14 +138,6 @@ fn jacobians_by_velocity_to_chi_3<R: Real>(
         * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     let d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d_path_force_d_chi_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_chi_3 = i.turn_factor * s.d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_3 = i.reference_force
-        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
-
     state.velocity_by_velocity = d_velocity_rate_d_velocity;
     state.altitude_by_velocity = i.sin_gamma;
     state.gamma_by_velocity = d_gamma_rate_d_velocity;
@@ -173,16 +165,11 @@ fn jacobians_by_velocity_to_chi_3<R: Real>(
     state.alpha_by_chi_2 = -d_force_turn_d_chi_2;
     state.pitch_rate_by_chi_2 = d_pitch_acceleration_d_chi_2;
     state.chi_2_by_chi_2 = p.minus_chi_decay_2;
-    state.velocity_by_chi_3 = d_velocity_rate_d_chi_3;
-    state.gamma_by_chi_3 = d_force_turn_d_chi_3;
-    state.alpha_by_chi_3 = -d_force_turn_d_chi_3;
-    state.pitch_rate_by_chi_3 = d_pitch_acceleration_d_chi_3;
-    state.chi_3_by_chi_3 = p.minus_chi_decay_3;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by alpha_gust to delta_c.
+/// Entries of [`jacobians_values`]: derivatives by chi_3 to delta_e.
 #[inline(always)]
-fn jacobians_by_alpha_gust_to_delta_c<R: Real>(
+fn jacobians_by_chi_3_to_delta_e<R: Real>(
     state: &mut StateJacobianEntries<R>,
     input: &mut InputJacobianEntries<R>,
     p: &Prepared<R>,
@@ -191,6 +178,14 @@ fn jacobians_by_alpha_gust_to_delta_c<R: Real>(
 ) {
     // Derivatives with respect to alpha
     let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
+
+    // Derivatives with respect to chi_3
+    let d_path_force_d_chi_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
+    let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
+    let d_force_turn_d_chi_3 = i.turn_factor * s.d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_3 = i.reference_force
+        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
+    let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
     let d_path_force_d_alpha_gust = i.cos_alpha * s.d_thrust_d_alpha - d_drag_d_alpha; // lb/ft/rad
@@ -221,6 +216,35 @@ fn jacobians_by_alpha_gust_to_delta_c<R: Real>(
         + p.z_t * d_thrust_d_delta_e; // lb/rad
     let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
+    state.velocity_by_chi_3 = d_velocity_rate_d_chi_3;
+    state.gamma_by_chi_3 = d_force_turn_d_chi_3;
+    state.alpha_by_chi_3 = -d_force_turn_d_chi_3;
+    state.pitch_rate_by_chi_3 = d_pitch_acceleration_d_chi_3;
+    state.chi_3_by_chi_3 = p.minus_chi_decay_3;
+    state.velocity_by_alpha_gust = d_velocity_rate_d_alpha_gust;
+    state.gamma_by_alpha_gust = d_force_turn_d_alpha_gust;
+    state.alpha_by_alpha_gust = -d_force_turn_d_alpha_gust;
+    state.pitch_rate_by_alpha_gust = s.d_pitch_acceleration_d_alpha;
+    state.alpha_gust_by_alpha_gust = p.minus_over_gust_time;
+    state.alpha_by_pitch_rate = R::ONE;
+    input.velocity_by_phi = s.d_velocity_rate_d_phi;
+    input.gamma_by_phi = s.d_force_turn_d_phi;
+    input.alpha_by_phi = -s.d_force_turn_d_phi;
+    input.pitch_rate_by_phi = d_pitch_acceleration_d_phi;
+    input.velocity_by_delta_e = s.d_velocity_rate_d_delta_e;
+    input.gamma_by_delta_e = s.d_force_turn_d_delta_e;
+    input.alpha_by_delta_e = -s.d_force_turn_d_delta_e;
+    input.pitch_rate_by_delta_e = d_pitch_acceleration_d_delta_e;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by delta_c.
+#[inline(always)]
+fn jacobians_by_delta_c<R: Real>(
+    input: &mut InputJacobianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = i.reference_force
         * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
@@ -243,20 +267,6 @@ fn jacobians_by_alpha_gust_to_delta_c<R: Real>(
         + p.z_t * d_thrust_d_delta_c; // lb/rad
     let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
 
-    state.velocity_by_alpha_gust = d_velocity_rate_d_alpha_gust;
-    state.gamma_by_alpha_gust = d_force_turn_d_alpha_gust;
-    state.alpha_by_alpha_gust = -d_force_turn_d_alpha_gust;
-    state.pitch_rate_by_alpha_gust = s.d_pitch_acceleration_d_alpha;
-    state.alpha_gust_by_alpha_gust = p.minus_over_gust_time;
-    state.alpha_by_pitch_rate = R::ONE;
-    input.velocity_by_phi = s.d_velocity_rate_d_phi;
-    input.gamma_by_phi = s.d_force_turn_d_phi;
-    input.alpha_by_phi = -s.d_force_turn_d_phi;
-    input.pitch_rate_by_phi = d_pitch_acceleration_d_phi;
-    input.velocity_by_delta_e = s.d_velocity_rate_d_delta_e;
-    input.gamma_by_delta_e = s.d_force_turn_d_delta_e;
-    input.alpha_by_delta_e = -s.d_force_turn_d_delta_e;
-    input.pitch_rate_by_delta_e = d_pitch_acceleration_d_delta_e;
     input.velocity_by_delta_c = s.d_velocity_rate_d_delta_c;
     input.gamma_by_delta_c = s.d_force_turn_d_delta_c;
     input.alpha_by_delta_c = -s.d_force_turn_d_delta_c;
@@ -274,8 +284,9 @@ pub fn jacobians_values_from<R: Real>(
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
-    jacobians_by_velocity_to_chi_3(&mut state, p, i, s);
-    jacobians_by_alpha_gust_to_delta_c(&mut state, &mut input, p, i, s);
+    jacobians_by_velocity_to_chi_2(&mut state, p, i, s);
+    jacobians_by_chi_3_to_delta_e(&mut state, &mut input, p, i, s);
+    jacobians_by_delta_c(&mut input, p, i, s);
     (state, input)
 }
 

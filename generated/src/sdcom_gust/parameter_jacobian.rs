@@ -620,9 +620,9 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter.pitch_rate_by_c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * i.eta_3;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_l_c_d.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
 #[inline(always)]
-fn parameter_jacobian_by_c_l_c_d<R: Real>(
+fn parameter_jacobian_by_c_l<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     u: &Input<R>,
     p: &Prepared<R>,
@@ -714,23 +714,11 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
     parameter.alpha_by_c_l_eta_3 = -i.turn_factor * i.eta_3;
     parameter.pitch_rate_by_c_l_delta_e = d_pitch_acceleration_d_c_l_delta_e;
     parameter.pitch_rate_by_c_l_delta_c = d_pitch_acceleration_d_c_l_delta_c;
-    parameter.velocity_by_c_d_alpha_2 = -i.reference_force * i.incidence_2 * p.inv_m;
-    parameter.velocity_by_c_d_alpha = -i.reference_force * i.incidence * p.inv_m;
-    parameter.velocity_by_c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
-    parameter.velocity_by_c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
-    parameter.velocity_by_c_d_delta_c_2 = -i.reference_force * i.canard_deflection_2
-        * p.inv_m;
-    parameter.velocity_by_c_d_delta_c = -i.reference_force * i.canard_deflection
-        * p.inv_m;
-    parameter.velocity_by_c_d_0 = -i.reference_force * p.inv_m;
-    parameter.velocity_by_c_d_eta_1 = -i.reference_force * i.eta_1 * p.inv_m;
-    parameter.velocity_by_c_d_eta_2 = -i.reference_force * i.eta_2 * p.inv_m;
-    parameter.velocity_by_c_d_eta_3 = -i.reference_force * i.eta_3 * p.inv_m;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_1.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_d_c_n_1.
 #[inline(always)]
-fn parameter_jacobian_by_c_n_1<R: Real>(
+fn parameter_jacobian_by_c_d_c_n_1<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     u: &Input<R>,
     p: &Prepared<R>,
@@ -796,6 +784,18 @@ fn parameter_jacobian_by_c_n_1<R: Real>(
         .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
 
+    parameter.velocity_by_c_d_alpha_2 = -i.reference_force * i.incidence_2 * p.inv_m;
+    parameter.velocity_by_c_d_alpha = -i.reference_force * i.incidence * p.inv_m;
+    parameter.velocity_by_c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
+    parameter.velocity_by_c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
+    parameter.velocity_by_c_d_delta_c_2 = -i.reference_force * i.canard_deflection_2
+        * p.inv_m;
+    parameter.velocity_by_c_d_delta_c = -i.reference_force * i.canard_deflection
+        * p.inv_m;
+    parameter.velocity_by_c_d_0 = -i.reference_force * p.inv_m;
+    parameter.velocity_by_c_d_eta_1 = -i.reference_force * i.eta_1 * p.inv_m;
+    parameter.velocity_by_c_d_eta_2 = -i.reference_force * i.eta_2 * p.inv_m;
+    parameter.velocity_by_c_d_eta_3 = -i.reference_force * i.eta_3 * p.inv_m;
     parameter.velocity_by_c_n_1_alpha_2 = d_velocity_rate_d_c_n_1_alpha_2;
     parameter.velocity_by_c_n_1_alpha = d_velocity_rate_d_c_n_1_alpha;
     parameter.velocity_by_c_n_1_delta_e = d_velocity_rate_d_c_n_1_delta_e;
@@ -1033,8 +1033,8 @@ pub fn parameter_jacobian_values<R: Real>(
     parameter_jacobian_by_modes(&mut parameter, x, p, &i);
     parameter_jacobian_by_choices(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_t(&mut parameter, u, p, &i);
-    parameter_jacobian_by_c_l_c_d(&mut parameter, u, p, &i, &s);
-    parameter_jacobian_by_c_n_1(&mut parameter, u, p, &i, &s);
+    parameter_jacobian_by_c_l(&mut parameter, u, p, &i, &s);
+    parameter_jacobian_by_c_d_c_n_1(&mut parameter, u, p, &i, &s);
     parameter_jacobian_by_c_n_2(&mut parameter, u, p, &i, &s);
     parameter_jacobian_by_c_n_3_to_noise(&mut parameter, x, u, p, &i, &s);
     parameter

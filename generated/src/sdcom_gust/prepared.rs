@@ -515,10 +515,6 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
         + R::HALF * c.moment_matching_over_zeta_1; // 1/rad
     c.chi_decay_1 = p.omega_1 * c.d_chi_decay_1_d_omega_1; // 1/s
     c.inv_zeta_2 = p.zeta_2.recip();
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.moment_matching_over_zeta_2 = p.moment_matching * c.inv_zeta_2;
     c.d_chi_decay_2_d_omega_2 = p.zeta_2 * c.one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_2; // 1/rad
@@ -528,7 +524,10 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_chi_decay_3_d_omega_3 = p.zeta_3 * c.one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_3; // 1/rad
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
+}
 
+/// Fills a part of [`Prepared`].
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Derivatives with respect to delta_e
     c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
     c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
@@ -601,10 +600,6 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.minus_chi_decay_2 = -c.chi_decay_2;
     c.minus_chi_decay_3 = -c.chi_decay_3;
     c.minus_over_gust_time = -c.inv_gust_time;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_c_d_delta_e_2 = R::TWO * p.c_d_delta_e_2;
     c.two_c_d_delta_c_2 = R::TWO * p.c_d_delta_c_2;
     c.c_n_1_delta_c_canard_command = p.c_n_1_delta_c * p.canard_command;
@@ -617,6 +612,10 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.inv_m_2 = c.inv_m * c.inv_m;
     c.c_t_eta_1_inv_omega_1_2 = p.c_t_eta_1 * c.inv_omega_1_2;
     c.c_t_eta_2_inv_omega_2_2 = p.c_t_eta_2 * c.inv_omega_2_2;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_t_eta_3_inv_omega_3_2 = p.c_t_eta_3 * c.inv_omega_3_2;
     c.c_d_eta_1_times_inv_omega_1_2 = p.c_d_eta_1 * c.inv_omega_1_2;
     c.c_d_eta_2_times_inv_omega_2_2 = p.c_d_eta_2 * c.inv_omega_2_2;

@@ -107,14 +107,15 @@ ahv_core::record! {
     }
 }
 
-/// Fills a part of [`Intermediates`].
+/// Computes [`Intermediates`].
 #[inline(always)]
-fn intermediates_part_1<R: Real>(
-    i: &mut Intermediates<R>,
+pub fn intermediates<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
-) {
+) -> Intermediates<R> {
+    let mut i = Intermediates::splat(R::ZERO);
+
     // Air, (2)
     i.density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     i.density = p.rho_0 * i.density_ratio; // slug/ft^3
@@ -172,16 +173,6 @@ fn intermediates_part_1<R: Real>(
     i.eta_1 = i.eta_static_1 + x.chi_1; // (ft*slug)^0.5
     i.eta_static_2 = i.generalized_force_2 * p.inv_omega_2_2; // (ft*slug)^0.5
     i.eta_2 = i.eta_static_2 + x.chi_2; // (ft*slug)^0.5
-}
-
-/// Fills a part of [`Intermediates`].
-#[inline(always)]
-fn intermediates_part_2<R: Real>(
-    i: &mut Intermediates<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) {
     i.eta_static_3 = i.generalized_force_3 * p.inv_omega_3_2; // (ft*slug)^0.5
     i.eta_3 = i.eta_static_3 + x.chi_3; // (ft*slug)^0.5
 
@@ -240,18 +231,6 @@ fn intermediates_part_2<R: Real>(
     i.altitude_rate = x.velocity * i.sin_gamma; // ft/s
     i.gamma_rate = force_turn - i.gravity_turn * i.cos_gamma; // rad/s
     i.pitch_acceleration = i.pitching_moment * p.inv_i_yy; // rad/s^2
-}
-
-/// Computes [`Intermediates`].
-#[inline(always)]
-pub fn intermediates<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> Intermediates<R> {
-    let mut i = Intermediates::splat(R::ZERO);
-    intermediates_part_1(&mut i, x, u, p);
-    intermediates_part_2(&mut i, x, u, p);
     i
 }
 
@@ -509,6 +488,8 @@ fn slopes_part_2<R: Real>(
     let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_path_force_d_phi = i.cos_alpha * d_thrust_d_phi; // lb/ft
     s.d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
+    let d_normal_coefficient_d_phi = i.sin_alpha * i.c_t_phi;
+    s.d_force_turn_d_phi = i.turn_factor * d_normal_coefficient_d_phi; // rad/s
 }
 
 /// Fills a part of [`Slopes`].
@@ -519,9 +500,6 @@ fn slopes_part_3<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) {
-    let d_normal_coefficient_d_phi = i.sin_alpha * i.c_t_phi;
-    s.d_force_turn_d_phi = i.turn_factor * d_normal_coefficient_d_phi; // rad/s
-
     // Derivatives with respect to delta_e
     let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_delta_e = d_generalized_force_1_d_delta_e * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
@@ -905,6 +883,18 @@ fn curvatures_part_1<R: Real>(
         * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
     h.d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.slope_of_c_n_2_in_incidence; // slug^0.5/ft^0.5/s^2/rad
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     h.d2_eta_static_2_d_altitude_d_alpha = h.d2_generalized_force_2_d_altitude_d_alpha
         * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
     h.d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
@@ -918,18 +908,6 @@ fn curvatures_part_1<R: Real>(
         + i.reference_force * h.d2_c_t_d_altitude_d_alpha; // lb/ft^2/rad
     h.d_slope_of_c_t_in_incidence_d_alpha = p.six_c_t_alpha_3 * i.incidence
         + R::TWO * p.c_t_alpha_2; // 1/rad^2
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_2<R: Real>(
-    h: &mut Curvatures<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
     h.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     h.d2_eta_static_1_d_alpha_d_alpha = h.d2_generalized_force_1_d_alpha_d_alpha
         * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
@@ -993,13 +971,6 @@ fn curvatures_part_2<R: Real>(
     h.d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    h.d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
-        * h.d2_c_t_d_altitude_d_altitude + h.d2_c_l_d_altitude_d_altitude; // 1/ft^2
-    h.d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
-        + i.normal_coefficient * h.d2_turn_factor_d_altitude_d_altitude
-        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
-    h.d2_gamma_rate_d_altitude_d_altitude = h.d2_force_turn_d_altitude_d_altitude
-        - i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
 }
 
 /// Fills a part of [`Curvatures`].
@@ -1010,6 +981,14 @@ fn curvatures_part_3<R: Real>(
     i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
+    h.d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
+        * h.d2_c_t_d_altitude_d_altitude + h.d2_c_l_d_altitude_d_altitude; // 1/ft^2
+    h.d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
+        + i.normal_coefficient * h.d2_turn_factor_d_altitude_d_altitude
+        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
+    h.d2_gamma_rate_d_altitude_d_altitude = h.d2_force_turn_d_altitude_d_altitude
+        - i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
+
     // Derivatives with respect to alpha
     h.d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
         + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha

@@ -530,9 +530,9 @@ fn hessian_by_altitude_of_alpha<R: Real>(
     hessian.alpha_by_altitude_altitude = d2_alpha_rate_printed_d_altitude_d_altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate_gamma.
+/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate.
 #[inline(always)]
-fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
+fn hessian_by_altitude_of_pitch_rate<R: Real>(
     hessian: &mut HessianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
@@ -564,24 +564,6 @@ fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
-    // Derivatives with respect to gamma
-    let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-    let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_f_gamma_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-    let d2_f_gamma_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_f_gamma_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-    let d2_f_alpha_d_velocity_d_gamma = s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-    let d2_f_alpha_d_altitude_d_gamma = s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-    let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to altitude
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
         .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
         * s.d_generalized_force_1_d_altitude;
@@ -656,6 +638,32 @@ fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
 
     hessian.pitch_rate_by_altitude_velocity = d2_pitch_rate_rate_printed_d_velocity_d_altitude;
     hessian.pitch_rate_by_altitude_altitude = d2_pitch_rate_rate_printed_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by gamma.
+#[inline(always)]
+fn hessian_by_gamma<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to gamma
+    let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_f_gamma_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
+    let d2_f_gamma_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_f_gamma_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_f_alpha_d_velocity_d_gamma = s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
+    let d2_f_alpha_d_altitude_d_gamma = s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+
     hessian.velocity_by_gamma_altitude = d2_f_velocity_d_altitude_d_gamma;
     hessian.velocity_by_gamma_gamma = d2_f_velocity_d_gamma_d_gamma;
     hessian.altitude_by_gamma_velocity = i.cos_gamma;
@@ -1276,7 +1284,8 @@ pub fn hessian_values<R: Real>(
     hessian_by_altitude_of_velocity(&mut hessian, x, u, p, &i, &s);
     hessian_by_altitude_of_gamma(&mut hessian, x, p, &i, &s);
     hessian_by_altitude_of_alpha(&mut hessian, x, p, &i, &s);
-    hessian_by_altitude_of_pitch_rate_gamma(&mut hessian, x, u, p, &i, &s);
+    hessian_by_altitude_of_pitch_rate(&mut hessian, x, u, p, &i, &s);
+    hessian_by_gamma(&mut hessian, x, &i, &s);
     hessian_by_alpha_of_velocity(&mut hessian, u, p, &i, &s);
     hessian_by_alpha_of_gamma(&mut hessian, x, p, &i, &s, &n);
     hessian_by_alpha_of_alpha(&mut hessian, x, u, p, &i, &s, &m);

@@ -488,10 +488,6 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.moment_matching_over_zeta_1 = p.moment_matching * c.inv_zeta_1;
     c.d_chi_decay_1_d_omega_1 = p.zeta_1 * c.one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_1; // 1/rad
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.chi_decay_1 = p.omega_1 * c.d_chi_decay_1_d_omega_1; // 1/s
     c.inv_zeta_2 = p.zeta_2.recip();
     c.moment_matching_over_zeta_2 = p.moment_matching * c.inv_zeta_2;
@@ -502,6 +498,10 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.moment_matching_over_zeta_3 = p.moment_matching * c.inv_zeta_3;
     c.d_chi_decay_3_d_omega_3 = p.zeta_3 * c.one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_3; // 1/rad
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
 
     // Derivatives with respect to velocity
@@ -578,15 +578,15 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
         .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * c.inv_omega_2_2;
     c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2 = c
         .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * c.inv_omega_3_2;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_c_m_alpha_2 = R::TWO * p.c_m_alpha_2;
     c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy = c.inv_i_yy
         * c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1;
     c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy = c.inv_i_yy
         * c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy = c.inv_i_yy
         * c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3;
     c.minus_chi_decay_1 = -c.chi_decay_1;

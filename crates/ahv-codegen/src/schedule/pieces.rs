@@ -6,7 +6,7 @@ use super::tree::{Body, Expr, Statement};
 use crate::ir::{self, Basis};
 
 /// A function of more lines is computed in pieces; what a piece takes besides its statements is above that.
-pub(super) const LONGEST: usize = 100;
+pub(super) const LONGEST: usize = 118;
 /// Pieces are joined up to this many lines.
 const FULL: usize = 90;
 /// Characters of a line.
@@ -120,9 +120,12 @@ pub(super) fn lines(statement: &Statement) -> usize {
     match statement {
         Statement::Section(_) => 2,
         Statement::SinCos { .. } => 1,
-        Statement::Let { value, .. } | Statement::Set { value, .. } => match value {
+        Statement::Let { name, value, .. }
+        | Statement::Set {
+            field: name, value, ..
+        } => match value {
             Expr::Sum(addends) if addends.len() > 2 => addends.len(),
-            value => 1 + characters(value) / WIDTH,
+            value => 1 + (name.len() + characters(value)) / WIDTH,
         },
     }
 }
