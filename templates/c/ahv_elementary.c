@@ -52,6 +52,9 @@ static const double LN_2[2] = {0.6931471804855391, 7.440617110012397e-11};
 /* Adding 1.5 * 2^52 rounds to a whole number and leaves it in the low bits. */
 static const double ROUNDER = 6755399441055744.0;
 
+/* Those of a NaN are above. */
+static const uint64_t INFINITY_BITS = UINT64_C(0x7FF0000000000000);
+
 /* Larger angles and exponents go the ways of msun. */
 static const double LARGEST_ANGLE = 1e6;
 static const double LARGEST_EXPONENT = 708.0;
@@ -73,14 +76,18 @@ static double magnitude(double x) {
     return from_bits(to_bits(x) & UINT64_C(0x7FFFFFFFFFFFFFFF));
 }
 
+static double not_a_number(void) {
+    return from_bits(UINT64_C(0x7FF8000000000000));
+}
+
 /* 2^exponent, a normal number. */
 static double power_of_two(int32_t exponent) {
-    return from_bits((uint64_t)(1023 + (int64_t)exponent) << 52);
+    return from_bits((uint64_t)(1023 + (int64_t)exponent) << 52U);
 }
 
 /* The exponent of a normal number whose magnitude is in [2^exponent, 2^(exponent + 1)). */
 static int32_t exponent_of(double x) {
-    return (int32_t)((to_bits(x) >> 52) & 0x7FFU) - 1023;
+    return (int32_t)((to_bits(x) >> 52U) & 0x7FFU) - 1023;
 }
 
 /* --- Angles up to 1e6 rad ---------------------------------------------------------------------------------------- */
@@ -110,8 +117,8 @@ static void turn(uint64_t quarters, double *sine, double *cosine) {
     const uint64_t s = to_bits(*sine);
     const uint64_t c = to_bits(*cosine);
     const uint64_t exchange = (s ^ c) & swapped;
-    const uint64_t sign_sine = (quarters & 2U) << 62;
-    const uint64_t sign_cosine = ((quarters + 1U) & 2U) << 62;
+    const uint64_t sign_sine = (quarters & 2U) << 62U;
+    const uint64_t sign_cosine = ((quarters + 1U) & 2U) << 62U;
     *sine = from_bits((s ^ exchange) ^ sign_sine);
     *cosine = from_bits((c ^ exchange) ^ sign_cosine);
 }
@@ -146,8 +153,9 @@ static const double REST_OF_HALF_PI[3] = {6.0771005065061922e-11, 2.022266248795
 #define DIGIT_BASE UINT64_C(0x1000000)
 #define DIGIT_MASK UINT64_C(0xFFFFFF)
 
-/* Digits of 2/pi after the point: position 41, of the largest double, and 8 more are read. */
-static const uint32_t TWO_OVER_PI_DIGITS[50] = {
+/* Digits of 2/pi after the point: at most position 41, of the largest double, and 8 more are read. */
+#define TWO_OVER_PI_DIGITS_COUNT 50
+static const uint32_t TWO_OVER_PI_DIGITS[TWO_OVER_PI_DIGITS_COUNT] = {
     0xA2F983U, 0x6E4E44U, 0x1529FCU, 0x2757D1U, 0xF534DDU, 0xC0DB62U, 0x95993CU, 0x439041U, 0xFE5163U, 0xABDEBBU,
     0xC561B7U, 0x246E3AU, 0x424DD2U, 0xE00649U, 0x2EEA09U, 0xD1921CU, 0xFE1DEBU, 0x1CB129U, 0xA73EE8U, 0x8235F5U,
     0x2EBB44U, 0x84E99CU, 0x7026B4U, 0x5F7E41U, 0x3991D6U, 0x398353U, 0x39F49CU, 0x845F8BU, 0xBDF928U, 0x3B1FF8U,
@@ -217,13 +225,13 @@ static void multiply_digits(const uint64_t angle[3], int32_t position, int32_t l
     for (int32_t i = last; i >= 0; i--) {
         for (int32_t j = 0; j < 3; j++) {
             const int32_t index = position + i - j;
-            if (index >= 0) {
+            if ((index >= 0) && (index < TWO_OVER_PI_DIGITS_COUNT)) {
                 sum += angle[j] * TWO_OVER_PI_DIGITS[index];
             }
         }
         if (i > 0) {
             digits[i] = sum & DIGIT_MASK;
-            sum >>= DIGIT_BITS;
+            sum /= DIGIT_BASE;
         } else {
             digits[i] = sum;
         }
@@ -236,7 +244,7 @@ static void split_quarters(Fraction *number) {
     /* Digits 0 and 1 in one: the point stands in either. What falls off are multiples of 8 quarters. */
     const uint32_t fraction_bits = (uint32_t)(DIGIT_BITS - number->exponent);
     const uint64_t one = UINT64_C(1) << fraction_bits;
-    uint64_t head = (number->digits[0] << DIGIT_BITS) | number->digits[1];
+    uint64_t head = (number->digits[0] * DIGIT_BASE) + number->digits[1];
     number->quarters = head >> fraction_bits;
     head &= one - 1U;
     number->is_negative = ((head >> (fraction_bits - 1U)) != 0U) ? 1 : 0;
@@ -250,7 +258,7 @@ static void split_quarters(Fraction *number) {
         head = (one - head) - borrow;
         number->quarters += 1U;
     }
-    number->digits[0] = head >> DIGIT_BITS;
+    number->digits[0] = head / DIGIT_BASE;
     number->digits[1] = head & DIGIT_MASK;
 }
 
@@ -272,7 +280,7 @@ static Reduced times_half_pi(const Fraction *number, int32_t first) {
     Reduced reduced = {0U, 0.0, 0.0};
     for (int32_t i = first; i <= number->last; i++) {
         if (number->digits[i] >= DIGIT_BASE) {
-            digits[count] = number->digits[i] >> DIGIT_BITS;
+            digits[count] = number->digits[i] / DIGIT_BASE;
             count++;
             exponent += DIGIT_BITS;
         }
@@ -302,8 +310,8 @@ static Reduced times_half_pi(const Fraction *number, int32_t first) {
 static Reduced reduced_by_digits(double x) {
     /* x is a whole number of 72 bits, of which 53 can differ from 0, times 2^(exponent - 71). */
     const int32_t exponent = exponent_of(x);
-    const uint64_t mantissa = (to_bits(x) & UINT64_C(0xFFFFFFFFFFFFF)) | (UINT64_C(1) << 52);
-    const uint64_t angle[3] = {mantissa >> 29, (mantissa >> 5) & DIGIT_MASK, (mantissa & 0x1FU) << 19};
+    const uint64_t mantissa = (to_bits(x) & UINT64_C(0xFFFFFFFFFFFFF)) | (UINT64_C(1) << 52U);
+    const uint64_t angle[3] = {mantissa >> 29U, (mantissa >> 5U) & DIGIT_MASK, (mantissa & 0x1FU) << 19U};
     /* Digits of 2/pi that lie wholly before this place add multiples of 8 quarters. */
     const int32_t position = (exponent > 26) ? ((exponent - 26) / DIGIT_BITS) : 0;
     Fraction number = {{0U}, 0, 0, 0U, 0};
@@ -353,10 +361,10 @@ static double large_angle_cos(double x, double low) {
 /* Sine and cosine of an angle above 1e6 rad, infinity or NaN. */
 static void large_angle_sin_cos(double x, double *sine, double *cosine) {
     const double size = magnitude(x);
-    Reduced reduced = {0U, 0.0, 0.0};
-    if (!(size <= DBL_MAX)) {
-        *sine = x - x;
-        *cosine = x - x;
+    Reduced reduced;
+    if (to_bits(size) >= INFINITY_BITS) {
+        *sine = not_a_number();
+        *cosine = not_a_number();
         return;
     }
     reduced = (to_bits(size) < LARGEST_BY_PARTS) ? reduced_by_parts(size) : reduced_by_digits(size);
@@ -386,7 +394,7 @@ static double moderate_exp(double x) {
     const double p = first + (r_4 * last);
     const double fraction = 1.0 + (r + (low + (r_2 * p)));
     /* The low bits hold the exponent; those above them fall off. */
-    return fraction * from_bits((to_bits(shifted) + 1023U) << 52);
+    return fraction * from_bits((to_bits(shifted) + 1023U) << 52U);
 }
 
 /* e^x for |x| > 708, where the result leaves the normal numbers, rounded as in msun. */
@@ -420,11 +428,12 @@ static double extreme_exp(double x) {
 /* --- What the header offers --------------------------------------------------------------------------------------- */
 
 double ahv_exp(double x) {
+    const double size = magnitude(x);
     double result;
-    if (magnitude(x) <= LARGEST_EXPONENT) {
+    if (size <= LARGEST_EXPONENT) {
         result = moderate_exp(x);
-    } else if (x != x) {
-        result = x;
+    } else if (to_bits(size) > INFINITY_BITS) {
+        result = not_a_number();
     } else {
         result = extreme_exp(x);
     }
@@ -458,7 +467,7 @@ double ahv_cos(double angle) {
 
 double ahv_sqrt(double x) {
     /* The library's function would set errno below zero. */
-    return (x < 0.0) ? ((x - x) / (x - x)) : sqrt(x);
+    return (x < 0.0) ? not_a_number() : sqrt(x);
 }
 
 double ahv_recip(double x) {

@@ -20,7 +20,7 @@
 #endif
 
 /* 0, 1 and 16 evaluate doubles as doubles; 2, the x87 unit, does not. Before C99 there is no such macro. */
-#if !defined(FLT_EVAL_METHOD)
+#ifndef FLT_EVAL_METHOD
 #error "ahv: FLT_EVAL_METHOD is not defined; compile as C99 or C++11, or later"
 #elif (FLT_EVAL_METHOD != 0) && (FLT_EVAL_METHOD != 1) && (FLT_EVAL_METHOD != 16)
 #error "ahv: doubles must be evaluated as doubles (FLT_EVAL_METHOD 0); on x86 compile with -msse2 -mfpmath=sse"
@@ -31,7 +31,7 @@
 #error "ahv: -ffast-math, -Ofast and the like change results; compile without them"
 #endif
 
-#if defined(__FINITE_MATH_ONLY__)
+#ifdef __FINITE_MATH_ONLY__
 #if __FINITE_MATH_ONLY__ > 0
 #error "ahv: -ffinite-math-only changes results; compile without it"
 #endif

