@@ -1,8 +1,8 @@
 /* Sine, cosine and exponential, from additions and multiplications alone.
  *
- * Where models work, |angle| <= 1e6 rad and |exponent| <= 708, the operations are those of `ahv-core`, one by one. Beyond,
- * `ahv-core` calls the Rust crate `libm`, which follows FreeBSD's msun; the code for these ranges is written anew so that
- * it rounds as msun does, and takes over msun's coefficients and split constants. Their notice:
+ * For |angle| <= 1e6 rad and |exponent| <= 708 the operations are those of `ahv-core`, one by one. Beyond, `ahv-core`
+ * calls the Rust crate `libm`, which follows FreeBSD's msun. The code for these ranges is written anew so that it rounds
+ * as msun does; it takes over msun's coefficients and split constants. Their notice:
  *
  *   Copyright (C) 1993, 2004 by Sun Microsystems, Inc. All rights reserved.
  *   Developed at SunPro, a Sun Microsystems, Inc. business. Permission to use, copy, modify, and distribute this
@@ -44,7 +44,12 @@ static const double EXP[10] = {
 };
 
 /* pi/2 in parts of 33 bits and the rest, so that a whole multiple of a part below 2^20 is exact. */
-static const double HALF_PI[4] = {1.5707963267341256, 6.077100506303966e-11, 2.0222662487111665e-21, 8.4784276603689e-32};
+static const double HALF_PI[4] = {
+    1.5707963267341256,
+    6.077100506303966e-11,
+    2.0222662487111665e-21,
+    8.4784276603689e-32,
+};
 
 /* ln 2 in parts of 33 bits and the rest. */
 static const double LN_2[2] = {0.6931471804855391, 7.440617110012397e-11};
@@ -218,8 +223,8 @@ static Reduced reduced_by_parts(double x) {
     return reduced;
 }
 
-/* Digits 0 to `last` of angle * 2/pi, without multiples of 8 that digits of 2/pi before `position` - 2 would add. Digit 0
- * keeps what is above 24 bits. */
+/* Digits 0 to `last` of angle * 2/pi. Digits of 2/pi before `position` - 2 would add multiples of 8 and are left out.
+ * Digit 0 keeps what is above 24 bits. */
 static void multiply_digits(const uint64_t angle[3], int32_t position, int32_t last, uint64_t digits[LAST_DIGIT + 1]) {
     uint64_t sum = 0U;
     for (int32_t i = last; i >= 0; i--) {

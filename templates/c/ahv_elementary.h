@@ -1,13 +1,13 @@
-/* Elementary functions of the generated models, in C99: double precision, the same bits as the Rust crate `ahv-core`.
+/* Elementary functions of the generated models, in C99: double precision, the bits of the Rust crate `ahv-core`.
  *
- * Every function is pure: no global state, no heap, no errno, no dependence on the platform's libm but for `sqrt`, which
- * IEEE 754 rounds correctly and `ahv_sqrt` calls (link with -lm where the platform asks for it).
+ * Every function is pure: no global state, no heap, no errno. Of the platform's libm only `sqrt` is called, by `ahv_sqrt`;
+ * IEEE 754 rounds it correctly (link with -lm where the platform asks for it).
  *
  * The bits hold under three conditions. This header refuses a compilation that is known to break the first two.
  *   1. A double is an IEEE 754 binary64, and an operation on doubles is rounded to a double at once.
  *   2. No optimisation changes the value of an expression: no -ffast-math, -Ofast or the like.
- *   3. A product and a sum are not contracted into a fused multiply-add: compile with -ffp-contract=off. AHV_NO_CONTRACTION
- *      turns contraction off from within a source file only where the compiler has the standard pragma; gcc has not.
+ *   3. A product and a sum are not contracted into a fused multiply-add: compile with -ffp-contract=off. The macro
+ *      AHV_NO_CONTRACTION is a second safeguard, from within a source file.
  * At run time the rounding mode is to nearest, and subnormal numbers are not flushed to zero: the defaults of C.
  */
 #ifndef AHV_ELEMENTARY_H
@@ -37,19 +37,19 @@
 #endif
 #endif
 
-/* Stands at the head of a source file, outside functions. gcc ignores the pragma and warns about it. */
-#if defined(__clang__) || !defined(__GNUC__)
-#define AHV_NO_CONTRACTION _Pragma("STDC FP_CONTRACT OFF")
+/* Stands at the head of a source file, outside functions. gcc has not the standard pragma but one of its own. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define AHV_NO_CONTRACTION _Pragma("GCC optimize (\"-ffp-contract=off\")")
 #else
-#define AHV_NO_CONTRACTION
+#define AHV_NO_CONTRACTION _Pragma("STDC FP_CONTRACT OFF")
 #endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* e to the power x, to less than 1 ulp. Infinity above about 709.78, 0 below about -745.13, in between subnormal where the
- * result is; NaN of NaN. */
+/* e to the power x, to less than 1 ulp of a normal result. Infinity above about 709.78, subnormal below about -708.40,
+ * 0 below about -745.13; NaN of NaN. */
 double ahv_exp(double x);
 
 /* Sine and cosine of an angle in rad, each to less than 1 ulp; they share the reduction of the angle. Any finite angle;

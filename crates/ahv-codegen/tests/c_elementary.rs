@@ -350,6 +350,23 @@ fn c_compiled_as_cpp_has_the_bits_of_rust() {
     }
 }
 
+/// Without `-ffp-contract=off`, in a dialect in which gcc contracts.
+#[test]
+fn bits_hold_where_the_flag_against_contraction_is_forgotten() {
+    let (compiler, folder) = (c_compiler(), folder("contraction"));
+    let flags = ["-std=gnu99", "-O2", "-march=native"];
+    if !takes(&compiler, &flags, &folder) {
+        println!("{compiler} does not take -march=native");
+        return;
+    }
+    let program = folder.join("contraction");
+    let files = [driver(), sources().join("ahv_elementary.c")];
+    compile(&compiler, &flags, &files, &program).unwrap_or_else(|error| panic!("{error}"));
+    if let Some(difference) = difference(&program, &values(100_000)) {
+        panic!("{compiler} {}: {difference}", flags.join(" "));
+    }
+}
+
 /// A comparison that would miss a wrong coefficient proves nothing.
 #[test]
 fn wrong_coefficient_is_found() {

@@ -1,4 +1,4 @@
-/* Reads doubles from standard input and writes seven results of each to standard output, all in the machine's own bytes:
+/* Reads doubles from standard input and writes seven results of each to standard output, in the machine's byte order:
  * exp, sin, cos, both of sin_cos, sqrt, recip. */
 #include "ahv_elementary.h"
 
