@@ -1,8 +1,8 @@
 /* Sine, cosine and exponential, from additions and multiplications alone.
  *
  * For |angle| <= 1e6 rad and |exponent| <= 708 the operations are those of `ahv-core`, one by one. Beyond, `ahv-core`
- * calls the Rust crate `libm`, which follows FreeBSD's msun. The code for these ranges is written anew so that it rounds
- * as msun does; it takes over msun's coefficients and split constants. Their notice:
+ * calls the Rust crate `libm`, which follows FreeBSD's msun. The code for these ranges is written anew so that it
+ * rounds as msun does; it takes over msun's coefficients and split constants. Their notice:
  *
  *   Copyright (C) 1993, 2004 by Sun Microsystems, Inc. All rights reserved.
  *   Developed at SunPro, a Sun Microsystems, Inc. business. Permission to use, copy, modify, and distribute this

@@ -1,7 +1,7 @@
 /* Elementary functions of the generated models, in C99: double precision, the bits of the Rust crate `ahv-core`.
  *
- * Every function is pure: no global state, no heap, no errno. Of the platform's libm only `sqrt` is called, by `ahv_sqrt`;
- * IEEE 754 rounds it correctly (link with -lm where the platform asks for it).
+ * Every function is pure: no global state, no heap, no errno. Of the platform's libm only `sqrt` is called, by
+ * `ahv_sqrt`; IEEE 754 rounds it correctly (link with -lm where the platform asks for it).
  *
  * The bits hold under three conditions. This header refuses a compilation that is known to break the first two.
  *   1. A double is an IEEE 754 binary64, and an operation on doubles is rounded to a double at once.
