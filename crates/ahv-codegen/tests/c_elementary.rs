@@ -196,8 +196,8 @@ fn around(x: f64) -> impl Iterator<Item = f64> {
     (0..9).map(move |step| f64::from_bits(bits.wrapping_add(step).wrapping_sub(4)))
 }
 
-/// Doubles next to a multiple of π/2, on either side, by their bits. The first 1 to 61 bits of the fraction of a quarter
-/// turn agree. Found by convergents of 2ᵉ · 2/π.
+/// Doubles next to a multiple of π/2, on either side, by their bits. The first 1 to 61 bits of the fraction of a
+/// quarter turn agree. Found by convergents of 2ᵉ · 2/π.
 const NEXT_TO_QUARTER_TURNS: [u64; 21] = [
     0x7506_ac5b_262c_a1ff,
     0x7516_ac5b_262c_a1ff,
