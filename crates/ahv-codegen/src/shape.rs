@@ -71,7 +71,12 @@ impl<'a> Shape<'a> {
     /// What the type of the dense form is called, where it has a name of its own.
     pub(crate) fn alias(&self) -> Option<&'static str> {
         let bases: Vec<Basis> = self.axes.iter().map(|axis| axis.basis).collect();
-        Some(match bases.as_slice() {
+        Self::name_of(&bases)
+    }
+
+    /// The name of an array over these bases, where it has one of its own.
+    pub(crate) fn name_of(bases: &[Basis]) -> Option<&'static str> {
+        Some(match bases {
             [Basis::State, Basis::State] => "StateJacobian",
             [Basis::State, Basis::Input] => "InputJacobian",
             [Basis::State, Basis::Parameter] => "ParameterJacobian",

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use ahv_codegen::ir::UnitSystem;
-use ahv_codegen::{Core, Pass};
+use ahv_codegen::{Core, Pass, Target};
 
 use crate::project::Project;
 
@@ -43,6 +43,10 @@ pub struct Args {
     #[arg(long, conflicts_with = "core_path")]
     pub core_workspace: bool,
 
+    /// Language of the models: a Rust crate, or a C99 library with the same bits [default folder: generated/c]
+    #[arg(long, value_name = "LANGUAGE", value_enum, default_value_t = Language::Rust)]
+    pub target: Language,
+
     /// Unit system of the models: ft-slug-s-rad or si [default: that of the tables]
     #[arg(long, value_name = "SYSTEM")]
     pub units: Option<UnitSystem>,
@@ -56,7 +60,34 @@ pub struct Args {
     pub json: bool,
 }
 
+/// A language that models are generated in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Language {
+    /// A Rust crate, with documentation.
+    Rust,
+    /// A C99 library.
+    C,
+}
+
+impl Language {
+    /// The folder of the generated files in a project.
+    pub(crate) fn folder(self) -> &'static str {
+        match self {
+            Self::Rust => "generated",
+            Self::C => "generated/c",
+        }
+    }
+}
+
 impl Args {
+    /// The language for the emitter.
+    pub(crate) fn target(&self) -> Target {
+        match self.target {
+            Language::Rust => Target::Rust,
+            Language::C => Target::C,
+        }
+    }
+
     /// Where the generated package finds ahv-core.
     pub(crate) fn core(&self) -> Core {
         if self.core_workspace {
@@ -78,6 +109,9 @@ impl Args {
         let mut flag = |name: &str, value: &str| {
             command.push_str(&format!(" {name} {}", quoted(value)));
         };
+        if self.target == Language::C {
+            flag("--target", "c");
+        }
         if let Some(tables) = &self.tables {
             flag("--tables", &tables.to_string_lossy());
         }

@@ -41,7 +41,7 @@ use std::time::Instant;
 
 use ahv_codegen::{Options, Passes, Tree};
 
-pub use args::Args;
+pub use args::{Args, Language};
 pub use compare::{Difference, Kept, Status};
 pub use failure::{Failure, TableFault};
 pub use project::Project;
@@ -167,6 +167,7 @@ fn emit(args: &Args, tables: &Tables, irs: &BTreeMap<String, String>) -> Result<
         core: args.core(),
         units: args.units,
         passes: Passes::without(&args.without_pass),
+        target: args.target(),
     };
     ahv_codegen::emit(&tables.parsed, irs, &options)
         .map_err(|error| Failure::new(error.to_string()))

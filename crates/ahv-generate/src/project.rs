@@ -31,7 +31,7 @@ impl Project {
         let given = |path: &Option<PathBuf>| path.as_ref().map(|path| here.join(path));
         Self {
             tables: given(&args.tables).unwrap_or_else(|| root.join("generator/tables")),
-            out: given(&args.out).unwrap_or_else(|| root.join("generated")),
+            out: given(&args.out).unwrap_or_else(|| root.join(args.target.folder())),
             root,
         }
     }

@@ -133,7 +133,7 @@ fn piece_name(function: &Function<'_>, group: &Group) -> String {
 fn targets(function: &Function<'_>, group: &Group) -> Vec<(String, String)> {
     let mut targets = Vec::new();
     for &entry in &group.entries {
-        let (output, _) = locate(function, entry);
+        let (output, _) = function.locate(entry);
         let shape = &function.shapes[output];
         let name = result_name(function, output);
         let of = shape.entries().map_or_else(String::new, |it| it.name);
@@ -142,18 +142,6 @@ fn targets(function: &Function<'_>, group: &Group) -> Vec<(String, String)> {
         }
     }
     targets
-}
-
-/// The output in which an entry of a function stands, and its position there.
-fn locate(function: &Function<'_>, mut entry: usize) -> (usize, usize) {
-    for (output, shape) in function.shapes.iter().enumerate() {
-        let length = shape.output.entries.len();
-        if entry < length {
-            return (output, entry);
-        }
-        entry -= length;
-    }
-    (0, 0)
 }
 
 fn result_name(function: &Function<'_>, output: usize) -> String {
@@ -167,7 +155,7 @@ fn result_name(function: &Function<'_>, output: usize) -> String {
 
 /// An entry of a function as a field of the struct that it returns.
 fn place(function: &Function<'_>, entry: usize) -> String {
-    let (output, position) = locate(function, entry);
+    let (output, position) = function.locate(entry);
     let name = function.shapes[output].entry_names().nth(position);
     let name = name.unwrap_or_default();
     format!("{}.{name}", result_name(function, output))

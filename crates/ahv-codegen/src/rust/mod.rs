@@ -2,7 +2,7 @@
 
 mod dense;
 #[allow(unreachable_pub, reason = "the functions that `filter_fn` makes are")]
-mod filters;
+pub(crate) mod filters;
 pub(crate) mod format;
 pub(crate) mod home;
 mod items;

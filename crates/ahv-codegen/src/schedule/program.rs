@@ -48,6 +48,18 @@ pub(crate) struct Function<'a> {
 }
 
 impl Function<'_> {
+    /// The output in which an entry stands, and its position there.
+    pub(crate) fn locate(&self, mut entry: usize) -> (usize, usize) {
+        for (output, shape) in self.shapes.iter().enumerate() {
+            let length = shape.output.entries.len();
+            if entry < length {
+                return (output, entry);
+            }
+            entry -= length;
+        }
+        (0, 0)
+    }
+
     /// Whether it refers to a component that stands there.
     pub(crate) fn uses(&self, source: Source) -> bool {
         self.body.uses(source) || self.pieces.iter().any(|(_, body)| body.uses(source))
