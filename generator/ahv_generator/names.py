@@ -25,6 +25,13 @@ SET_NAME = re.compile(r"[a-z][a-z0-9._-]*")
 SET_LETTERS = "lower-case letters, digits, `.`, `_`, `-`"
 
 
+def fault_of_identifier(name: object) -> str | None:
+    """Why a variable, a parameter or a quantity cannot have this name in the generated code."""
+    if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+        return f"`{name}` is not a lower-case identifier: letters a to z, digits, `_`"
+    return f"`{name}` is a keyword of Rust; choose another name" if name in _KEYWORDS else None
+
+
 def fault_of_table(name: object) -> str | None:
     """Why a table cannot have this name."""
     if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):

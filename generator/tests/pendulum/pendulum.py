@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import casadi as ca
-
 from ahv_generator.derivatives import add_drift_and_derivatives
+
 from ahv_generator.family import Family
 from ahv_generator.model import Model
 from ahv_generator.schema import POSITIVE, ParameterSpec, QuantitySpec, Rule, Schema, VariableSpec
