@@ -303,7 +303,7 @@ class Model:
         names, known = tuple(names), tuple(known)
         for position, name in enumerate(names):
             if name not in known:
-                raise FamilyError(f"{what} of `{self.name}`: `{name}` is none", suggestion(name, known))
+                raise FamilyError(f"{what} of `{self.name}`: there is no `{name}`", suggestion(name, known))
             if name in names[:position]:
                 raise FamilyError(f"{what} of `{self.name}`: `{name}` is used twice")
 

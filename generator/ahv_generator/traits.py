@@ -5,14 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import casadi as ca
+
+from .diagnostics import FamilyError
 from .schema import Parameter, Variable
 
-Named = Variable | str
+Named = Variable | str | ca.SX
 
 
 def name_of(named: Named | Parameter) -> str:
-    """The name of a variable or parameter, which may stand for it wherever the API asks for one."""
-    return named if isinstance(named, str) else named.name
+    """The name of what stands for it wherever the API asks for one: a declaration, the name, or the symbol."""
+    if isinstance(named, Variable | Parameter):
+        return named.name
+    if isinstance(named, str):
+        return named
+    if isinstance(named, ca.SX) and named.is_symbolic():
+        return str(named.name()).rpartition(".")[2]
+    raise FamilyError(f"`{named}` has no name: it is neither a variable nor a quantity that was defined")
 
 
 @dataclass(frozen=True)
