@@ -209,9 +209,10 @@ class Family:
         spec = self.models[name]
         model = Model(spec.name, spec.title, spec.equations, table, dict(spec.bases))
         spec.state(model)
-        if model.rates is None:
-            message = f"the model `{name}` has no equations of motion; state them with `model.motion(...)`"
-            raise FamilyError(message, line=spec.line)
+        try:
+            model.check()
+        except FamilyError as error:
+            raise FamilyError(str(error), error.help, spec.line) from error
         return model
 
     def _of(self, models: tuple[str, ...]) -> list[_Declared]:

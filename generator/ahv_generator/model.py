@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from . import motion, stochastic, units
+from . import motion, names, stochastic, units
 from .diagnostics import FamilyError, suggestion
 from .function import Entry, Function, NoiseStructure, Output
 from .graph import Graph, Intermediate
@@ -64,8 +64,8 @@ class Model:
         Of a parameter the name or the key will do; a quantity of the same name comes before it.
         """
         name = name_of(named)
-        names = (name, *(f"{prefix}.{name}" for prefix in "xut"), f"p.{name.lower()}")
-        for known in names[-1:] if isinstance(named, Parameter) else names:
+        places = (name, *(f"{prefix}.{name}" for prefix in "xut"), f"p.{name.lower()}")
+        for known in places[-1:] if isinstance(named, Parameter) else places:
             if known in self.graph.symbols:
                 return self.graph.symbols[known]
         known_names = [symbol.rpartition(".")[2] for symbol in self.graph.symbols]
@@ -115,6 +115,9 @@ class Model:
         if isinstance(name, Variable):
             symbol, unit, doc = symbol or name.symbol, unit or name.unit, doc or name.doc
         plain = name_of(name)
+        fault = names.fault_of_quantity(plain)
+        if fault is not None:
+            raise FamilyError(fault)
         if any(f"{prefix}.{plain}" in self.graph.symbols for prefix in "xut") or plain in self.graph.symbols:
             raise FamilyError(f"the name `{plain}` is used twice in `{self.name}`")
         return self.graph.define(
@@ -147,9 +150,8 @@ class Model:
         name = name or spec.key.lower()
         polynomial = polynomial or self.table.polynomials[spec.key]
         symbols = self.fit_symbols(variables or {})
-        used = {factor for term in polynomial.terms for factor, _ in term.powers}
         for variable in spec.variables:
-            if variable in used and variable not in symbols:
+            if variable not in symbols:
                 symbols[variable] = self[variable]
         if collect is None or not (slope := polynomial.linear_part(collect.name)).terms:
             expr = polynomial.expression(symbols)
@@ -235,6 +237,17 @@ class Model:
         doc = "Quantities that people look at, which are not states"
         self.add("outputs", "outputs", doc, "", [Output("", ("output",), entries)])
 
+    def check(self) -> None:
+        """Raise `FamilyError` when something is missing, or shown that there is not."""
+        if self.rates is None:
+            raise FamilyError(
+                f"the model `{self.name}` has no equations of motion; state them with `model.motion(...)`"
+            )
+        if "output" not in self.bases:
+            raise FamilyError(f"`{self.name}` has no outputs; state them with `model.outputs(...)`")
+        known = [name for basis in ("state", "input", "output") for name in self.names(basis)]
+        self._refuse_unknown("states, inputs and outputs that a trim shows", self.traits.trim.shown, known)
+
     def evaluations(self, *named: Named) -> None:
         """Quantities that have a function each, for callers that need one alone."""
         for one in named:
@@ -299,12 +312,12 @@ class Model:
         known = (*self.names("state"), *self.names("input"))
         self._refuse_unknown("deviations", self.traits.deviations, known)
 
-    def _refuse_unknown(self, what: str, names: Iterable[str], known: Iterable[str]) -> None:
-        names, known = tuple(names), tuple(known)
-        for position, name in enumerate(names):
+    def _refuse_unknown(self, what: str, stated: Iterable[str], known: Iterable[str]) -> None:
+        stated, known = tuple(stated), tuple(known)
+        for position, name in enumerate(stated):
             if name not in known:
                 raise FamilyError(f"{what} of `{self.name}`: there is no `{name}`", suggestion(name, known))
-            if name in names[:position]:
+            if name in stated[:position]:
                 raise FamilyError(f"{what} of `{self.name}`: `{name}` is used twice")
 
     def _defined(self, named: Named) -> Intermediate:
@@ -359,6 +372,8 @@ class Model:
         self, name: str, group: str, doc: str, equation: str, outputs: Iterable[Output], *, compressed: bool = False
     ) -> None:
         """Add a function; the units of its outputs are turned into those of the table, and checked."""
+        if name in [function.name for function in self.functions]:
+            raise FamilyError(f"the name `{name}` is used twice, for two functions of `{self.name}`")
         system = self.table.units
         converted = tuple(
             replace(o, unit=units.converted(o.unit, system)) if o.unit is not None else o for o in outputs
@@ -374,5 +389,5 @@ class Model:
         self.add(name, group, doc, equation, [Output("", (), (Entry((), expr),), unit)])
 
 
-def _listed(names: list[str]) -> str:
-    return ", ".join(f"`{name}`" for name in names)
+def _listed(stated: list[str]) -> str:
+    return ", ".join(f"`{name}`" for name in stated)

@@ -32,6 +32,15 @@ def fault_of_identifier(name: object) -> str | None:
     return f"`{name}` is a keyword of Rust; choose another name" if name in _KEYWORDS else None
 
 
+def fault_of_quantity(name: str) -> str | None:
+    """Why a quantity that a model defines cannot have this name in the generated code."""
+    if name in ("x", "u", "w", "p", "t"):
+        return f"`{name}` is the name of a vector in the generated code; choose a longer name"
+    if re.match(r"d\d?_|slope_of_", name):
+        return f"`{name}` would be taken for a derivative; choose a name that does not begin with `d_`"
+    return fault_of_identifier(name)
+
+
 def fault_of_table(name: object) -> str | None:
     """Why a table cannot have this name."""
     if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
