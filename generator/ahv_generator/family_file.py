@@ -111,4 +111,4 @@ def find(named: object, folder: Path) -> FamilyFile:
     if named not in known:
         help_line = f"{suggestion(str(named), known)}; a file beside the table is named like `pendulum.py`"
         raise NotFoundError(f"unknown family `{named}`", help_line)
-    return FamilyFile(f"{named}.py", FOLDER / f"{named}.py")
+    return FamilyFile(f"ahv_generator/families/{named}.py", FOLDER / f"{named}.py")

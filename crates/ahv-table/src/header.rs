@@ -8,8 +8,9 @@ use crate::reader::{GENERATE, Reader, SOURCES};
 use crate::{Checked, Family, Fault, Text, names};
 
 pub(crate) const HEADER: &str = "table";
-const KEYS: [&str; 7] = [
+const KEYS: [&str; 8] = [
     "name",
+    "family",
     "models",
     "units",
     "set",
