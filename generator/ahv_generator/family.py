@@ -144,7 +144,7 @@ class Family:
         equations: str = "",
         *,
         states: tuple[Variable, ...],
-        inputs: tuple[Variable, ...] = (),
+        inputs: tuple[Variable, ...],
         noise: tuple[Variable, ...] = (),
         arguments: tuple[Variable, ...] = (),
         modes: tuple[Variable, ...] = (),
@@ -159,8 +159,8 @@ class Family:
         """
         vectors = {"state": states, "input": inputs, "noise": noise, "argument": arguments, "mode": modes}
         bases = {basis: v for basis, v in vectors.items() if v or basis in ("state", "input")}
-        if not states:
-            raise FamilyError(f"the model `{name}` has no state")
+        if not states or not inputs:
+            raise FamilyError(f"the model `{name}` has no {'input' if states else 'state'}; it needs one at least")
         if name in self.models:
             raise FamilyError(f"the name `{name}` is used twice, for two models")
         variable_names = [variable.name for basis in bases.values() for variable in basis]

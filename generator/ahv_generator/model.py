@@ -243,7 +243,7 @@ class Model:
             raise FamilyError(
                 f"the model `{self.name}` has no equations of motion; state them with `model.motion(...)`"
             )
-        if "output" not in self.bases:
+        if not self.bases.get("output"):
             raise FamilyError(f"`{self.name}` has no outputs; state them with `model.outputs(...)`")
         known = [name for basis in ("state", "input", "output") for name in self.names(basis)]
         self._refuse_unknown("states, inputs and outputs that a trim shows", self.traits.trim.shown, known)

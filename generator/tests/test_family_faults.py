@@ -88,6 +88,7 @@ CASES = [
     (RATES, RATES.replace("{", "{drive: u, "), "model.motion", "states of `van_der_pol`: there is no `drive`", None),
     ("        model.motion(", "        dict(", MODEL, "`van_der_pol` has no equations of motion", None),
     ("    model.outputs(energy)\n", "", MODEL, "`van_der_pol` has no outputs", None),
+    ("inputs=(drive,)", "inputs=()", MODEL, "the model `van_der_pol` has no input", None),
     (BOUNDS, "family.bounds(position, drive)", MODEL, "the state `rate` of `van_der_pol` has no bounds",
      "family.bounds"),
     (BOUNDS, "family.bounds(position, rate)", MODEL, "the input `drive` of `van_der_pol` has no bounds", None),
