@@ -9,9 +9,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
+from . import names
 from .diagnostics import FamilyError, suggestion
 from .model import Model
-from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable
+from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable, check_texts
 
 if TYPE_CHECKING:
     from .table import Table
@@ -159,6 +160,10 @@ class Family:
         """
         vectors = {"state": states, "input": inputs, "noise": noise, "argument": arguments, "mode": modes}
         bases = {basis: v for basis, v in vectors.items() if v or basis in ("state", "input")}
+        fault = names.fault_of_identifier(name)
+        if fault is not None:
+            raise FamilyError(fault)
+        check_texts(title, equations)
         if not states or not inputs:
             raise FamilyError(f"the model `{name}` has no {'input' if states else 'state'}; it needs one at least")
         if name in self.models:
@@ -234,12 +239,12 @@ class Family:
         | tuple[Choice, ...]
         | tuple[Quantity, ...]
         | tuple[Rule, ...],
-        names: list[str],
+        taking: list[str],
         what: str = "the name",
     ) -> None:
         taken = [v.name for v in self._all(Variable)] if section == "validity" else self._names()
-        for position, name in enumerate(names):
-            if name in taken or name in names[:position]:
+        for position, name in enumerate(taking):
+            if name in taken or name in taking[:position]:
                 raise FamilyError(f"{what} `{name}` is used twice")
         self._declared += [_Declared(section, one, self._only) for one in declared]
 

@@ -14,7 +14,7 @@ from .diagnostics import FamilyError, suggestion
 from .function import Entry, Function, NoiseStructure, Output
 from .graph import Graph, Intermediate
 from .polynomial import Polynomial
-from .schema import Parameter, Quantity, Variable
+from .schema import Parameter, Quantity, Variable, check_texts
 from .traits import Equation, Given, Mode, Named, Sought, Traits, Trim, name_of
 
 if TYPE_CHECKING:
@@ -86,6 +86,7 @@ class Model:
 
         Quantities that are defined inside stand under this title and carry this equation number.
         """
+        check_texts(title, equation)
         outer = self._section, self._equation
         self._section, self._equation = title, equation
         try:
@@ -118,6 +119,9 @@ class Model:
         fault = names.fault_of_quantity(plain)
         if fault is not None:
             raise FamilyError(fault)
+        check_texts(symbol, doc)
+        if not doc:
+            raise FamilyError(f"`{plain}` has no text that says what it is")
         if any(f"{prefix}.{plain}" in self.graph.symbols for prefix in "xut") or plain in self.graph.symbols:
             raise FamilyError(f"the name `{plain}` is used twice in `{self.name}`")
         return self.graph.define(
@@ -295,6 +299,7 @@ class Model:
 
     def mode(self, name: str, *states: Named, slowest: str | None = None) -> None:
         """Name the poles of some states; of an odd number of real poles the slowest may have a name of its own."""
+        check_texts(name)
         mode = Mode(name, tuple(map(name_of, states)), slowest)
         of_others = [state for other in self.traits.modes for state in other.states]
         self._refuse_unknown("states of modes", (*of_others, *mode.states), self.names("state"))

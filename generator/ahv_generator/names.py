@@ -32,6 +32,14 @@ def fault_of_identifier(name: object) -> str | None:
     return f"`{name}` is a keyword of Rust; choose another name" if name in _KEYWORDS else None
 
 
+def fault_of_texts(*texts: str) -> str | None:
+    """Why these cannot be symbols, texts or titles, which stand in one line of the generated code."""
+    for text in texts:
+        if not text.isprintable():
+            return f'{text!r} has a control character; write LaTeX as a raw string, like r"\\alpha"'
+    return None
+
+
 def fault_of_quantity(name: str) -> str | None:
     """Why a quantity that a model defines cannot have this name in the generated code."""
     if name in ("x", "u", "w", "p", "t"):

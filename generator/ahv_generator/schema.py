@@ -16,20 +16,30 @@ POSITIVE, NOT_NEGATIVE, NOT_ZERO = "positive", "not_negative", "not_zero"
 _IN_WORDS = {POSITIVE: "must be positive", NOT_NEGATIVE: "must not be negative", NOT_ZERO: "must not be zero"}
 
 
-def _check(name: str, unit: str) -> None:
+def check_texts(*texts: str) -> None:
+    """Raise `FamilyError` for a text that cannot stand in one line."""
+    fault = names.fault_of_texts(*texts)
+    if fault is not None:
+        raise FamilyError(fault)
+
+
+def _check(name: str, unit: str, symbol: str, doc: str) -> None:
     fault = names.fault_of_identifier(name)
     if fault is not None:
         raise FamilyError(fault)
+    check_texts(symbol, doc)
+    if not doc:
+        raise FamilyError(f"`{name}` has no text that says what it is")
     try:
         units.dimensions(unit)
     except units.UnitError as error:
         raise FamilyError(f"the unit of `{name}`: {error}") from error
 
 
-def _check_key(key: str, unit: str) -> None:
+def _check_key(key: str, unit: str, symbol: str, doc: str) -> None:
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", key):
         raise FamilyError(f"`{key}` is not a key of a table: letters, digits, `_`")
-    _check(key.lower(), unit)
+    _check(key.lower(), unit, symbol, doc)
 
 
 def _check_sign(must: str | None) -> None:
@@ -56,7 +66,7 @@ class Variable:
     bounds: str | None = None
 
     def __post_init__(self) -> None:
-        _check(self.name, self.unit)
+        _check(self.name, self.unit, self.symbol, self.doc)
 
     @property
     def interval(self) -> str:
@@ -80,7 +90,7 @@ class Parameter:
     must: str | None = None
 
     def __post_init__(self) -> None:
-        _check_key(self.key, self.unit)
+        _check_key(self.key, self.unit, self.symbol, self.doc)
         _check_sign(self.must)
 
     @property
@@ -120,7 +130,7 @@ class Quantity:
     affine_by: str = ""
 
     def __post_init__(self) -> None:
-        _check_key(self.key, self.unit)
+        _check_key(self.key, self.unit, self.symbol, self.doc)
         for name in (*self.required, *self.affine):
             if name not in self.variables:
                 raise FamilyError(f"`{self.key}` does not depend on `{name}`")

@@ -151,9 +151,9 @@ def test_new_monomials_reach_the_split(tmp_path: Path) -> None:
 def test_a_wrong_unit_in_the_derivation_is_refused() -> None:
     model = load(TABLES / "com.toml").model("com")
     with pytest.raises(ExpressionError, match="declared in"):
-        model.define("wrong", model["lift"] * 2, "", "ft/s", "")
+        model.define("wrong", model["lift"] * 2, "", "ft/s", "a speed")
     with pytest.raises(ExpressionError, match="unlike dimensions"):
-        model.define("sum", model["lift"] + model["velocity"], "", "lb/ft", "")
+        model.define("sum", model["lift"] + model["velocity"], "", "lb/ft", "a force")
 
 
 def test_a_polynomial_may_have_many_terms(tmp_path: Path) -> None:

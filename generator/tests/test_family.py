@@ -57,6 +57,16 @@ def test_a_family_is_one_file_and_one_table(tmp_path: Path, monkeypatch: pytest.
     assert ["rate", "angle"] in [e["at"] for e in jacobians["outputs"][0]["entries"]]
 
 
+def test_units_of_a_family_may_be_of_either_system(tmp_path: Path) -> None:
+    example = Path(__file__).parents[2] / "examples" / "van-der-pol"
+    shutil.copy(example / "van_der_pol.py", tmp_path)  # in SI
+    text = (example / "van_der_pol.toml").read_text(encoding="utf-8").replace('"si"', '"ft-slug-s-rad"')
+    table = load_text(tmp_path / "van_der_pol.toml", re.sub(r'"(1/s/)?m(\W)', r'"\1ft\2', text))
+    (model,) = table.build()
+    assert (model.unit("rate"), model.graph.units["energy"]) == ("ft/s", "ft^2/s^2")
+    assert [p.unit for p in table.parameters] == ["rad/s", "1/s", "1/s/ft^2"]
+
+
 FAULTS = [
     ("mass = { value = 2.0", "mass = { value = -2.0", "positive", ("pendulum", "mass", "value")),
     ("rate^3", "rate^9*rate", "monomial", ("C_F", "rate^9*rate")),

@@ -74,6 +74,9 @@ CASES = [
     (OUTPUTS, 'model.outputs("enrgy")', "model.outputs", "`enrgy` is not a quantity", "`energy`"),
     (OUTPUTS, "model.outputs(x + 1)", "model.outputs", "has no name", None),
     (PARAMETERS, 'family.parameters("sets", omega)', "family.parameters", "`[sets]` has a meaning of its own", None),
+    ('r"\\dot x"', '"\\adot x"', "rate = ", "'\\x07dot x' has a control character; write LaTeX as a raw string", None),
+    ('"energy per mass"', '""', "energy = ", "`energy` has no text", None),
+    ('"natural frequency"', '""', OMEGA, "`omega` has no text", None),
     # units
     ('"m^2/s^2"', '"m/s"', "energy = ", "energy is declared in `m/s`, but its expression has the dimensions"
      " length^2/time^2", None),
