@@ -39,7 +39,10 @@ pub(crate) fn run() -> Result<(), String> {
     // A family in a file beside its table.
     for file in ["pendulum.toml", "pendulum.py"] {
         let text = read(&shell::root().join(PENDULUM).join(file))?;
-        write(&place.join("made/tables-of-pendulum-models").join(file), &text)?;
+        write(
+            &place.join("made/tables-of-pendulum-models").join(file),
+            &text,
+        )?;
     }
     generate(&place, "pendulum-models")?;
     build(&place)?;

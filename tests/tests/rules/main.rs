@@ -116,9 +116,8 @@ fn agree(ours: &Found, theirs: &Found) -> Option<Agreement> {
             Agreement::Accepted
         });
     }
-    let of_family = |fault: &Vec<String>| {
-        ["unknown-family", "unknown-model"].contains(&fault[0].as_str())
-    };
+    let of_family =
+        |fault: &Vec<String>| ["unknown-family", "unknown-model"].contains(&fault[0].as_str());
     if theirs.iter().any(of_family) {
         return Some(Agreement::OtherFamily);
     }
