@@ -109,7 +109,7 @@ def winged_cone(model: Model) -> None:
             Sought(delta_e, 0.0, 0.1),
         ],
         equations=[
-            Equation(velocity, like=("gamma", "velocity")),
+            Equation(velocity, like=(gamma, velocity)),
             Equation(gamma),
             Equation(pitch_rate),
             Equation(beta_rate),

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
-from . import names
+from . import names, units
 from .diagnostics import FamilyError, suggestion
 from .model import Model
 from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable, check_texts
@@ -53,7 +53,7 @@ class ModelSpec:
     title: str
     equations: str
     bases: Mapping[str, tuple[Variable, ...]]
-    state: Equations
+    build: Equations
     line: int
 
 
@@ -102,6 +102,10 @@ class Family:
 
     def choices(self, *choices: Choice) -> None:
         """What a table chooses by name in `[choices]`."""
+        known = [*self._all(Choice), *choices]
+        for names_of in ([choice.name for choice in known], [choice.type_name for choice in known]):
+            if len(set(names_of)) != len(names_of):
+                raise FamilyError(f"two choices have one name: {', '.join(names_of)}")
         self._declare("choices", choices, [switch.name for choice in choices for switch in choice.switches])
 
     def quantities(self, *quantities: Quantity) -> None:
@@ -172,19 +176,27 @@ class Family:
         twice = [one for one in variable_names if variable_names.count(one) > 1]
         if twice:
             raise FamilyError(f"the name `{twice[0]}` is used twice in the model `{name}`")
-        intervals = [d.what.name for d in self._of((name,)) if d.section == "validity" and isinstance(d.what, Variable)]
-        for kind, variable in [("state", v) for v in states] + [("input", v) for v in inputs]:
-            if variable.interval not in intervals:
-                message = f"the {kind} `{variable.name}` of `{name}` has no bounds"
-                raise FamilyError(
-                    message, "name it in `family.bounds(...)` before the model; the table gives the numbers"
-                )
+        self._check_bounds(name, bases)
 
-        def added(state: Equations) -> Equations:
-            self.models[name] = ModelSpec(name, title, equations, bases, state, state.__code__.co_firstlineno)
-            return state
+        def added(build: Equations) -> Equations:
+            self.models[name] = ModelSpec(name, title, equations, bases, build, build.__code__.co_firstlineno)
+            return build
 
         return added
+
+    def _check_bounds(self, model: str, bases: Mapping[str, tuple[Variable, ...]]) -> None:
+        """Every state and input has an interval of its dimensions."""
+        intervals = {one.name: one for one in self.schema((model,)).validity}
+        for kind in ("state", "input"):
+            for variable in bases[kind]:
+                interval = intervals.get(variable.interval)
+                if interval is None:
+                    message = f"the {kind} `{variable.name}` of `{model}` has no bounds"
+                    advice = "name it in `family.bounds(...)` before the model; the table gives the numbers"
+                    raise FamilyError(message, advice)
+                if units.dimensions(variable.unit) != units.dimensions(interval.unit):
+                    message = f"`{variable.name}` is in `{variable.unit}`, but its bounds are in `{interval.unit}`"
+                    raise FamilyError(message)
 
     def schema(self, models: tuple[str, ...]) -> Schema:
         """What a table of these models holds."""
@@ -204,7 +216,7 @@ class Family:
     def check(self) -> None:
         """Raise `FamilyError` when the whole is not a family."""
         if not self.models:
-            raise FamilyError("the family has no model; state one with `@family.model(...)`")
+            raise FamilyError("the family has no model; state one with `@family.model(...)`", line=1)
         for model, line in self._conditions:
             if model not in self.models:
                 raise FamilyError(f"`{model}` is not a model of the family", suggestion(model, self.models), line)
@@ -213,7 +225,7 @@ class Family:
         """Derive one of its models from a table."""
         spec = self.models[name]
         model = Model(spec.name, spec.title, spec.equations, table, dict(spec.bases))
-        spec.state(model)
+        spec.build(model)
         try:
             model.check()
         except FamilyError as error:

@@ -167,7 +167,7 @@ def _traits(m: Model) -> dict[str, object]:
                 for s in traits.trim.sought
             ],
             "equations": [
-                _Line({"name": e.name, "weight": _plain(e.weight), "like": e.like and list(e.like)})
+                _Line({"name": e.name, "weight": _plain(e.weight), "like": e.like_names and list(e.like_names)})
                 for e in traits.trim.equations
             ],
             "moving": list(traits.trim.moving),

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 LEAVES = {"state": "x", "input": "u", "noise": "w", "argument": "t"}
 
 Rates = Mapping[Variable, ca.SX] | Mapping[str, ca.SX]
-Gains = Mapping[tuple[str, str], ca.SX]
+Gains = Mapping[tuple[Variable, Variable], ca.SX] | Mapping[tuple[str, str], ca.SX]
 
 
 @dataclass
@@ -223,15 +223,15 @@ class Model:
         """
         if self.rates is None:
             raise FamilyError("the diffusion follows the equations of motion: call `model.motion(...)` first")
+        named = {(name_of(row), name_of(column)): ca.SX(gain) for (row, column), gain in gains.items()}
         rows, columns = self.names("state"), self.names("noise") if "noise" in self.bases else ()
-        self._refuse_unknown("states", dict.fromkeys(row for row, _ in gains), rows)
-        self._refuse_unknown("Wiener increments", dict.fromkeys(column for _, column in gains), columns)
-        for (row, column), gain in gains.items():
+        self._refuse_unknown("states", dict.fromkeys(row for row, _ in named), rows)
+        self._refuse_unknown("Wiener increments", dict.fromkeys(column for _, column in named), columns)
+        for (row, column), gain in named.items():
             unit = units.quotient(self.unit(row), self.unit(column))
-            self.graph.check(f"the gain of `{column}` in the rate of `{row}`", ca.SX(gain), unit)
-        self.noise_structure = stochastic.add_diffusion(
-            self, self.rates, gains, doc, self._equation if equation is None else equation
-        )
+            self.graph.check(f"the gain of `{column}` in the rate of `{row}`", gain, unit)
+        equation = self._equation if equation is None else equation
+        self.noise_structure = stochastic.add_diffusion(self, self.rates, named, doc, equation)
 
     def outputs(self, *named: Named) -> None:
         """Quantities that commands print and reports show beside the states, as one function and one vector."""
@@ -280,7 +280,7 @@ class Model:
         trim = Trim(tuple(given), tuple(sought), tuple(equations), *(tuple(map(name_of, n)) for n in (moving, shown)))
         rows, unknowns = [row.name for row in trim.equations], [one.name for one in trim.sought]
         states, givens = self.names("state"), [state.name for state in trim.given]
-        likes = [equation.like for equation in trim.equations if equation.like]
+        likes = [equation.like_names for equation in trim.equations if equation.like_names]
         self._refuse_unknown("states that a trim is given", givens, states)
         self._refuse_unknown("unknowns of the trim", unknowns, (*states, *self.names("input")))
         self._refuse_unknown("equations of the trim", rows, states)

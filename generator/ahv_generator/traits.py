@@ -63,12 +63,17 @@ class Equation:
 
     row: Named
     weight: float = 1.0
-    like: tuple[str, str] | None = None
+    like: tuple[Named, Named] | None = None
 
     @property
     def name(self) -> str:
         """Name of the state whose rate it is."""
         return name_of(self.row)
+
+    @property
+    def like_names(self) -> tuple[str, str] | None:
+        """Names of the row and the given state that it is like."""
+        return None if self.like is None else (name_of(self.like[0]), name_of(self.like[1]))
 
 
 @dataclass(frozen=True)

@@ -91,6 +91,8 @@ CASES = [
     (RATES, RATES.replace("{", "{drive: u, "), "model.motion", "states of `van_der_pol`: there is no `drive`", None),
     ("        model.motion(", "        dict(", MODEL, "`van_der_pol` has no equations of motion", None),
     ("    model.outputs(energy)\n", "", MODEL, "`van_der_pol` has no outputs", None),
+    ("family.bounds(position, rate", 'family.bounds(position, Variable("rate", "v", "m", "?")', MODEL,
+     "`rate` is in `m/s`, but its bounds are in `m`", None),
     ("inputs=(drive,)", "inputs=()", MODEL, "the model `van_der_pol` has no input", None),
     (BOUNDS, "family.bounds(position, drive)", MODEL, "the state `rate` of `van_der_pol` has no bounds",
      "family.bounds"),

@@ -65,7 +65,7 @@ def steady_flight(model: Model, modes: Mapping[str, tuple[str, ...]]) -> None:
             Sought(DELTA_E, 0.2, 0.1),
         ],
         equations=[
-            Equation(VELOCITY, like=("gamma", "velocity")),
+            Equation(VELOCITY, like=(GAMMA, VELOCITY)),
             Equation(GAMMA),
             Equation(PITCH_RATE),
             *(Equation(name, weight=100.0) for name in flexible),
