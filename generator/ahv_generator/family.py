@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
@@ -148,11 +148,11 @@ class Family:
         title: str,
         equations: str = "",
         *,
-        states: tuple[Variable, ...],
-        inputs: tuple[Variable, ...],
-        noise: tuple[Variable, ...] = (),
-        arguments: tuple[Variable, ...] = (),
-        modes: tuple[Variable, ...] = (),
+        states: Sequence[Variable],
+        inputs: Sequence[Variable],
+        noise: Sequence[Variable] = (),
+        arguments: Sequence[Variable] = (),
+        modes: Sequence[Variable] = (),
     ) -> Callable[[Equations], Equations]:
         """Add a model; the decorated function states its equations with the `Model` that it is given.
 
@@ -163,7 +163,7 @@ class Family:
             FamilyError: when a name is taken, or a state or an input has no interval among `bounds`.
         """
         vectors = {"state": states, "input": inputs, "noise": noise, "argument": arguments, "mode": modes}
-        bases = {basis: v for basis, v in vectors.items() if v or basis in ("state", "input")}
+        bases = {basis: tuple(v) for basis, v in vectors.items() if v or basis in ("state", "input")}
         fault = names.fault_of_identifier(name)
         if fault is not None:
             raise FamilyError(fault)

@@ -317,6 +317,11 @@ class Model:
         known = (*self.names("state"), *self.names("input"))
         self._refuse_unknown("deviations", self.traits.deviations, known)
 
+    def note(self, text: str, *, audited: bool = False) -> None:
+        """A warning that commands print before they use the model; `audited` if the audit of the paper belongs to it."""
+        check_texts(text)
+        self.traits.note, self.traits.audited = text, audited
+
     def _refuse_unknown(self, what: str, stated: Iterable[str], known: Iterable[str]) -> None:
         stated, known = tuple(stated), tuple(known)
         for position, name in enumerate(stated):

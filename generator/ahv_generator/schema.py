@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from . import names, units
@@ -123,14 +123,16 @@ class Quantity:
     symbol: str
     unit: str
     doc: str
-    depends_on: tuple[Variable, ...]
-    required: tuple[str, ...] = ()
+    depends_on: Sequence[Variable]
+    required: Sequence[str] = ()
     required_by: str = ""
-    affine: tuple[str, ...] = ()
+    affine: Sequence[str] = ()
     affine_by: str = ""
 
     def __post_init__(self) -> None:
         _check_key(self.key, self.unit, self.symbol, self.doc)
+        if len(set(self.variables)) != len(self.variables):
+            raise FamilyError(f"`{self.key}` depends twice on one of {', '.join(self.variables)}")
         for name in (*self.required, *self.affine):
             if name not in self.variables:
                 raise FamilyError(f"`{self.key}` does not depend on `{name}`")
@@ -206,6 +208,7 @@ class Choice:
     def __post_init__(self) -> None:
         if not self.options or any(len(option.values) != len(self.switches) for option in self.options):
             raise FamilyError(f"every option of `{self.name}` sets all of its switches")
+        check_texts(self.doc, *(option.doc for option in self.options))
 
 
 def switch(key: str, symbol: str, doc: str) -> Parameter:

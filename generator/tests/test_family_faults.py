@@ -110,6 +110,7 @@ CASES = [
     # derived variables
     ("depends_on=(position,)", 'depends_on=(position, Variable("speed", "s", "1", "speed over sound"))', "model.motion",
      "`speed` is not defined in `van_der_pol` before this line", None),
+    ("depends_on=(position,)", "depends_on=[position, position]", "damping = ", "`C` depends twice on one of", None),
     ("depends_on=(position,)", 'depends_on=(position,), required=("rate",)', "damping = ",
      "`C` does not depend on `rate`", None),
     # the family

@@ -182,10 +182,8 @@ def sdcom_printed(model: Model) -> None:
     add_printed_parts(model, form)
     add_lie_derivatives(model, "(27)")
     steady_flight(model, coloured_modes(modes_of(model.table)))
-    model.traits.note = (
-        "sdcom_printed leaves out Delta f, which can exceed the exact rate itself; exact is --model sdcom"
-    )
-    model.traits.audited = True
+    note = "sdcom_printed leaves out Delta f, which can exceed the exact rate itself; exact is --model sdcom"
+    model.note(note, audited=True)
 
 
 def sdcom_gust(model: Model) -> None:
