@@ -318,7 +318,7 @@ class Model:
         self._refuse_unknown("deviations", self.traits.deviations, known)
 
     def note(self, text: str, *, audited: bool = False) -> None:
-        """A warning that commands print before they use the model; `audited` if the audit of the paper belongs to it."""
+        """A warning that commands print before they use the model; `audited` if the paper's audit belongs to it."""
         check_texts(text)
         self.traits.note, self.traits.audited = text, audited
 
