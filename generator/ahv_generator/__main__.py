@@ -16,7 +16,6 @@ from pathlib import Path
 
 from . import audit, ir, reference
 from .diagnostics import Diagnostic, TableError
-from .family import builders
 from .table import load
 
 
@@ -29,7 +28,7 @@ def main() -> int:
     derive.add_argument("tables", type=Path, nargs="+")
     evaluate = commands.add_parser("evaluate", help="evaluate a model at the points of an oracle file")
     evaluate.add_argument("--table", type=Path, required=True)
-    evaluate.add_argument("--model", choices=tuple(builders()), required=True)
+    evaluate.add_argument("--model", required=True, help="one of the models that the table lists")
     evaluate.add_argument("--points", type=Path, required=True, help="file of reference vectors")
     evaluate.add_argument("--out", type=Path, required=True)
     arguments = parser.parse_args()
@@ -37,8 +36,10 @@ def main() -> int:
         if arguments.command == "derive":
             _derive(arguments.tables, arguments.out)
         else:
-            model = builders()[arguments.model](load(arguments.table))
-            reference.write(model, arguments.points, arguments.out)
+            table = load(arguments.table)
+            if arguments.model not in table.models:
+                parser.error(f"{arguments.table.name} lists {', '.join(table.models)}, not {arguments.model}")
+            reference.write(table.model(arguments.model), arguments.points, arguments.out)
     except TableError as error:
         print(json.dumps({"diagnostics": [d.as_json() for d in error.diagnostics]}))
         return 2
@@ -74,6 +75,8 @@ def _derive(tables: list[Path], out: Path) -> None:
             models = table.build()
             texts[table.name] = ir.render(table, models)
             audited = audited or any(model.traits.audited for model in models)
+        except TableError as error:
+            diagnostics += error.diagnostics
         except (MemoryError, OSError):
             raise
         except Exception as error:

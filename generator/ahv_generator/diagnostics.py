@@ -1,4 +1,4 @@
-"""Faults of a table, each tied to the key path it stands at."""
+"""Faults of a table, each tied to its key path, and of a family file, each tied to its line."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ def _visible(text: str) -> str:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One fault: the rule that is broken, where (file, key path, key or value), what is wrong, what to do."""
+    """One fault: the rule that is broken, where, what is wrong, what to do.
+
+    A fault of a table stands at a key path, at the key or the value; one of a family file stands at a line.
+    """
 
     rule: str
     file: str
@@ -29,6 +32,7 @@ class Diagnostic:
     part: str
     message: str
     help: str | None = None
+    line: int | None = None
 
     def as_json(self) -> dict[str, object]:
         """The diagnostic as the driver reads it."""
@@ -39,7 +43,17 @@ class Diagnostic:
             "part": self.part,
             "message": _visible(self.message),
             "help": None if self.help is None else _visible(self.help),
+            "line": self.line,
         }
+
+
+class FamilyError(Exception):
+    """A family file states something wrong. The fault is reported at the line that called, or at `line` if given."""
+
+    def __init__(self, message: str, help: str | None = None, line: int | None = None) -> None:
+        super().__init__(message)
+        self.help = help
+        self.line = line
 
 
 class TableError(Exception):

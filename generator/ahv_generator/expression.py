@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import casadi as ca
 
@@ -13,6 +13,31 @@ Tree = str | float | list["Tree"]
 
 _BINARY = {ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
 _UNARY = {ca.OP_NEG: "neg", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_EXP: "exp", ca.OP_SQRT: "sqrt"}
+
+_SHORT: dict[int, Callable[[Tree], Tree]] = {
+    ca.OP_SQ: lambda x: ["pow", x, 2.0],
+    ca.OP_TWICE: lambda x: ["*", 2.0, x],
+    ca.OP_INV: lambda x: ["/", 1.0, x],
+}
+# Known to CasADi; the IR and the emitter do not have them yet.
+_NOT_YET = {
+    ca.OP_TAN: "tan",
+    ca.OP_ASIN: "asin",
+    ca.OP_ACOS: "acos",
+    ca.OP_ATAN: "atan",
+    ca.OP_ATAN2: "atan2",
+    ca.OP_SINH: "sinh",
+    ca.OP_COSH: "cosh",
+    ca.OP_TANH: "tanh",
+    ca.OP_LOG: "log",
+    ca.OP_FABS: "fabs",
+    ca.OP_FMIN: "fmin",
+    ca.OP_FMAX: "fmax",
+    ca.OP_SIGN: "sign",
+    ca.OP_LT: "<",
+    ca.OP_LE: "<=",
+    ca.OP_IF_ELSE_ZERO: "if_else",
+}
 
 
 class ExpressionError(Exception):
@@ -36,15 +61,18 @@ def tree(expr: ca.SX) -> Tree:
         return [_BINARY[op], *args]
     if op in _UNARY:
         return [_UNARY[op], *args]
-    if op == ca.OP_SQ:
-        return ["pow", args[0], 2.0]
-    if op == ca.OP_TWICE:
-        return ["*", 2.0, args[0]]
-    if op == ca.OP_INV:
-        return ["/", 1.0, args[0]]
+    if op in _SHORT:
+        return _SHORT[op](args[0])
     if op in (ca.OP_POW, ca.OP_CONSTPOW) and isinstance(args[1], float) and args[1].is_integer():
         return ["pow", *args]
-    raise ExpressionError(f"the IR has no form for the CasADi operation {op} in {expr}")
+    raise ExpressionError(_unavailable(op, expr))
+
+
+def _unavailable(op: int, expr: ca.SX) -> str:
+    if op in (ca.OP_POW, ca.OP_CONSTPOW):
+        return f"an exponent is a whole number; this one is not: {expr}"
+    known = ", ".join(["+", "-", "*", "/", "**", *_UNARY.values()])
+    return f"`{_NOT_YET.get(op, op)}` is not available in a model; available: {known}"
 
 
 def _addends(expr: ca.SX) -> list[ca.SX]:
@@ -65,7 +93,17 @@ def check_dimensions(name: str, expr: ca.SX, unit: str, known: Mapping[str, str]
     found = _dimensions(tree(expr), known)
     wanted = units.dimensions(unit)
     if found is not None and not _same(found, wanted):
-        raise ExpressionError(f"{name} is declared in {unit}, but its expression has the dimensions {found}")
+        raise ExpressionError(
+            f"{name} is declared in `{unit}`, but its expression has the dimensions {_in_words(found)}"
+        )
+
+
+def _in_words(found: units.Dimensions | None) -> str:
+    """Dimensions as a product of powers: `mass*length/time^2`."""
+    powers = {name.strip("[]"): power for name, power in (found or {}).items() if power}
+    above = [name if power == 1 else f"{name}^{power:g}" for name, power in powers.items() if power > 0]
+    below = [name if power == -1 else f"{name}^{-power:g}" for name, power in powers.items() if power < 0]
+    return "/".join(["*".join(above) or "1", *below])
 
 
 def _same(a: units.Dimensions, b: units.Dimensions) -> bool:
@@ -105,7 +143,7 @@ def _common(left: units.Dimensions | None, right: units.Dimensions | None, node:
     if left is None or right is None:
         return left if right is None else right
     if not _same(left, right):
-        raise ExpressionError(f"a sum of unlike dimensions {left} and {right}: {node}")
+        raise ExpressionError(f"a sum of unlike dimensions, {_in_words(left)} and {_in_words(right)}")
     return left
 
 

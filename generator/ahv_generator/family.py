@@ -1,56 +1,269 @@
-"""A family: models that are made from tables of one kind. Whatever module of `models` has one is found."""
+"""A family: models that are made from tables of one kind, and what such a table holds."""
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
-from collections.abc import Callable, Mapping
+import contextlib
+import re
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
-from .schema import Schema
+from . import names, units
+from .diagnostics import FamilyError, suggestion
+from .model import Model
+from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable, check_texts
 
 if TYPE_CHECKING:
-    from .model import Model
     from .table import Table
 
-    Builder = Callable[[Table], Model]
+Equations = Callable[[Model], None]
+_T = TypeVar("_T")
+
+# Sections that every table may have.
+_RESERVED = ("table", "sources", "choices", "validity", "sets")
 
 
 @dataclass(frozen=True)
-class Family:
-    """Models, in the order in which a table lists them, with what builds each; and what their tables hold.
+class Outline:
+    """What a table says of its own size: the names of its sections.
 
-    `schema` is given the models that a table lists, any of the family, and the table as TOML has it: how many flexible
-    modes there are, a table itself may say.
+    A family whose tables differ in size is a function of it, see `Family`.
     """
 
+    sections: tuple[str, ...] = ()
+
+    def numbered(self, prefix: str) -> range:
+        """Numbers from 1 to the count of sections `prefix1`, `prefix2`, ...; at least 1.
+
+        It is their count, not the highest number: a gap is a section that is missing and one too many.
+
+        >>> list(Outline(("C_L", "C_N_1", "C_N_2")).numbered("C_N_"))
+        [1, 2]
+        """
+        pattern = re.compile(re.escape(prefix) + "[1-9][0-9]*")
+        return range(1, max(1, sum(pattern.fullmatch(section) is not None for section in self.sections)) + 1)
+
+
+@dataclass(frozen=True)
+class ModelSpec:
+    """A model before it is built: its names, its vectors, the function that states it, and the line of that."""
+
     name: str
-    builders: Mapping[str, Builder]
-    schema: Callable[[tuple[str, ...], Mapping[str, object]], Schema]
-
-    @property
-    def models(self) -> tuple[str, ...]:
-        """Names of the models."""
-        return tuple(self.builders)
+    title: str
+    equations: str
+    bases: Mapping[str, tuple[Variable, ...]]
+    build: Equations
+    line: int
 
 
-def families() -> tuple[Family, ...]:
-    """The `FAMILY` or the `FAMILIES` of every module in the package `models`, by the names of the modules."""
-    from . import models
+@dataclass(frozen=True)
+class _Declared:
+    """Something that the tables of these models hold; of all models if none is named."""
 
-    found: list[Family] = []
-    for name in sorted(module.name for module in pkgutil.iter_modules(models.__path__)):
-        module = importlib.import_module(f"{models.__name__}.{name}")
-        own = getattr(module, "FAMILY", None)
-        found += [own] if own is not None else getattr(module, "FAMILIES", [])
-    names = [model for family in found for model in family.models]
-    twice = sorted({model for model in names if names.count(model) > 1})
-    if twice:
-        raise ValueError(f"more than one family has the model {', '.join(twice)}")
-    return tuple(found)
+    section: str
+    what: Parameter | Variable | Choice | Quantity | Rule
+    models: tuple[str, ...]
 
 
-def builders() -> dict[str, Builder]:
-    """What builds each model, by its name."""
-    return {name: build for family in families() for name, build in family.builders.items()}
+class Family:
+    r"""Models, in the order in which a table lists them, and what their tables hold.
+
+    A family is a file with a variable `family`; a table names it, `family = "pendulum.py"`. What depends on the
+    table's size, such as the number of flexible modes, is declared by a function of the table's `Outline`:
+
+    >>> def family(table: Outline) -> Family:
+    ...     made = Family()
+    ...     for i in table.numbered("C_N_"):
+    ...         made.parameters("modes", Parameter(f"omega_{i}", rf"\omega_{i}", "rad/s", f"frequency of mode {i}"))
+    ...     return made
+    >>> sorted(family(Outline(("C_N_1", "C_N_2"))).schema(()).parameters)
+    ['modes']
+    """
+
+    def __init__(self) -> None:
+        self.models: dict[str, ModelSpec] = {}
+        self._declared: list[_Declared] = []
+        self._only: tuple[str, ...] = ()
+        self._conditions: list[tuple[str, int]] = []
+
+    def parameters(self, section: str, *parameters: Parameter) -> None:
+        """Numbers that a table has in the section `[section]`, in this order."""
+        if section in _RESERVED or section in [q.key for q in self._all(Quantity)]:
+            raise FamilyError(f"`[{section}]` has a meaning of its own; choose another section")
+        self._declare(section, parameters, [parameter.name for parameter in parameters])
+
+    def bounds(self, *variables: Variable) -> None:
+        """The intervals that a table has in `[validity]`; every state and input of a model needs one.
+
+        Variables that share an interval (`Variable.bounds`) need one variable of that name here.
+        """
+        self._declare("validity", variables, [variable.name for variable in variables], "the interval")
+
+    def choices(self, *choices: Choice) -> None:
+        """What a table chooses by name in `[choices]`."""
+        known = [*self._all(Choice), *choices]
+        for names_of in ([choice.name for choice in known], [choice.type_name for choice in known]):
+            if len(set(names_of)) != len(names_of):
+                raise FamilyError(f"two choices have one name: {', '.join(names_of)}")
+        self._declare("choices", choices, [switch.name for choice in choices for switch in choice.switches])
+
+    def quantities(self, *quantities: Quantity) -> None:
+        """Curve fits: each is a section of the table, whose keys are its monomials."""
+        for quantity in quantities:
+            if quantity.key in _RESERVED or quantity.key in [d.section for d in self._declared]:
+                raise FamilyError(f"`[{quantity.key}]` has a meaning of its own; choose another key")
+        self._declare("", quantities, [quantity.key.lower() for quantity in quantities])
+
+    def rules(self, *rules: Rule) -> None:
+        """Conditions on more than one parameter, or on a coefficient; what they name is declared before."""
+        known = self._names()
+        fits = tuple(f"{quantity.key.lower()}_" for quantity in self._all(Quantity))
+        for rule in rules:
+            for name in rule.parameters():
+                if name not in known and not name.startswith(fits or "\0"):
+                    raise FamilyError(f"the rule `{rule.name}` names `{name}`, which no table has before this line")
+        self._declare("", rules, [])
+
+    @contextlib.contextmanager
+    def only_for(self, *models: str) -> Iterator[None]:
+        r"""What is declared inside is in the tables of these models alone.
+
+        >>> family = Family()
+        >>> with family.only_for("gusty"):
+        ...     family.parameters("noise", Parameter("gust_rms", r"\sigma_g", "rad", "rms of the gust"))
+        >>> family.schema(("calm",)).parameters
+        {}
+        """
+        outer, self._only = self._only, models
+        self._conditions += [(model, _line_of_caller()) for model in models]
+        try:
+            yield
+        finally:
+            self._only = outer
+
+    def model(
+        self,
+        name: str,
+        title: str,
+        equations: str = "",
+        *,
+        states: Sequence[Variable],
+        inputs: Sequence[Variable],
+        noise: Sequence[Variable] = (),
+        arguments: Sequence[Variable] = (),
+        modes: Sequence[Variable] = (),
+    ) -> Callable[[Equations], Equations]:
+        """Add a model; the decorated function states its equations with the `Model` that it is given.
+
+        `equations` are the numbers of the paper's equations, `noise` the Wiener increments, `arguments` are of further
+        functions (such as a time), `modes` index a vector by mode.
+
+        Raises:
+            FamilyError: when a name is taken, or a state or an input has no interval among `bounds`.
+        """
+        vectors = {"state": states, "input": inputs, "noise": noise, "argument": arguments, "mode": modes}
+        bases = {basis: tuple(v) for basis, v in vectors.items() if v or basis in ("state", "input")}
+        fault = names.fault_of_identifier(name)
+        if fault is not None:
+            raise FamilyError(fault)
+        check_texts(title, equations)
+        if not states or not inputs:
+            raise FamilyError(f"the model `{name}` has no {'input' if states else 'state'}; it needs one at least")
+        if name in self.models:
+            raise FamilyError(f"the name `{name}` is used twice, for two models")
+        variable_names = [variable.name for basis in bases.values() for variable in basis]
+        twice = [one for one in variable_names if variable_names.count(one) > 1]
+        if twice:
+            raise FamilyError(f"the name `{twice[0]}` is used twice in the model `{name}`")
+        self._check_bounds(name, bases)
+
+        def added(build: Equations) -> Equations:
+            self.models[name] = ModelSpec(name, title, equations, bases, build, build.__code__.co_firstlineno)
+            return build
+
+        return added
+
+    def _check_bounds(self, model: str, bases: Mapping[str, tuple[Variable, ...]]) -> None:
+        """Every state and input has an interval of its dimensions."""
+        intervals = {one.name: one for one in self.schema((model,)).validity}
+        for kind in ("state", "input"):
+            for variable in bases[kind]:
+                interval = intervals.get(variable.interval)
+                if interval is None:
+                    message = f"the {kind} `{variable.name}` of `{model}` has no bounds"
+                    advice = "name it in `family.bounds(...)` before the model; the table gives the numbers"
+                    raise FamilyError(message, advice)
+                if units.dimensions(variable.unit) != units.dimensions(interval.unit):
+                    message = f"`{variable.name}` is in `{variable.unit}`, but its bounds are in `{interval.unit}`"
+                    raise FamilyError(message)
+
+    def schema(self, models: tuple[str, ...]) -> Schema:
+        """What a table of these models holds."""
+        chosen = self._of(models)
+        sections: dict[str, tuple[Parameter, ...]] = {}
+        for one in chosen:
+            if isinstance(one.what, Parameter):
+                sections[one.section] = (*sections.get(one.section, ()), one.what)
+        return Schema(
+            parameters=sections,
+            validity=tuple(one.what for one in chosen if isinstance(one.what, Variable)),
+            choices=tuple(one.what for one in chosen if isinstance(one.what, Choice)),
+            quantities=tuple(one.what for one in chosen if isinstance(one.what, Quantity)),
+            laws=tuple(one.what for one in chosen if isinstance(one.what, Rule)),
+        )
+
+    def check(self) -> None:
+        """Raise `FamilyError` when the whole is not a family."""
+        if not self.models:
+            raise FamilyError("the family has no model; state one with `@family.model(...)`", line=1)
+        for model, line in self._conditions:
+            if model not in self.models:
+                raise FamilyError(f"`{model}` is not a model of the family", suggestion(model, self.models), line)
+
+    def build(self, name: str, table: Table) -> Model:
+        """Derive one of its models from a table."""
+        spec = self.models[name]
+        model = Model(spec.name, spec.title, spec.equations, table, dict(spec.bases))
+        spec.build(model)
+        try:
+            model.check()
+        except FamilyError as error:
+            raise FamilyError(str(error), error.help, spec.line) from error
+        return model
+
+    def _of(self, models: tuple[str, ...]) -> list[_Declared]:
+        return [one for one in self._declared if not one.models or set(one.models) & set(models)]
+
+    def _all(self, kind: type[_T]) -> list[_T]:
+        return [one.what for one in self._declared if isinstance(one.what, kind)]
+
+    def _names(self) -> list[str]:
+        """Names of what becomes a parameter of the generated code."""
+        switches = [switch.name for choice in self._all(Choice) for switch in choice.switches]
+        return [p.name for p in self._all(Parameter)] + switches + [q.key.lower() for q in self._all(Quantity)]
+
+    def _declare(
+        self,
+        section: str,
+        declared: tuple[Parameter, ...]
+        | tuple[Variable, ...]
+        | tuple[Choice, ...]
+        | tuple[Quantity, ...]
+        | tuple[Rule, ...],
+        taking: list[str],
+        what: str = "the name",
+    ) -> None:
+        taken = [v.name for v in self._all(Variable)] if section == "validity" else self._names()
+        for position, name in enumerate(taking):
+            if name in taken or name in taking[:position]:
+                raise FamilyError(f"{what} `{name}` is used twice")
+        self._declared += [_Declared(section, one, self._only) for one in declared]
+
+
+def _line_of_caller() -> int:
+    """The line of the family file that is being read."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__") in (__name__, "contextlib"):
+        frame = frame.f_back
+    return frame.f_lineno

@@ -13,7 +13,7 @@ from .expression import check_dimensions
 
 
 @dataclass(frozen=True)
-class Quantity:
+class Intermediate:
     """A quantity an engineer would name; `expr` is written in the names before it."""
 
     name: str
@@ -32,7 +32,7 @@ class Graph:
         self.system = system
         self.symbols: dict[str, ca.SX] = {}
         self.units: dict[str, str] = {}
-        self.quantities: dict[str, Quantity] = {}
+        self.quantities: dict[str, Intermediate] = {}
         self.latex: dict[str, str] = {}
         self._position: dict[str, int] = {}
         # Of a name: what its expression mentions, and the leaves that it depends on in the end.
@@ -61,8 +61,12 @@ class Graph:
         result = self.leaf(name, unit)
         self._names[name] = self._names_in(expr)
         self._leaves[name] = frozenset().union(*(self._leaves[used] for used in self._names[name]))
-        self.quantities[name] = Quantity(name, symbol, self.units[name], doc, equation, section, expr)
+        self.quantities[name] = Intermediate(name, symbol, self.units[name], doc, equation, section, expr)
         return result
+
+    def check(self, name: str, expr: ca.SX, unit: str) -> None:
+        """Raise `ExpressionError` unless an expression has the dimensions of `unit`."""
+        check_dimensions(name, expr, unit, self.units)
 
     def _names_in(self, expr: ca.SX) -> list[str]:
         # CasADi lists symbols in traversal order; the order of declaration is the one a reader knows.
@@ -72,7 +76,7 @@ class Graph:
         """The total derivative of `expr` with respect to a leaf; 0 where it is structurally zero."""
         return self._chained(expr, self._names_in(expr), variable, None)
 
-    def _chained(self, expr: ca.SX, names: list[str], variable: str, of: Quantity | None) -> ca.SX:
+    def _chained(self, expr: ca.SX, names: list[str], variable: str, of: Intermediate | None) -> ca.SX:
         """The chain rule over `names`; `of` is the quantity whose definition `expr` is, if it is one."""
         total = ca.SX(0)
         for name in names:
@@ -89,7 +93,7 @@ class Graph:
             total = total + partial * inner
         return total
 
-    def _partial(self, of: Quantity, name: str, partial: ca.SX, variable: str) -> ca.SX:
+    def _partial(self, of: Intermediate, name: str, partial: ca.SX, variable: str) -> ca.SX:
         """The partial derivative of a quantity by another: by a name of its own where it is a sum, to be used again."""
         own = f"slope_of_{of.name}_in_{name}"
         if _is_product(partial) or not _is_basic(of.name) or len(own) > _LONGEST:
@@ -120,7 +124,7 @@ class Graph:
             self._derivatives[key] = total if plain else self._define_derivative(quantity, variable, total)
         return self._derivatives[key]
 
-    def _define_derivative(self, quantity: Quantity, variable: str, total: ca.SX) -> ca.SX:
+    def _define_derivative(self, quantity: Intermediate, variable: str, total: ca.SX) -> ca.SX:
         plain = variable.rpartition(".")[2]
         order, symbol, below = self._derived.get(quantity.name, (0, quantity.symbol, ""))
         stem = quantity.name.removeprefix("d_" if order == 1 else f"d{order}_") if order else quantity.name
@@ -148,7 +152,7 @@ class Graph:
         return self.latex.get(variable, rf"\mathrm{{{variable.rpartition('.')[2]}}}".replace("_", r"\_"))
 
 
-def _is_plain(expr: ca.SX, variable: str, quantities: Mapping[str, Quantity]) -> bool:
+def _is_plain(expr: ca.SX, variable: str, quantities: Mapping[str, Intermediate]) -> bool:
     """Whether a derivative needs no name of its own.
 
     That is a number, a name, a name negated, a product of leaves alone (the alpha^2 that a coefficient is multiplied

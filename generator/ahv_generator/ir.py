@@ -7,9 +7,10 @@ from importlib.metadata import version
 
 from . import __version__, units
 from .expression import tree
-from .model import Function, Model, Output
-from .schema import Choice, Rule, VariableSpec
-from .table import Parameter, Table
+from .function import Function, Output
+from .model import Model
+from .schema import Choice, Rule, Variable
+from .table import Table, TableParameter
 
 SCHEMA_VERSION = 3
 
@@ -44,7 +45,7 @@ def render(table: Table, models: list[Model]) -> str:
     return _dump(document, 0) + "\n"
 
 
-def _parameter(p: Parameter) -> dict[str, object]:
+def _parameter(p: TableParameter) -> dict[str, object]:
     return {
         "name": p.name,
         "path": list(p.path),
@@ -57,7 +58,7 @@ def _parameter(p: Parameter) -> dict[str, object]:
     }
 
 
-def _interval(v: VariableSpec, table: Table) -> dict[str, object]:
+def _interval(v: Variable, table: Table) -> dict[str, object]:
     unit = units.converted(v.unit, table.units)
     return {
         "name": v.name,
@@ -68,7 +69,7 @@ def _interval(v: VariableSpec, table: Table) -> dict[str, object]:
     }
 
 
-def _replacement(p: Parameter) -> dict[str, object]:
+def _replacement(p: TableParameter) -> dict[str, object]:
     whole = _parameter(p)
     return {key: whole[key] for key in ("name", "path", "source", "status", "uncertainty")}
 
@@ -99,8 +100,9 @@ def _units(table: Table, models: list[Model]) -> dict[str, object]:
     return {"system": table.units, "other": other, "factors": factors}
 
 
-def _variable(v: VariableSpec, unit: str) -> dict[str, object]:
-    return {"name": v.name, "symbol": v.symbol, "unit": unit, "doc": v.doc, "validity": v.validity}
+def _variable(v: Variable, unit: str, basis: str) -> dict[str, object]:
+    interval = v.interval if basis in ("state", "input") else None
+    return {"name": v.name, "symbol": v.symbol, "unit": unit, "doc": v.doc, "validity": interval}
 
 
 def _model(m: Model) -> dict[str, object]:
@@ -119,7 +121,7 @@ def _document(m: Model) -> dict[str, object]:
         "title": m.title,
         "equations": m.equations,
         "note": m.traits.note,
-        "bases": {name: [_Line(_variable(v, m.unit(v.name))) for v in basis] for name, basis in m.bases.items()},
+        "bases": {name: [_Line(_variable(v, m.unit(v.name), name)) for v in basis] for name, basis in m.bases.items()},
         "quantities": [
             _Line(
                 {
@@ -165,7 +167,7 @@ def _traits(m: Model) -> dict[str, object]:
                 for s in traits.trim.sought
             ],
             "equations": [
-                _Line({"name": e.name, "weight": _plain(e.weight), "like": e.like and list(e.like)})
+                _Line({"name": e.name, "weight": _plain(e.weight), "like": e.like_names and list(e.like_names)})
                 for e in traits.trim.equations
             ],
             "moving": list(traits.trim.moving),

@@ -2,78 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import contextlib
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from . import units
-from .graph import Graph
-from .schema import VariableSpec
-from .table import Table
-from .traits import Traits
+from . import motion, names, stochastic, units
+from .diagnostics import FamilyError, suggestion
+from .function import Entry, Function, NoiseStructure, Output
+from .graph import Graph, Intermediate
+from .polynomial import Polynomial
+from .schema import Parameter, Quantity, Variable, check_texts
+from .traits import Equation, Given, Mode, Named, Sought, Traits, Trim, name_of
 
-# Prefixes that tell leaves of different bases apart: a Wiener increment and its intensity share a name.
+if TYPE_CHECKING:
+    from .table import Table
+
+# Prefixes that tell leaves of different bases apart: a Wiener increment and its intensity may share a name.
 LEAVES = {"state": "x", "input": "u", "noise": "w", "argument": "t"}
 
-
-@dataclass(frozen=True)
-class Entry:
-    """A structurally non-zero entry of a function's output, by the names of its row and column."""
-
-    at: tuple[str, ...]
-    expr: ca.SX
-
-
-@dataclass(frozen=True)
-class Output:
-    """An output of a function over named bases: a scalar (no basis), a vector, or a matrix."""
-
-    name: str
-    basis: tuple[str, ...]
-    entries: tuple[Entry, ...]
-    unit: str | None = None
-    symmetric: bool = False
-
-
-@dataclass(frozen=True)
-class Function:
-    """A function of the generated code; functions of one `group` share a file."""
-
-    name: str
-    group: str
-    doc: str
-    equation: str
-    outputs: tuple[Output, ...]
-    compressed: bool = False
-
-
-@dataclass(frozen=True)
-class NoiseStructure:
-    """The class of each column of the diffusion, and the pairs of columns that commute."""
-
-    columns: tuple[tuple[str, str], ...]
-    commuting: tuple[tuple[str, str], ...]
+Rates = Mapping[Variable, ca.SX] | Mapping[str, ca.SX]
+Gains = Mapping[tuple[Variable, Variable], ca.SX] | Mapping[tuple[str, str], ca.SX]
 
 
 @dataclass
 class Model:
-    """A model under construction."""
+    """A model under construction: what a family's function is given, and states the equations with.
+
+    Expressions are CasADi scalars: `model[alpha]` is the symbol of a state, an input, a parameter or a quantity, and
+    `+ - * / **`, `sin`, `cos`, `exp`, `sqrt` make others. Every quantity has a name, a symbol, a unit and a text, which
+    travel into the generated code; its dimensions are checked where it is defined.
+    """
 
     name: str
     title: str
     equations: str
     table: Table
-    bases: dict[str, tuple[VariableSpec, ...]]
-    traits: Traits
+    bases: dict[str, tuple[Variable, ...]]
+    traits: Traits = field(default_factory=Traits)
     graph: Graph = field(init=False)
     functions: list[Function] = field(default_factory=list)
     noise_structure: NoiseStructure | None = None
+    rates: dict[str, ca.SX] | None = None
 
     def __post_init__(self) -> None:
-        faults = self.traits.faults(self.names("state"), self.names("input"))
-        if faults:
-            raise ValueError(f"the traits of {self.name} do not fit it: {'; '.join(faults)}")
+        self._section, self._equation = self.title, ""
         self.graph = Graph(self.table.units)
         for basis, prefix in LEAVES.items():
             for variable in self.bases.get(basis, ()):
@@ -81,30 +56,298 @@ class Model:
         for parameter in self.table.parameters:
             self.graph.leaf(f"p.{parameter.name}", parameter.unit, parameter.symbol)
 
-    def parameter(self, name: str) -> ca.SX:
-        """The symbol of a parameter, by its name in the generated code."""
-        return self.graph.symbols[f"p.{name}"]
+    # Quantities
+
+    def __getitem__(self, named: Named | Parameter) -> ca.SX:
+        """The symbol of a quantity, a state, an input, a parameter or an argument, by its declaration or its name.
+
+        Of a parameter the name or the key will do; a quantity of the same name comes before it.
+        """
+        name = name_of(named)
+        places = (name, *(f"{prefix}.{name}" for prefix in "xut"), f"p.{name.lower()}")
+        for known in places[-1:] if isinstance(named, Parameter) else places:
+            if known in self.graph.symbols:
+                return self.graph.symbols[known]
+        known_names = [symbol.rpartition(".")[2] for symbol in self.graph.symbols]
+        raise FamilyError(f"`{name}` is not defined in `{self.name}` before this line", suggestion(name, known_names))
+
+    @property
+    def parameters(self) -> dict[str, ca.SX]:
+        """The symbols of all parameters and coefficients, by their names in the generated code."""
+        return {p.name: self.graph.symbols[f"p.{p.name}"] for p in self.table.parameters}
+
+    def symbols(self, *named: Named | Parameter) -> tuple[ca.SX, ...]:
+        """Several symbols at once: `V, gamma = model.symbols(velocity, path_angle)`."""
+        return tuple(self[one] for one in named)
+
+    @contextlib.contextmanager
+    def section(self, title: str, equation: str = "") -> Iterator[None]:
+        """A section of the paper: `with model.section("Air", "(2)"):`.
+
+        Quantities that are defined inside stand under this title and carry this equation number.
+        """
+        check_texts(title, equation)
+        outer = self._section, self._equation
+        self._section, self._equation = title, equation
+        try:
+            yield
+        finally:
+            self._section, self._equation = outer
+
+    def define(
+        self,
+        name: Named,
+        expr: ca.SX | float,
+        symbol: str = "",
+        unit: str = "",
+        doc: str = "",
+        *,
+        equation: str | None = None,
+    ) -> ca.SX:
+        """Name a quantity, and return its symbol.
+
+        A declared `Variable` as the name brings symbol, unit and text with it: so a derived variable, such as the Mach
+        number, is defined before a curve fit in it.
+
+        Raises:
+            ExpressionError: when the dimensions of the expression are not those of the unit.
+            FamilyError: when the name is taken.
+        """
+        if isinstance(name, Variable):
+            symbol, unit, doc = symbol or name.symbol, unit or name.unit, doc or name.doc
+        plain = name_of(name)
+        fault = names.fault_of_quantity(plain)
+        if fault is not None:
+            raise FamilyError(fault)
+        check_texts(symbol, doc)
+        if not doc:
+            raise FamilyError(f"`{plain}` has no text that says what it is")
+        if any(f"{prefix}.{plain}" in self.graph.symbols for prefix in "xut") or plain in self.graph.symbols:
+            raise FamilyError(f"the name `{plain}` is used twice in `{self.name}`")
+        return self.graph.define(
+            plain,
+            ca.SX(expr),
+            symbol=symbol,
+            unit=unit,
+            doc=doc,
+            equation=self._equation if equation is None else equation,
+            section=self._section,
+        )
+
+    def fit(
+        self,
+        quantity: Quantity | str,
+        name: str | None = None,
+        *,
+        variables: Mapping[str, ca.SX] | None = None,
+        polynomial: Polynomial | None = None,
+        collect: Variable | None = None,
+        equation: str | None = None,
+    ) -> ca.SX:
+        """Name a curve fit: the polynomial that the table's section lists, in the variables of the quantity.
+
+        It is called `name`, or the key in lower case. `variables` are what stands for variables of the fit, by their
+        names, where that is not the state, input or quantity of the name. With `collect`, what is linear in that
+        variable is a quantity of its own, the slope. `polynomial` takes the place of the table's.
+        """
+        spec = self._quantity(quantity)
+        name = name or spec.key.lower()
+        polynomial = polynomial or self.table.polynomials[spec.key]
+        symbols = self.fit_symbols(variables or {})
+        for variable in spec.variables:
+            if variable not in symbols:
+                symbols[variable] = self[variable]
+        if collect is None or not (slope := polynomial.linear_part(collect.name)).terms:
+            expr = polynomial.expression(symbols)
+        else:
+            base, _, index = spec.symbol.partition("_")
+            per_variable = self.define(
+                f"{name}_{collect.name}",
+                slope.expression(symbols),
+                f"{base}_{{{index},{collect.symbol}}}" if index else f"{base}_{collect.symbol}",
+                units.quotient(spec.unit, collect.unit),
+                f"slope of the {spec.doc} in the {collect.doc}",
+                equation=equation,
+            )
+            rest = polynomial.without_linear(collect.name).expression(symbols)
+            expr = per_variable * symbols[collect.name] + rest
+        return self.define(name, expr, spec.symbol, spec.unit, spec.doc, equation=equation)
+
+    def fit_symbols(self, variables: Mapping[str, ca.SX]) -> dict[str, ca.SX]:
+        """What a polynomial is written in: quantities and coefficients by name, and the given variables."""
+        quantities = {name: self.graph.symbols[name] for name in self.graph.quantities}
+        return quantities | self.parameters | dict(variables)
+
+    def _quantity(self, quantity: Quantity | str) -> Quantity:
+        key = quantity if isinstance(quantity, str) else quantity.key
+        declared = {one.key: one for one in self.table.schema.quantities}
+        if key not in declared:
+            raise FamilyError(f"no table of `{self.name}` has the quantity `{key}`", suggestion(key, declared))
+        return declared[key]
+
+    def derivative(self, expr: ca.SX, named: Named | Parameter) -> ca.SX:
+        """The total derivative of an expression with respect to a state, an input or a parameter."""
+        name = name_of(named)
+        for known in (f"x.{name}", f"u.{name}", f"p.{name}"):
+            if known in self.graph.symbols:
+                return self.graph.derivative(expr, known)
+        raise FamilyError(f"`{name}` is not a state, an input or a parameter of `{self.name}`")
+
+    # What the model is
+
+    def motion(self, rates: Rates, equation: str | None = None) -> None:
+        """The equations of motion: the time derivative of every state; with them their first and second derivatives.
+
+        Raises:
+            FamilyError: when a rate is missing, or is of something that is not a state.
+            ExpressionError: when a rate has not the unit of its state per second.
+        """
+        if self.rates is not None:
+            raise FamilyError(f"the equations of motion of `{self.name}` are stated twice")
+        named = {name_of(state): ca.SX(rate) for state, rate in rates.items()}
+        states = self.names("state")
+        self._refuse_unknown("states", named, states)
+        missing = [state for state in states if state not in named]
+        if missing:
+            raise FamilyError(f"the rate of {_listed(missing)} is missing in `{self.name}`")
+        for state in states:
+            self.graph.check(f"the rate of `{state}`", named[state], units.quotient(self.unit(state), "s"))
+        self.rates = {state: named[state] for state in states}
+        motion.add_drift_and_derivatives(self, self.rates, self._equation if equation is None else equation)
+
+    def diffusion(self, gains: Gains, doc: str, equation: str | None = None) -> None:
+        """The diffusion G of dx = f dt + G dW, by (state, Wiener increment), read in the Itô sense.
+
+        Whether its columns are constant, diagonal or general, and which pairs commute, is found from it. `doc` is a
+        remark on the columns.
+        """
+        if self.rates is None:
+            raise FamilyError("the diffusion follows the equations of motion: call `model.motion(...)` first")
+        named = {(name_of(row), name_of(column)): ca.SX(gain) for (row, column), gain in gains.items()}
+        rows, columns = self.names("state"), self.names("noise") if "noise" in self.bases else ()
+        self._refuse_unknown("states", dict.fromkeys(row for row, _ in named), rows)
+        self._refuse_unknown("Wiener increments", dict.fromkeys(column for _, column in named), columns)
+        for (row, column), gain in named.items():
+            unit = units.quotient(self.unit(row), self.unit(column))
+            self.graph.check(f"the gain of `{column}` in the rate of `{row}`", gain, unit)
+        equation = self._equation if equation is None else equation
+        self.noise_structure = stochastic.add_diffusion(self, self.rates, named, doc, equation)
+
+    def outputs(self, *named: Named) -> None:
+        """Quantities that commands print and reports show beside the states, as one function and one vector."""
+        quantities = [self._defined(one) for one in named if name_of(one) not in self.names("state")]
+        self.bases["output"] = tuple(Variable(q.name, q.symbol, q.unit, q.doc) for q in quantities)
+        entries = tuple(Entry((q.name,), self.graph.symbols[q.name]) for q in quantities)
+        doc = "Quantities that people look at, which are not states"
+        self.add("outputs", "outputs", doc, "", [Output("", ("output",), entries)])
+
+    def check(self) -> None:
+        """Raise `FamilyError` when something is missing, or shown that there is not."""
+        if self.rates is None:
+            raise FamilyError(
+                f"the model `{self.name}` has no equations of motion; state them with `model.motion(...)`"
+            )
+        if not self.bases.get("output"):
+            raise FamilyError(f"`{self.name}` has no outputs; state them with `model.outputs(...)`")
+        known = [name for basis in ("state", "input", "output") for name in self.names(basis)]
+        self._refuse_unknown("states, inputs and outputs that a trim shows", self.traits.trim.shown, known)
+
+    def evaluations(self, *named: Named) -> None:
+        """Quantities that have a function each, for callers that need one alone."""
+        for one in named:
+            quantity = self._defined(one)
+            doc = quantity.doc[0].upper() + quantity.doc[1:]
+            expr = self.graph.symbols[quantity.name]
+            self.add_scalar(quantity.name, "evaluations", doc, quantity.equation, expr, quantity.unit)
+
+    def trim(
+        self,
+        *,
+        given: Iterable[Given] = (),
+        sought: Iterable[Sought],
+        equations: Iterable[Equation],
+        moving: Iterable[Named] = (),
+        shown: Iterable[Named] = (),
+    ) -> None:
+        """The trim problem: unknowns are `sought` so that the rows `equations` of the drift vanish.
+
+        States that are neither given nor sought are 0, inputs that are not sought are held. `moving` are states whose
+        rate need not vanish, such as the altitude; `shown` are states, inputs and outputs that a trim prints.
+
+        Raises:
+            FamilyError: when there are not as many equations as unknowns, or a name fits nothing.
+        """
+        trim = Trim(tuple(given), tuple(sought), tuple(equations), *(tuple(map(name_of, n)) for n in (moving, shown)))
+        rows, unknowns = [row.name for row in trim.equations], [one.name for one in trim.sought]
+        states, givens = self.names("state"), [state.name for state in trim.given]
+        likes = [equation.like_names for equation in trim.equations if equation.like_names]
+        self._refuse_unknown("states that a trim is given", givens, states)
+        self._refuse_unknown("unknowns of the trim", unknowns, (*states, *self.names("input")))
+        self._refuse_unknown("equations of the trim", rows, states)
+        self._refuse_unknown("states that move in the trim", trim.moving, states)
+        self._refuse_unknown("rows that others are like", dict.fromkeys(row for row, _ in likes), rows)
+        self._refuse_unknown("values that others are like", dict.fromkeys(state for _, state in likes), givens)
+        if len(rows) != len(unknowns):
+            raise FamilyError(
+                f"the trim of `{self.name}` has {len(rows)} equations ({', '.join(rows)}) for {len(unknowns)} unknowns"
+                f" ({', '.join(unknowns)})"
+            )
+        both = [name for name in givens if name in unknowns]
+        if both:
+            raise FamilyError(f"{_listed(both)} is given and sought in the trim of `{self.name}`")
+        self.traits.trim = trim
+
+    def mode(self, name: str, *states: Named, slowest: str | None = None) -> None:
+        """Name the poles of some states; of an odd number of real poles the slowest may have a name of its own."""
+        check_texts(name)
+        mode = Mode(name, tuple(map(name_of, states)), slowest)
+        of_others = [state for other in self.traits.modes for state in other.states]
+        self._refuse_unknown("states of modes", (*of_others, *mode.states), self.names("state"))
+        self.traits.modes += (mode,)
+
+    def defaults(self, *, inputs: Iterable[Named] = (), outputs: Iterable[Named] = ()) -> None:
+        """The inputs and the states that a transfer function is of, if a command names none."""
+        self.traits.inputs, self.traits.outputs = tuple(map(name_of, inputs)), tuple(map(name_of, outputs))
+        self._refuse_unknown("default inputs", self.traits.inputs, self.names("input"))
+        self._refuse_unknown("default outputs", self.traits.outputs, self.names("state"))
+
+    def deviations(self, deviations: Mapping[Variable, float] | Mapping[str, float]) -> None:
+        """The deviations of states and inputs that cost 1 in a regulator, in the units of the variables."""
+        self.traits.deviations = {name_of(variable): size for variable, size in deviations.items()}
+        known = (*self.names("state"), *self.names("input"))
+        self._refuse_unknown("deviations", self.traits.deviations, known)
+
+    def note(self, text: str, *, audited: bool = False) -> None:
+        """A warning that commands print before they use the model; `audited` if the paper's audit belongs to it."""
+        check_texts(text)
+        self.traits.note, self.traits.audited = text, audited
+
+    def _refuse_unknown(self, what: str, stated: Iterable[str], known: Iterable[str]) -> None:
+        stated, known = tuple(stated), tuple(known)
+        for position, name in enumerate(stated):
+            if name not in known:
+                raise FamilyError(f"{what} of `{self.name}`: there is no `{name}`", suggestion(name, known))
+            if name in stated[:position]:
+                raise FamilyError(f"{what} of `{self.name}`: `{name}` is used twice")
+
+    def _defined(self, named: Named) -> Intermediate:
+        name = name_of(named)
+        if name not in self.graph.quantities:
+            help_line = suggestion(name, self.graph.quantities)
+            raise FamilyError(f"`{name}` is not a quantity that `{self.name}` has defined", help_line)
+        return self.graph.quantities[name]
+
+    # Names, units and functions
 
     def noise(self, name: str) -> ca.SX:
         """The symbol of a Wiener increment."""
         return self.graph.symbols[f"w.{name}"]
 
-    def argument(self, name: str) -> ca.SX:
-        """The symbol of an argument that is neither state nor input, such as a time."""
-        return self.graph.symbols[f"t.{name}"]
-
-    def __getitem__(self, name: str) -> ca.SX:
-        """The symbol of a quantity, a state or an input."""
-        for known in (name, f"x.{name}", f"u.{name}"):
-            if known in self.graph.symbols:
-                return self.graph.symbols[known]
-        raise KeyError(name)
-
     def unit(self, name: str) -> str:
         """The unit of a state, an input or another component, in the system of the table."""
         return units.converted(self.variable(name).unit, self.table.units)
 
-    def variable(self, name: str) -> VariableSpec:
+    def variable(self, name: str) -> Variable:
         """A component of a basis by its name."""
         return next(v for basis in self.bases.values() for v in basis if v.name == name)
 
@@ -118,12 +361,12 @@ class Model:
         """Names of the entries of a basis, in order."""
         return tuple(v.name for v in self.bases[basis])
 
-    def vector(self, basis: str, values: dict[str, ca.SX], name: str) -> Output:
+    def vector(self, basis: str, values: Mapping[str, ca.SX], name: str) -> Output:
         """An output over one basis."""
         entries = tuple(Entry((row,), values[row]) for row in self.names(basis) if not values[row].is_zero())
         return Output(name, (basis,), entries)
 
-    def matrix(self, name: str, rows: str, columns: str, exprs: dict[str, ca.SX]) -> Output:
+    def matrix(self, name: str, rows: str, columns: str, exprs: Mapping[str, ca.SX]) -> Output:
         """The derivatives of `exprs` (by row) with respect to a basis."""
         # Column by column, so that the derivatives with respect to one variable stand together.
         found = {
@@ -138,28 +381,23 @@ class Model:
     def add(
         self, name: str, group: str, doc: str, equation: str, outputs: Iterable[Output], *, compressed: bool = False
     ) -> None:
-        """Add a function; the units of its outputs are turned into those of the table."""
+        """Add a function; the units of its outputs are turned into those of the table, and checked."""
+        if name in [function.name for function in self.functions]:
+            raise FamilyError(f"the name `{name}` is used twice, for two functions of `{self.name}`")
         system = self.table.units
         converted = tuple(
             replace(o, unit=units.converted(o.unit, system)) if o.unit is not None else o for o in outputs
         )
+        for output in converted:
+            for entry in output.entries:
+                if output.unit is not None:
+                    self.graph.check(f"the function `{name}`", entry.expr, output.unit)
         self.functions.append(Function(name, group, doc, equation, converted, compressed))
 
     def add_scalar(self, name: str, group: str, doc: str, equation: str, expr: ca.SX, unit: str) -> None:
         """Add a function with one number as its result."""
         self.add(name, group, doc, equation, [Output("", (), (Entry((), expr),), unit)])
 
-    def add_evaluations(self, *names: str) -> None:
-        """Functions that give one named quantity each, for whoever needs no more."""
-        for name in names:
-            quantity = self.graph.quantities[name]
-            doc = quantity.doc[0].upper() + quantity.doc[1:]
-            self.add_scalar(name, "evaluations", doc, quantity.equation, self.graph.symbols[name], quantity.unit)
 
-    def add_outputs(self, *names: str) -> None:
-        """The function of the quantities that people look at, and the basis of its result; a state is none of them."""
-        quantities = [self.graph.quantities[name] for name in names if name not in self.names("state")]
-        self.bases["output"] = tuple(VariableSpec(q.name, q.symbol, q.unit, q.doc) for q in quantities)
-        entries = tuple(Entry((q.name,), self.graph.symbols[q.name]) for q in quantities)
-        doc = "Quantities that people look at, which are not states"
-        self.add("outputs", "outputs", doc, "", [Output("", ("output",), entries)])
+def _listed(stated: list[str]) -> str:
+    return ", ".join(f"`{name}`" for name in stated)

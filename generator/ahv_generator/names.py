@@ -25,6 +25,30 @@ SET_NAME = re.compile(r"[a-z][a-z0-9._-]*")
 SET_LETTERS = "lower-case letters, digits, `.`, `_`, `-`"
 
 
+def fault_of_identifier(name: object) -> str | None:
+    """Why a variable, a parameter or a quantity cannot have this name in the generated code."""
+    if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+        return f"`{name}` is not a lower-case identifier: letters a to z, digits, `_`"
+    return f"`{name}` is a keyword of Rust; choose another name" if name in _KEYWORDS else None
+
+
+def fault_of_texts(*texts: str) -> str | None:
+    """Why these cannot be symbols, texts or titles, which stand in one line of the generated code."""
+    for text in texts:
+        if not text.isprintable():
+            return f'{text!r} has a control character; write LaTeX as a raw string, like r"\\alpha"'
+    return None
+
+
+def fault_of_quantity(name: str) -> str | None:
+    """Why a quantity that a model defines cannot have this name in the generated code."""
+    if name in ("x", "u", "w", "p", "t"):
+        return f"`{name}` is the name of a vector in the generated code; choose a longer name"
+    if re.match(r"d\d?_|slope_of_", name):
+        return f"`{name}` would be taken for a derivative; choose a name that does not begin with `d_`"
+    return fault_of_identifier(name)
+
+
 def fault_of_table(name: object) -> str | None:
     """Why a table cannot have this name."""
     if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):

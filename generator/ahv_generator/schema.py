@@ -1,10 +1,14 @@
-"""What a table may hold: sections, parameters, quantities with their monomials, choices, and rules."""
+"""What a family declares: variables, parameters, quantities, choices and rules; and what a table holds of them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+
+from . import names, units
+from .diagnostics import FamilyError
 
 STATUSES = ("published", "derived", "unverified", "assumed")
 
@@ -12,38 +16,82 @@ POSITIVE, NOT_NEGATIVE, NOT_ZERO = "positive", "not_negative", "not_zero"
 _IN_WORDS = {POSITIVE: "must be positive", NOT_NEGATIVE: "must not be negative", NOT_ZERO: "must not be zero"}
 
 
-@dataclass(frozen=True)
-class Rule:
-    """What the parameters must keep: a polynomial in them is positive, not negative or not zero.
+def check_texts(*texts: str) -> None:
+    """Raise `FamilyError` for a text that cannot stand in one line."""
+    fault = names.fault_of_texts(*texts)
+    if fault is not None:
+        raise FamilyError(fault)
 
-    A term is a factor and the names of parameters that multiply it. A fault is told at the first of them.
+
+def _check(name: str, unit: str, symbol: str, doc: str) -> None:
+    fault = names.fault_of_identifier(name)
+    if fault is not None:
+        raise FamilyError(fault)
+    check_texts(symbol, doc)
+    if not doc:
+        raise FamilyError(f"`{name}` has no text that says what it is")
+    try:
+        units.dimensions(unit)
+    except units.UnitError as error:
+        raise FamilyError(f"the unit of `{name}`: {error}") from error
+
+
+def _check_key(key: str, unit: str, symbol: str, doc: str) -> None:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", key):
+        raise FamilyError(f"`{key}` is not a key of a table: letters, digits, `_`")
+    _check(key.lower(), unit, symbol, doc)
+
+
+def _check_sign(must: str | None) -> None:
+    if must is not None and must not in _IN_WORDS:
+        raise FamilyError(f"`{must}` is not a range; ranges: {', '.join(_IN_WORDS)}")
+
+
+@dataclass(frozen=True)
+class Variable:
+    r"""A state, an input, a Wiener increment, an argument, or a derived variable such as the Mach number.
+
+    `name` is its name in tables, commands and the generated code; `symbol` is LaTeX; `unit` is in foot and slug or in
+    SI, whichever the author prefers. `bounds` names the interval of `[validity]` that holds for a state or an input;
+    it is `name` unless several variables share one.
+
+    >>> alpha = Variable("alpha", r"\alpha", "rad", "angle of attack")
+    >>> mode = Variable("eta_1", r"\eta_1", "(ft*slug)^0.5", "coordinate of mode 1", bounds="eta")
     """
 
     name: str
-    terms: tuple[tuple[float, tuple[str, ...]], ...]
-    must: str
-    reason: str
+    symbol: str
+    unit: str
+    doc: str
+    bounds: str | None = None
 
-    def holds(self, values: Mapping[str, float]) -> bool:
-        """Whether parameters of these values keep the rule; one that is not a number does not."""
-        # A product overflows to infinity, a power to an exception.
-        value = sum(factor * math.prod(values[name] for name in names) for factor, names in self.terms)
-        return {POSITIVE: value > 0, NOT_NEGATIVE: value >= 0, NOT_ZERO: abs(value) > 0}[self.must]
+    def __post_init__(self) -> None:
+        _check(self.name, self.unit, self.symbol, self.doc)
 
-    def parameters(self) -> tuple[str, ...]:
-        """The parameters that it is about, the one at which a fault is told first."""
-        return tuple(dict.fromkeys(name for _, names in self.terms for name in names))
+    @property
+    def interval(self) -> str:
+        """The name of its interval in `[validity]`."""
+        return self.bounds or self.name
 
 
 @dataclass(frozen=True)
-class ParameterSpec:
-    """A parameter that a model needs, by its key in the table; `must` is its range."""
+class Parameter:
+    r"""A number that every table of the family has, by its key; `must` is its range.
+
+    The name in the generated code is the key in lower case.
+
+    >>> mass = Parameter("m", "m", "slug", "vehicle mass", POSITIVE)
+    """
 
     key: str
     symbol: str
     unit: str
     doc: str
     must: str | None = None
+
+    def __post_init__(self) -> None:
+        _check_key(self.key, self.unit, self.symbol, self.doc)
+        _check_sign(self.must)
 
     @property
     def name(self) -> str:
@@ -59,33 +107,74 @@ class ParameterSpec:
 
 
 @dataclass(frozen=True)
-class QuantitySpec:
-    """A curve-fitted quantity: its unit, and the variables that it may depend on.
+class Quantity:
+    r"""A curve-fitted quantity: a section of the table, whose keys are monomials in the variables `depends_on`.
 
-    `required` are variables whose linear coefficient it must have, for the reason `required_by`; in the variables
-    `affine` together it is of degree one at most, for the reason `affine_by`.
+    Every variable may be a state, an input, or a derived variable that the model defines before it asks for the fit.
+    `required` are variables whose linear coefficient a table must list, for the reason `required_by`; in the variables
+    `affine` together the fit is of degree one at most, for the reason `affine_by`.
+
+    >>> alpha = Variable("alpha", r"\alpha", "rad", "angle of attack")
+    >>> mach = Variable("mach", "M", "1", "Mach number")
+    >>> lift = Quantity("C_L", "C_L", "1", "lift coefficient", depends_on=(alpha, mach))
     """
 
     key: str
     symbol: str
     unit: str
     doc: str
-    variables: tuple[str, ...]
-    required: tuple[str, ...] = ()
+    depends_on: Sequence[Variable]
+    required: Sequence[str] = ()
     required_by: str = ""
-    affine: tuple[str, ...] = ()
+    affine: Sequence[str] = ()
     affine_by: str = ""
+
+    def __post_init__(self) -> None:
+        _check_key(self.key, self.unit, self.symbol, self.doc)
+        if len(set(self.variables)) != len(self.variables):
+            raise FamilyError(f"`{self.key}` depends twice on one of {', '.join(self.variables)}")
+        for name in (*self.required, *self.affine):
+            if name not in self.variables:
+                raise FamilyError(f"`{self.key}` does not depend on `{name}`")
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Names of the variables of its monomials, in the order in which the name of a coefficient has them."""
+        return tuple(variable.name for variable in self.depends_on)
 
 
 @dataclass(frozen=True)
-class VariableSpec:
-    """A state, an input, a Wiener increment or another component of a basis."""
+class Rule:
+    """A condition on the parameters: a polynomial in them is positive, not negative or not zero.
+
+    A term is a factor and the names of the parameters that multiply it; coefficients count as parameters (`c_l_alpha`).
+    A fault is reported at the first of them, with `reason` as its text.
+
+    >>> Rule("inertia", ((1.0, ("i_yy",)), (-1.0, ("psi", "psi"))), POSITIVE, "I_yy must exceed psi^2").holds(
+    ...     {"i_yy": 2.0, "psi": 1.0}
+    ... )
+    True
+    """
 
     name: str
-    symbol: str
-    unit: str
-    doc: str
-    validity: str | None = None
+    terms: tuple[tuple[float, tuple[str, ...]], ...]
+    must: str
+    reason: str
+
+    def __post_init__(self) -> None:
+        _check_sign(self.must)
+        if not any(factors for _, factors in self.terms):
+            raise FamilyError(f"the rule `{self.name}` is about no parameter")
+
+    def holds(self, values: Mapping[str, float]) -> bool:
+        """Whether parameters of these values keep the rule; one that is not a number does not."""
+        # A product overflows to infinity, a power to an exception.
+        value = sum(factor * math.prod(values[name] for name in names) for factor, names in self.terms)
+        return {POSITIVE: value > 0, NOT_NEGATIVE: value >= 0, NOT_ZERO: abs(value) > 0}[self.must]
+
+    def parameters(self) -> tuple[str, ...]:
+        """The parameters that it is about, the one at which a fault is reported first."""
+        return tuple(dict.fromkeys(name for _, names in self.terms for name in names))
 
 
 @dataclass(frozen=True)
@@ -99,32 +188,42 @@ class Option:
 
 @dataclass(frozen=True)
 class Choice:
-    """A key of `[choices]`, its type in the generated code, its switches and its options."""
+    """A key of `[choices]`, its type in the generated code, its switches and its options.
+
+    A choice changes no code: it sets switches, which are parameters.
+
+    >>> earth = Choice(
+    ...     "earth", "Earth", "Earth",
+    ...     (switch("spherical_earth", "s_E", "share of the curvature: 1 spherical, 0 flat"),),
+    ...     (Option("flat", "constant gravity", (0.0,)), Option("spherical", "gravity falls", (1.0,))),
+    ... )
+    """
 
     name: str
     type_name: str
     doc: str
-    switches: tuple[ParameterSpec, ...]
+    switches: tuple[Parameter, ...]
     options: tuple[Option, ...]
 
+    def __post_init__(self) -> None:
+        if not self.options or any(len(option.values) != len(self.switches) for option in self.options):
+            raise FamilyError(f"every option of `{self.name}` sets all of its switches")
+        check_texts(self.doc, *(option.doc for option in self.options))
 
-def switch(key: str, symbol: str, doc: str) -> ParameterSpec:
-    """A parameter that a choice sets."""
-    return ParameterSpec(key, symbol, "1", doc)
+
+def switch(key: str, symbol: str, doc: str) -> Parameter:
+    """A parameter that a choice sets, a pure number."""
+    return Parameter(key, symbol, "1", doc)
 
 
 @dataclass(frozen=True)
 class Schema:
-    """What the table of some models of a family holds.
+    """What the table of some models of a family holds; `laws` are the rules about more than one parameter's range."""
 
-    `variables` are those of the monomials; `laws` are the rules that are about more than one parameter's range.
-    """
-
-    parameters: Mapping[str, tuple[ParameterSpec, ...]]
-    validity: tuple[VariableSpec, ...]
+    parameters: Mapping[str, tuple[Parameter, ...]]
+    validity: tuple[Variable, ...]
     choices: tuple[Choice, ...] = ()
-    quantities: tuple[QuantitySpec, ...] = ()
-    variables: tuple[VariableSpec, ...] = ()
+    quantities: tuple[Quantity, ...] = ()
     laws: tuple[Rule, ...] = ()
 
     def holds(self, section: str, key: str) -> bool:
@@ -132,10 +231,10 @@ class Schema:
         keys = {
             "choices": [choice.name for choice in self.choices],
             "validity": [variable.name for variable in self.validity],
-        } | {name: [spec.key for spec in specs] for name, specs in self.parameters.items()}
+        } | {name: [one.key for one in group] for name, group in self.parameters.items()}
         return key in keys.get(section, ()) or any(section == quantity.key for quantity in self.quantities)
 
     def rules(self) -> tuple[Rule, ...]:
         """The ranges of the parameters, then the laws."""
-        ranges = (rule for group in self.parameters.values() for spec in group for rule in spec.rules())
+        ranges = (rule for group in self.parameters.values() for one in group for rule in one.rules())
         return (*ranges, *self.laws)

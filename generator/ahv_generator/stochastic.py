@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import casadi as ca
 
-from .model import Entry, Model, NoiseStructure, Output
+from .function import Entry, NoiseStructure, Output
+
+if TYPE_CHECKING:
+    from .model import Model
 
 ITO = "in the Itô sense; derivatives are taken at frozen inputs"
 
-Gains = dict[tuple[str, str], ca.SX]
+Gains = Mapping[tuple[str, str], ca.SX]
 
 
-def add_diffusion(m: Model, rates: dict[str, ca.SX], gains: Gains, columns_doc: str, equation: str) -> None:
-    """The functions of a diffusion whose entries, by row and Wiener process, are `gains`."""
+def add_diffusion(
+    m: Model, rates: Mapping[str, ca.SX], gains: Gains, columns_doc: str, equation: str
+) -> NoiseStructure:
+    """Add the functions of a diffusion whose entries, by row and Wiener process, are `gains`; returns its structure."""
     gains = {at: expr for at, expr in gains.items() if not expr.is_zero()}
     entries = tuple(
         Entry((row, column), gains[row, column])
@@ -48,10 +56,10 @@ def add_diffusion(m: Model, rates: dict[str, ca.SX], gains: Gains, columns_doc: 
         equation,
         [m.vector("state", rates, "drift"), m.vector("state", increments, "increment")],
     )
-    _add_derivatives(m, gains, equation)
+    return _add_derivatives(m, gains, equation)
 
 
-def _add_derivatives(m: Model, gains: Gains, equation: str) -> None:
+def _add_derivatives(m: Model, gains: Gains, equation: str) -> NoiseStructure:
     """L^j b^k = (∂b_k/∂x) b_j, half the sum of whose diagonal turns a Stratonovich drift into that of Itô."""
     lie = {
         (row, j, k): value
@@ -60,7 +68,7 @@ def _add_derivatives(m: Model, gains: Gains, equation: str) -> None:
         for k in m.names("noise")
         if not (value := _along_column(m, gains, row, j, k)).is_zero()
     }
-    m.noise_structure = _structure(m, gains, lie)
+    structure = _structure(m, gains, lie)
     entries = tuple(Entry(at, value) for at, value in lie.items())
     m.add(
         "noise_derivatives",
@@ -81,6 +89,7 @@ def _add_derivatives(m: Model, gains: Gains, equation: str) -> None:
         equation,
         [m.vector("state", correction, "correction")],
     )
+    return structure
 
 
 def _along_column(m: Model, gains: Gains, row: str, j: str, k: str) -> ca.SX:

@@ -6,25 +6,26 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from . import names, units
-from .diagnostics import Faults, suggestion
+from . import family_file, names, units
+from .diagnostics import Faults, TableError, suggestion
 from .entries import Entries, Provenance
-from .family import Family, families
+from .family import Family, Outline
+from .family_file import FamilyFile
 from .polynomial import MonomialError, Polynomial, Powers, Term, monomial_name, parse_monomial
-from .schema import Choice, ParameterSpec, QuantitySpec, Rule, Schema, VariableSpec
+from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable
 
 if TYPE_CHECKING:
     from .model import Model
 
-_HEADER_KEYS = ("name", "models", "units", "set", "source", "status", "uncertainty")
+_HEADER_KEYS = ("name", "family", "models", "units", "set", "source", "status", "uncertainty")
 _BOX_KEYS = ("min", "max", "unit")
 CHOICES = "choices"
 
 
 @dataclass(frozen=True)
-class Parameter:
+class TableParameter:
     """A parameter or coefficient of a table; its value stays in the table.
 
     `kind` is one of `parameter`, `coefficient`, `required` (a coefficient that must be listed) and `switch`.
@@ -46,7 +47,7 @@ class ParameterSet:
     """A named set: the parameters that it replaces, with the places of their new values."""
 
     name: str
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[TableParameter, ...]
 
 
 @dataclass(frozen=True)
@@ -59,16 +60,26 @@ class Table:
     name: str
     models: tuple[str, ...]
     units: str
+    file: FamilyFile
     family: Family
     schema: Schema
     schemas: Mapping[str, Schema]
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[TableParameter, ...]
     polynomials: dict[str, Polynomial]
     sets: tuple[ParameterSet, ...]
 
     def build(self) -> list[Model]:
         """The models that it lists."""
-        return [self.family.builders[name](self) for name in self.models]
+        return [self.model(name) for name in self.models]
+
+    def model(self, name: str) -> Model:
+        """One of the models that it lists.
+
+        Raises:
+            TableError: with what the family's file states wrongly.
+        """
+        with self.file.faults():
+            return self.family.build(name, self)
 
     def only_for(self, section: str, key: str) -> list[str]:
         """The models whose tables have this entry; none if all have it."""
@@ -90,25 +101,50 @@ def load(path: Path) -> Table:
         faults.key("unreadable", (), f"cannot read the table: {error}")
         faults.raise_any()
         raise AssertionError("unreachable") from error
-    table = _Reader(document, faults).read()
+    table = _Reader(document, faults, path.parent).read()
     faults.raise_any()
     return table
 
 
+class Texts(Protocol):
+    """Symbol, unit and text of something declared."""
+
+    @property
+    def symbol(self) -> str:
+        """In LaTeX."""
+
+    @property
+    def unit(self) -> str:
+        """In either system."""
+
+    @property
+    def doc(self) -> str:
+        """In words."""
+
+
+@dataclass(frozen=True)
+class _Coefficient:
+    symbol: str
+    unit: str
+    doc: str
+
+
 class _Reader:
-    def __init__(self, document: Mapping[str, object], faults: Faults) -> None:
+    def __init__(self, document: Mapping[str, object], faults: Faults, folder: Path) -> None:
         self.document = document
+        self.folder = folder
         self.faults = faults
         self.entries = Entries(document, faults)
         self.header = self.entries.section("table")
-        self.parameters: dict[str, Parameter] = {}
+        self.parameters: dict[str, TableParameter] = {}
 
     def read(self) -> Table:
         name, system, own_set = self._identity()
         self.entries.system = system
         self._sources()
-        family, models = self._models()
-        schema = family.schema(models, self.document)
+        file, family = self._family()
+        models = self._models(family)
+        schema = family.schema(models)
         self.known = (*schema.parameters, *(q.key for q in schema.quantities))
         known = ("table", "sources", CHOICES, "validity", "sets", *self.known)
         self.entries.only((), self.document, [k for k in known if k != CHOICES or schema.choices], "section")
@@ -116,16 +152,15 @@ class _Reader:
             self._group(section, specs)
         if schema.choices:
             self._choices(schema.choices)
-        variables = {variable.name: variable for variable in schema.variables}
-        polynomials = {q.key: _Quantity(self, q, variables).read() for q in schema.quantities}
+        polynomials = {q.key: _Polynomial(self, q).read() for q in schema.quantities}
         self._validity(schema.validity)
         sets = (ParameterSet(own_set, ()), *self._sets(own_set, schema))
         self._rules(schema.rules(), sets)
-        schemas = {model: family.schema((model,), self.document) for model in models}
+        schemas = {model: family.schema((model,)) for model in models}
         parameters = tuple(self.parameters.values())
-        return Table(name, models, system, family, schema, schemas, parameters, polynomials, sets)
+        return Table(name, models, system, file, family, schema, schemas, parameters, polynomials, sets)
 
-    def add(self, parameter: Parameter) -> None:
+    def add(self, parameter: TableParameter) -> None:
         """Takes up a parameter of the table."""
         other = self.parameters.setdefault(parameter.name, parameter)
         if other is not parameter:
@@ -134,11 +169,11 @@ class _Reader:
             self.faults.key("duplicate-name", parameter.path, message)
 
     def parameter(
-        self, path: tuple[str, ...], name: str, spec: ParameterSpec, of: Provenance, kind: str = "parameter"
-    ) -> Parameter:
+        self, path: tuple[str, ...], name: str, texts: Texts, of: Provenance, kind: str = "parameter"
+    ) -> TableParameter:
         """The parameter of a checked entry."""
-        unit = units.converted(spec.unit, self.entries.system)
-        return Parameter(name, path, spec.symbol, unit, spec.doc, of.source, of.status, of.uncertainty, kind)
+        unit = units.converted(texts.unit, self.entries.system)
+        return TableParameter(name, path, texts.symbol, unit, texts.doc, of.source, of.status, of.uncertainty, kind)
 
     def _identity(self) -> tuple[str, str, str]:
         self.entries.only(("table",), self.header, _HEADER_KEYS)
@@ -167,27 +202,38 @@ class _Reader:
                 message = "a source is a plain key with a text that says what it is"
                 self.faults.key("source", ("sources", key), message)
 
-    def _models(self) -> tuple[Family, tuple[str, ...]]:
-        """The family of the first model of the table that is known."""
-        path = ("table", "models")
-        every = families()
-        known = [model for family in every for model in family.models]
+    def _family(self) -> tuple[FamilyFile, Family]:
+        """The family that the table names, and its file; what it should hold is not known without it."""
+        path, named = ("table", "family"), self.header.get("family")
+        try:
+            if named is not None:
+                file = family_file.find(named, self.folder)
+                return file, file.family(Outline(tuple(self.document)))
+        except family_file.NotFoundError as error:
+            self.faults.value("unknown-family", path, str(error), error.help)
+        except TableError as error:
+            self.faults.found += error.diagnostics
+        self.faults.raise_any()
+        raise AssertionError("unreachable: a family that is missing is a fault")
+
+    def _models(self, family: Family) -> tuple[str, ...]:
+        """The models of the family that the table lists."""
+        path, known = ("table", "models"), tuple(family.models)
         listed = self.header.get("models", [])
         models = tuple(str(m) for m in listed) if isinstance(listed, list) else ()
         unknown = [m for m in models if m not in known]
         for model in unknown:
-            self.faults.value("unknown-model", path, f"unknown model `{model}`", suggestion(model, known))
-        family = next((f for m in models for f in every if m in f.models), every[0])
-        ordered = tuple(m for m in family.models if m in models)
+            message = f"`{model}` is not a model of the family"
+            self.faults.value("unknown-model", path, message, suggestion(model, known))
+        ordered = tuple(m for m in known if m in models)
         if "models" in self.header and not unknown and (not models or ordered != models):
-            message = "`models` must list models of one family, each once, in this order"
-            lists = "; ".join(", ".join(f"`{m}`" for m in family.models) for family in every)
-            self.faults.value("models", path, message, f"the families are: {lists}")
+            message = "`models` must list models of the family, each once, in this order"
+            self.faults.value("models", path, message, ", ".join(f"`{m}`" for m in known))
         if not ordered:
             self.faults.raise_any()  # What such a table should hold is not known.
-        return family, ordered
+        return ordered
 
-    def _group(self, section: str, specs: Iterable[ParameterSpec]) -> None:
+    def _group(self, section: str, specs: Iterable[Parameter]) -> None:
         """The parameters of a section."""
         content = self.entries.section(section)
         by_key = {spec.key: spec for spec in specs}
@@ -219,7 +265,7 @@ class _Reader:
             for spec in choice.switches:
                 self.add(self.parameter(path, spec.name, spec, Provenance(CHOICES, "assumed", 0.0), "switch"))
 
-    def _validity(self, specs: Iterable[VariableSpec]) -> None:
+    def _validity(self, specs: Iterable[Variable]) -> None:
         content = self.entries.section("validity")
         by_name = {spec.name: spec for spec in specs}
         self.entries.only(("validity",), content, by_name)
@@ -229,7 +275,7 @@ class _Reader:
             elif self.entries.has("validity"):
                 self.faults.key("missing", ("validity",), f"`{name}` ({spec.doc}) is missing in `[validity]`")
 
-    def _box(self, path: tuple[str, ...], spec: VariableSpec, box: object) -> None:
+    def _box(self, path: tuple[str, ...], spec: Variable, box: object) -> None:
         if not isinstance(box, dict):
             self.faults.value("shape", path, 'a range is a table like { min = -5.0, max = 5.0, unit = "deg" }')
             return
@@ -263,7 +309,7 @@ class _Reader:
             taken |= names.constants(name)
             yield ParameterSet(name, tuple(self._replacements(("sets", name), sections, schema)))
 
-    def _replacements(self, path: tuple[str, ...], sections: object, schema: Schema) -> Iterable[Parameter]:
+    def _replacements(self, path: tuple[str, ...], sections: object, schema: Schema) -> Iterable[TableParameter]:
         if not isinstance(sections, dict):
             self.faults.value("shape", path, "a set holds sections like those of the table")
             return
@@ -285,11 +331,10 @@ class _Reader:
                     message = f"`[{section}]` of the table has no `{key}` to replace"
                     self.faults.key("nothing-to-replace", (*place, key), message, suggestion(key, keys))
 
-    def _replacement(self, path: tuple[str, ...], parameter: Parameter) -> Iterable[Parameter]:
+    def _replacement(self, path: tuple[str, ...], parameter: TableParameter) -> Iterable[TableParameter]:
         provenance = self.entries.entry(path, parameter.unit)
         if provenance is not None:
-            spec = ParameterSpec(parameter.name, parameter.symbol, parameter.unit, parameter.doc)
-            yield self.parameter(path, parameter.name, spec, provenance, parameter.kind)
+            yield self.parameter(path, parameter.name, parameter, provenance, parameter.kind)
 
     def _rules(self, rules: Iterable[Rule], sets: Iterable[ParameterSet]) -> None:
         """Holds the table, and every set that says something of a rule, against the rules."""
@@ -305,14 +350,14 @@ class _Reader:
                     self.faults.value(rule.name, (*named[0], "value"), rule.reason)
 
 
-class _Quantity:
+class _Polynomial:
     """Reads the polynomial of a quantity."""
 
-    def __init__(self, reader: _Reader, spec: QuantitySpec, variables: Mapping[str, VariableSpec]) -> None:
+    def __init__(self, reader: _Reader, spec: Quantity) -> None:
         self.reader = reader
         self.faults = reader.faults
         self.spec = spec
-        self.variables = variables
+        self.variables = {variable.name: variable for variable in spec.depends_on}
 
     def read(self) -> Polynomial:
         """The polynomial; its coefficients become parameters of the table."""
@@ -363,7 +408,7 @@ class _Quantity:
         name = f"{spec.key.lower()}_{monomial_name(powers)}"
         doc = f"coefficient of {key} in {spec.key}" if powers else f"constant part of {spec.key}"
         # In the words of the table: `1/rad/s`, where the quotient above says `1/s/rad`.
-        written = ParameterSpec(key, self._symbol(powers), self.reader.entries.units[path], doc)
+        written = _Coefficient(self._symbol(powers), self.reader.entries.units[path], doc)
         kind = "required" if powers in [((variable, 1),) for variable in spec.required] else "coefficient"
         self.reader.add(self.reader.parameter(path, name, written, provenance, kind))
         return [Term(name, powers)]

@@ -2,40 +2,78 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+import casadi as ca
+
+from .diagnostics import FamilyError
+from .schema import Parameter, Variable
+
+Named = Variable | str | ca.SX
+
+
+def name_of(named: Named | Parameter) -> str:
+    """The name of what stands for it wherever the API asks for one: a declaration, the name, or the symbol."""
+    if isinstance(named, Variable | Parameter):
+        return named.name
+    if isinstance(named, str):
+        return named
+    if isinstance(named, ca.SX) and named.is_symbolic():
+        return str(named.name()).rpartition(".")[2]
+    raise FamilyError(f"`{named}` has no name: it is neither a variable nor a quantity that was defined")
 
 
 @dataclass(frozen=True)
 class Given:
-    """A state that whoever asks for a trim gives; strictly between `above` and `below`."""
+    """A state that the caller of a trim gives; strictly between `above` and `below`, in the unit of the state."""
 
-    name: str
+    state: Named
     default: float
     above: float | None = None
     below: float | None = None
 
+    @property
+    def name(self) -> str:
+        """Name of the state."""
+        return name_of(self.state)
+
 
 @dataclass(frozen=True)
 class Sought:
-    """An unknown of a trim, a state or an input: where its search starts, and what is a small change of it."""
+    """An unknown of a trim, a state or an input: where its search starts, and the size of a small change."""
 
-    name: str
+    unknown: Named
     start: float = 0.0
     scale: float = 1.0
+
+    @property
+    def name(self) -> str:
+        """Name of the state or input."""
+        return name_of(self.unknown)
 
 
 @dataclass(frozen=True)
 class Equation:
-    """A row of the drift that must vanish in a trim.
+    """A row of the drift that vanishes in a trim.
 
     Rows are scaled by their largest slope, times `weight`. A row that is `like` another, (row, given state), has the
     scale of that row over the value of the state instead.
     """
 
-    name: str
+    row: Named
     weight: float = 1.0
-    like: tuple[str, str] | None = None
+    like: tuple[Named, Named] | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the state whose rate it is."""
+        return name_of(self.row)
+
+    @property
+    def like_names(self) -> tuple[str, str] | None:
+        """Names of the row and the given state that it is like."""
+        return None if self.like is None else (name_of(self.like[0]), name_of(self.like[1]))
 
 
 @dataclass(frozen=True)
@@ -46,7 +84,7 @@ class Trim:
     sought: tuple[Sought, ...] = ()
     equations: tuple[Equation, ...] = ()
     moving: tuple[str, ...] = ()  # states whose rate need not vanish
-    shown: tuple[str, ...] = ()  # states, inputs and outputs of a trim that people look at
+    shown: tuple[str, ...] = ()  # states, inputs and outputs that a trim prints
 
 
 @dataclass(frozen=True)
@@ -58,48 +96,17 @@ class Mode:
     slowest: str | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Traits:
     """The trim, the modes, the defaults of commands, and the deviations that cost 1 in a regulator.
 
-    Numbers are in the foot-slug units of the variables; the IR has them in those of the table.
+    Numbers are in the units of the variables; the IR has them in those of the table.
     """
 
-    trim: Trim
+    trim: Trim = field(default_factory=Trim)
     modes: tuple[Mode, ...] = ()
     inputs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
     deviations: Mapping[str, float] = field(default_factory=dict)
     note: str | None = None  # printed before the model is used
-    audited: bool = False  # whether the audit of the printed equations is told with it
-
-    def faults(self, states: Iterable[str], inputs: Iterable[str]) -> list[str]:
-        """What does not fit a model with these states and inputs; for whoever writes one."""
-        states, inputs = tuple(states), tuple(inputs)
-        trim = self.trim
-        sought = [unknown.name for unknown in trim.sought]
-        rows = [equation.name for equation in trim.equations]
-        given = [state.name for state in trim.given]
-        likes = [equation.like for equation in trim.equations if equation.like]
-        in_modes = [state for mode in self.modes for state in mode.states]
-        found = []
-        for what, names, known in (
-            ("given states", given, states),
-            ("unknowns", sought, (*states, *inputs)),
-            ("equations", rows, states),
-            ("moving states", trim.moving, states),
-            ("rows that others are like", [row for row, _ in likes], rows),
-            ("values that others are like", [state for _, state in likes], given),
-            ("states of modes", in_modes, states),
-            ("inputs", self.inputs, inputs),
-            ("outputs", self.outputs, states),
-            ("deviations", self.deviations, (*states, *inputs)),
-        ):
-            unknown = [name for name in names if name not in known]
-            if unknown or len(set(names)) != len(tuple(names)):
-                found.append(f"{what}: {', '.join(unknown) or 'one stands twice'}")
-        if len(rows) != len(sought):
-            found.append(f"{len(rows)} equations for {len(sought)} unknowns")
-        if set(given) & set(sought):
-            found.append("a state is given and sought")
-        return found
+    audited: bool = False  # whether the audit of the paper's printed equations belongs to it

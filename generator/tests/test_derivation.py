@@ -18,7 +18,6 @@ from ahv_generator import audit, ir
 from ahv_generator.__main__ import main
 from ahv_generator.diagnostics import TableError
 from ahv_generator.expression import ExpressionError
-from ahv_generator.family import builders
 from ahv_generator.reference import columns, expanded, labels
 from ahv_generator.table import load
 from ahv_oracle import Oracle, sample
@@ -106,10 +105,10 @@ def test_a_value_does_not_reach_the_ir(tmp_path: Path) -> None:
     assert render(changed) == render(TABLES / "dcom.toml")
 
 
-@pytest.mark.parametrize("name", builders())
+@pytest.mark.parametrize("name", TABLE_OF)
 def test_casadi_agrees_with_the_oracle(name: str) -> None:
     path = TABLES / f"{TABLE_OF[name]}.toml"
-    model = builders()[name](load(path))
+    model = load(path).model(name)
     oracle = Oracle(path, name)
     function, order, outputs = expanded(model), columns(model), labels(model)
     assert set(outputs) <= set(oracle.labels), set(outputs) - set(oracle.labels)
@@ -136,7 +135,7 @@ def test_new_monomials_reach_the_split(tmp_path: Path) -> None:
     )
     path = tmp_path / "dcom.toml"
     path.write_text(text.replace("[C_M]\n", extra), encoding="utf-8")
-    model = builders()["sdcom"](load(path))
+    model = load(path).model("sdcom")
     oracle = Oracle(path, "sdcom")
     function, order, outputs = expanded(model), columns(model), labels(model)
     for index in range(20):
@@ -150,13 +149,11 @@ def test_new_monomials_reach_the_split(tmp_path: Path) -> None:
 
 
 def test_a_wrong_unit_in_the_derivation_is_refused() -> None:
-    model = builders()["com"](load(TABLES / "com.toml"))
+    model = load(TABLES / "com.toml").model("com")
     with pytest.raises(ExpressionError, match="declared in"):
-        model.graph.define("wrong", model["lift"] * 2, symbol="", unit="ft/s", doc="", equation="", section="")
+        model.define("wrong", model["lift"] * 2, "", "ft/s", "a speed")
     with pytest.raises(ExpressionError, match="unlike dimensions"):
-        model.graph.define(
-            "sum", model["lift"] + model["velocity"], symbol="", unit="lb/ft", doc="", equation="", section=""
-        )
+        model.define("sum", model["lift"] + model["velocity"], "", "lb/ft", "a force")
 
 
 def test_a_polynomial_may_have_many_terms(tmp_path: Path) -> None:

@@ -5,36 +5,28 @@ from __future__ import annotations
 import itertools
 import json
 import re
+import shutil
 import sys
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from ahv_generator import ir, models, units
-from ahv_generator import table as table_module
+from ahv_generator import family_file, ir, models, units
 from ahv_generator.__main__ import main
 from ahv_generator.diagnostics import TableError
-from ahv_generator.family import builders, families
+from ahv_generator.family import Outline
 from ahv_generator.graph import Graph
-from ahv_generator.model import Model
-from ahv_generator.schema import NOT_NEGATIVE, NOT_ZERO, POSITIVE, Rule, Schema
+from ahv_generator.modelling import NOT_NEGATIVE, NOT_ZERO, POSITIVE, Model, Rule
+from ahv_generator.schema import Schema
 from ahv_generator.table import Table, load
-from ahv_generator.traits import Equation, Given, Mode, Sought, Traits, Trim
 
 TABLES = Path(__file__).parents[1] / "tables"
 NAMES = ("com", "dcom", "flexible_mode")
-EXAMPLE = Path(__file__).parent / "pendulum"
 
 
-@pytest.fixture
-def pendulum(monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The table of a family whose module lies in a folder of its own."""
-    monkeypatch.setattr(models, "__path__", [*models.__path__, str(EXAMPLE)])
-    monkeypatch.delitem(sys.modules, "ahv_generator.models.pendulum", raising=False)
-    return EXAMPLE / "pendulum.toml"
+PENDULUM = Path(__file__).parent / "pendulum" / "pendulum.toml"
 
 
 def derived(table: Path, out: Path, monkeypatch: pytest.MonkeyPatch) -> int:
@@ -42,9 +34,8 @@ def derived(table: Path, out: Path, monkeypatch: pytest.MonkeyPatch) -> int:
     return main()
 
 
-def test_a_family_is_one_module_and_one_table(pendulum: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert "pendulum" in builders()
-    assert derived(pendulum, tmp_path, monkeypatch) == 0
+def test_a_family_is_one_file_and_one_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert derived(PENDULUM, tmp_path, monkeypatch) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["pendulum.json"]  # no audit of a paper
     document = json.loads((tmp_path / "pendulum.json").read_text(encoding="utf-8"))
     assert [p["name"] for p in document["parameters"]] == ["mass", "length", "gravity", "c_f_rate", "c_f_rate_3"]
@@ -66,6 +57,16 @@ def test_a_family_is_one_module_and_one_table(pendulum: Path, tmp_path: Path, mo
     assert ["rate", "angle"] in [e["at"] for e in jacobians["outputs"][0]["entries"]]
 
 
+def test_units_of_a_family_may_be_of_either_system(tmp_path: Path) -> None:
+    example = Path(__file__).parents[2] / "examples" / "van-der-pol"
+    shutil.copy(example / "van_der_pol.py", tmp_path)  # in SI
+    text = (example / "van_der_pol.toml").read_text(encoding="utf-8").replace('"si"', '"ft-slug-s-rad"')
+    table = load_text(tmp_path / "van_der_pol.toml", re.sub(r'"(1/s/)?m(\W)', r'"\1ft\2', text))
+    (model,) = table.build()
+    assert (model.unit("rate"), model.graph.units["energy"]) == ("ft/s", "ft^2/s^2")
+    assert [p.unit for p in table.parameters] == ["rad/s", "1/s", "1/s/ft^2"]
+
+
 FAULTS = [
     ("mass = { value = 2.0", "mass = { value = -2.0", "positive", ("pendulum", "mass", "value")),
     ("rate^3", "rate^9*rate", "monomial", ("C_F", "rate^9*rate")),
@@ -77,7 +78,6 @@ FAULTS = [
 
 @pytest.mark.parametrize(("old", "new", "rule", "path"), FAULTS)
 def test_the_rules_of_a_family_are_checked_in_table_and_sets(
-    pendulum: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -86,34 +86,30 @@ def test_the_rules_of_a_family_are_checked_in_table_and_sets(
     rule: str,
     path: tuple[str, ...],
 ) -> None:
-    text = pendulum.read_text(encoding="utf-8")
+    text = PENDULUM.read_text(encoding="utf-8")
     assert old in text
     table = tmp_path / "pendulum.toml"
     table.write_text(text.replace(old, new), encoding="utf-8")
+    shutil.copy(PENDULUM.with_suffix(".py"), tmp_path)
     assert derived(table, tmp_path, monkeypatch) == 2
     found = json.loads(capsys.readouterr().out)["diagnostics"]
     assert (rule, list(path)) in [(d["rule"], d["path"]) for d in found]
 
 
 def test_no_other_file_lists_the_families() -> None:
-    assert [family.models for family in families()] == [
-        ("com", "com_rigid"),
-        ("dcom", "sdcom", "sdcom_printed", "sdcom_gust"),
-        ("flexible_mode",),
-    ]
+    families = {name: family_file.find(name, Path()).family(Outline()) for name in family_file.built_in()}
+    assert {name: tuple(family.models) for name, family in families.items()} == {
+        "com": ("com", "com_rigid"),
+        "dcom": ("dcom", "sdcom", "sdcom_printed", "sdcom_gust"),
+        "flexible_mode": ("flexible_mode",),
+    }
     package = Path(models.__file__).parents[1]
     general = [path for path in package.glob("*.py") if path.name != "units.py"]
     words = re.compile(r"canard|psi_|eta_\b|C_N_|sdcom|com_rigid|flexible_mode|section 5\.3", re.IGNORECASE)
     for path in general:
-        code = [line for line in path.read_text(encoding="utf-8").splitlines() if not line.lstrip().startswith("#")]
+        text = re.sub(r'(?s)""".*?"""', "", path.read_text(encoding="utf-8"))  # examples may be of any vehicle
+        code = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
         assert not [line for line in code if words.search(line)], path.name
-
-
-def test_two_families_cannot_have_the_same_model(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "second_com.py").write_text("from .com import FAMILY\n", encoding="utf-8")
-    monkeypatch.setattr(models, "__path__", [*models.__path__, str(tmp_path)])
-    with pytest.raises(ValueError, match="more than one family has the model com, com_rigid"):
-        families()
 
 
 def with_modes(count: int, listed: tuple[str, ...]) -> str:
@@ -262,38 +258,12 @@ def test_only_the_truncated_form_warns_of_itself() -> None:
     assert "exact is --model sdcom" in str(notes["sdcom_printed"])
 
 
-BROKEN = [
-    (Traits(Trim(given=(Given("c", 0.0),))), "given states: c"),
-    (Traits(Trim(sought=(Sought("u"),))), "0 equations for 1 unknowns"),
-    (Traits(Trim(sought=(Sought("a"),), equations=(Equation("u"),))), "equations: u"),
-    (Traits(Trim(given=(Given("a", 0.0),), sought=(Sought("a"),), equations=(Equation("a"),))), "given and sought"),
-    (Traits(Trim(sought=(Sought("a"),), equations=(Equation("a", like=("b", "a")),))), "rows that others are like: b"),
-    (Traits(Trim(), modes=(Mode("one", ("a",)), Mode("two", ("a",)))), "states of modes: one stands twice"),
-    (Traits(Trim(), deviations={"c": 1.0}), "deviations: c"),
-    (Traits(Trim(), outputs=("u",)), "outputs: u"),
-]
-
-
-@pytest.mark.parametrize(("traits", "fault"), BROKEN)
-def test_traits_that_do_not_fit_a_model_are_told(traits: Traits, fault: str) -> None:
-    assert any(fault in found for found in traits.faults(("a", "b"), ("u",)))
-
-
-def test_traits_that_fit_have_no_fault() -> None:
-    trim = Trim((Given("a", 0.0),), (Sought("u"),), (Equation("b", like=None),), ("a",))
-    assert Traits(trim, (Mode("one", ("a", "b")),), ("u",), ("a",), {"a": 1.0}).faults(("a", "b"), ("u",)) == []
-
-
-def test_two_coefficients_of_one_name_are_told(tmp_path: Path, pendulum: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_coefficients_of_one_name_are_reported(tmp_path: Path) -> None:
     """A family of variables such as `rate` and `rate_3` has tables in which names in the code meet."""
-    family = next(f for f in families() if "pendulum" in f.models)
-    schema = family.schema(("pendulum",), {})
-    third = replace(schema.variables[0], name="rate_3")
-    (fit,) = schema.quantities
-    fit = replace(fit, variables=("rate", "rate_3"))
-    wide = replace(schema, variables=(*schema.variables, third), quantities=(fit,))
-    monkeypatch.setattr(table_module, "families", lambda: (replace(family, schema=lambda *_: wide),))
-    text = pendulum.read_text(encoding="utf-8") + '[C_F."rate_3"]\nvalue = 1.0\nunit = "slug*ft^2/s/rad"\n'
+    family = PENDULUM.with_suffix(".py").read_text(encoding="utf-8")
+    family = family.replace("(rate,), required", '(rate, Variable("rate_3", "r", "rad/s", "another")), required')
+    (tmp_path / "pendulum.py").write_text(family, encoding="utf-8")
+    text = PENDULUM.read_text(encoding="utf-8") + '[C_F."rate_3"]\nvalue = 1.0\nunit = "slug*ft^2/s/rad"\n'
     with pytest.raises(TableError) as caught:
         load_text(tmp_path / "pendulum.toml", text)
     (fault,) = caught.value.diagnostics
@@ -319,4 +289,4 @@ def test_models_together_need_what_each_needs(name: str) -> None:
     for count in range(1, len(table.models) + 1):
         for chosen in itertools.combinations(table.models, count):
             needed = [entries_of(table.schemas[model], document) for model in chosen]
-            assert entries_of(table.family.schema(chosen, document), document) == set().union(*needed)
+            assert entries_of(table.family.schema(chosen), document) == set().union(*needed)

@@ -30,7 +30,7 @@ CL_ALPHA = '[C_L]\n"alpha" = { value = 4.6773, unit = "1/rad" }'
 
 DCOM_MODELS = 'models = ["dcom", "sdcom", "sdcom_printed", "sdcom_gust"]'
 SET_MASS = '[sets."section5.3".vehicle]\nm = { value = 191.3, unit = "slug/ft"'
-ORDER = "models of one family, each once, in this order"
+ORDER = "models of the family, each once, in this order"
 
 CASES = [
     # what is replaced, by what, rule, path, part of the message, part of the help
@@ -79,7 +79,8 @@ CASES = [
     ("m = { value = 300.0", "mass = { value = 300.0", "unknown-key", ("vehicle", "mass"), "unknown key", None),
     ("m = { value = 300.0", "m = { value = -300.0", "positive", ("vehicle", "m", "value"), "positive", None),
     ("value = 0.44838", "value = 0.0", "not-zero", ("C_L", "delta_c", "value"), "divides", None),
-    (DCOM_MODELS, 'models = ["dcm"]', "unknown-model", ("table", "models"), "unknown model", "`dcom`"),
+    (DCOM_MODELS, 'models = ["dcm"]', "unknown-model", ("table", "models"), "not a model of the family",
+     "`dcom`"),
     ('status = "published"', 'status = "publshed"', "unknown-status", ("table", "status"), "unknown status",
      "`published`"),
     ('source = "plate"', 'source = "plat"', "unknown-source", ("C_L", "delta_c", "source"), "unknown source",
@@ -134,12 +135,16 @@ CASES = [
     (SET_MASS, '[sets."section5.3".C_L]\n"alpha^2" = { value = 1.0, unit = "1/rad^2" }\n' + SET_MASS,
      "nothing-to-replace", ("sets", "section5.3", "C_L", "alpha^2"), "no `alpha^2` to replace", "`alpha`"),
     # models
-    (DCOM_MODELS, 'models = ["dcom", "com"]', "models", ("table", "models"), ORDER,
-     "the families are: `com`, `com_rigid`;"),
-    (DCOM_MODELS, 'models = ["sdcom", "dcom"]', "models", ("table", "models"), ORDER, None),
+    (DCOM_MODELS, 'models = ["dcom", "com"]', "unknown-model", ("table", "models"), "not a model of the family",
+     "`dcom`"),
+    ('family = "dcom"', 'family = "dcmo"', "unknown-family", ("table", "family"), "unknown family `dcmo`", "`dcom`"),
+    ('family = "dcom"', 'family = 1', "unknown-family", ("table", "family"), "unknown family `1`", "`flexible_mode`"),
+    ('family = "dcom"', 'family = "dcom.py"', "unknown-family", ("table", "family"), "no file `dcom.py`", None),
+    ('family = "dcom"', 'family = "/dcom.py"', "unknown-family", ("table", "family"), "not relative", None),
+    ('family = "dcom"', "", "missing", ("table",), "`family` is missing", None),
+    (DCOM_MODELS, 'models = ["sdcom", "dcom"]', "models", ("table", "models"), ORDER, "`dcom`, `sdcom`, "),
     (DCOM_MODELS, 'models = ["dcom", "dcom"]', "models", ("table", "models"), ORDER, None),
     (DCOM_MODELS, "models = []", "models", ("table", "models"), ORDER, None),
-    (DCOM_MODELS, 'models = ["com_rigid"]', "unknown-section", ("C_N_1",), "unknown section", None),
     ('gust_rms = { value = 1.7453293e-3, unit = "rad", source = "assumed", status = "assumed" }\n', "", "missing",
      ("noise",), "`gust_rms`", None),
     # units

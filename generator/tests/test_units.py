@@ -12,7 +12,6 @@ import casadi as ca
 import pytest
 
 from ahv_generator import ir, units
-from ahv_generator.family import builders
 from ahv_generator.reference import columns, expanded, labels
 from ahv_generator.table import Table, load
 
@@ -176,7 +175,7 @@ PREFIXES = {"state": "x", "input": "u", "noise": "w", "parameter": "p", "argumen
 def results(path: Path, name: str) -> dict[str, float]:
     """The functions of a model at the point above, in the units of the table."""
     table = load(path)
-    model = builders()[name](table)
+    model = table.model(name)
     document = tomllib.loads(path.read_text(encoding="utf-8"))
     values = {f"p.{p.name}": float(document[p.path[0]][p.path[1]]["value"]) for p in table.parameters if p.unit != "1"}
     arguments = []
@@ -197,7 +196,7 @@ def test_the_rates_of_a_table_in_si_are_those_in_si(tmp_path: Path, table: str, 
     loaded_in_si(tmp_path, table)
     theirs = results(tmp_path / f"{table}.toml", name)
     assert list(ours) == list(theirs)
-    model = builders()[name](load(source))
+    model = load(source).model(name)
     for row, variable in zip(model.names("state"), model.bases["state"], strict=True):
         factor = units.conversion(variable.unit, units.SI)
         assert theirs[f"drift.{row}"] == pytest.approx(ours[f"drift.{row}"] * factor, rel=1e-11, abs=1e-11), row

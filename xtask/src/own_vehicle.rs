@@ -4,16 +4,14 @@
 mod commands;
 mod tables;
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use ahv_codegen::{Core, Options, Table};
 use ahv_generate::{Args, Surroundings};
 use clap::Parser as _;
 use commands::Own;
 
-use crate::{python, shell};
+use crate::shell;
 
 const PLACE: &str = "tests/own-vehicle";
 /// Where the packages find `ahv-core`.
@@ -24,14 +22,6 @@ const PENDULUM: &str = "generator/tests/pendulum";
 const PAGE: &str = "docs/link.md";
 const GENERATE: &str = "ahv generate";
 const RUN: &str = "cargo run --release -- ";
-/// Derives with that family beside the others.
-const DERIVE: &str = "import sys
-from ahv_generator import models
-models.__path__.append(sys.argv.pop(1))
-from ahv_generator.__main__ import main
-sys.exit(main())
-";
-
 /// Makes the packages, builds their programs and runs them.
 pub(crate) fn run() -> Result<(), String> {
     let place = shell::root().join(PLACE);
@@ -46,7 +36,15 @@ pub(crate) fn run() -> Result<(), String> {
         write(&folder.join("own.toml"), &text)?;
         generate(&place, package)?;
     }
-    generate_pendulum(&place)?;
+    // A family in a file beside its table.
+    for file in ["pendulum.toml", "pendulum.py"] {
+        let text = read(&shell::root().join(PENDULUM).join(file))?;
+        write(
+            &place.join("made/tables-of-pendulum-models").join(file),
+            &text,
+        )?;
+    }
+    generate(&place, "pendulum-models")?;
     build(&place)?;
     for (program, models, questions) in [
         (
@@ -106,32 +104,6 @@ fn generate(place: &Path, package: &str) -> Result<(), String> {
     };
     let done = ahv_generate::generate(&args, &surroundings);
     done.map(drop).map_err(|failure| failure.to_string())
-}
-
-/// A family that is not among those of the generator: its IR comes from Python with that family, the package from the emitter.
-fn generate_pendulum(place: &Path) -> Result<(), String> {
-    let (file, made) = ("pendulum.toml", place.join("made"));
-    let [family, irs] = [shell::root().join(PENDULUM), made.join("pendulum-ir")];
-    fs::create_dir_all(&irs).map_err(problem("make", &irs))?;
-    let mut derive = shell::program(python::generation()?);
-    derive.current_dir(shell::root().join("generator"));
-    derive.args(["-c", DERIVE]).arg(&family);
-    derive.args(["derive", "--out"]).arg(&irs);
-    shell::output(derive.arg(family.join(file)))?;
-
-    let table = Table::parse(file, &read(&family.join(file))?).map_err(|error| error.message)?;
-    let ir = read(&irs.join("pendulum.json"))?;
-    let irs = BTreeMap::from([("pendulum".to_owned(), ir)]);
-    let options = Options {
-        package: "pendulum-models".to_owned(),
-        core: Core::Path(CORE.to_owned()),
-        ..Options::default()
-    };
-    let tree = ahv_codegen::emit(&[table], &irs, &options).map_err(|error| error.to_string())?;
-    for (path, text) in tree {
-        write(&made.join(&options.package).join(path), &text)?;
-    }
-    Ok(())
 }
 
 /// Builds all programs, of the versions that the workspace is locked to.

@@ -25,6 +25,7 @@ const CONSUMER: [&str; 4] = [
 const LISTED: usize = 10;
 /// Python of the benchmark, from the generator's folder.
 const PEERS: &str = "../bench/peers";
+const EXAMPLES: &str = "../examples";
 /// A microcontroller: no standard library, no heap.
 pub(crate) const BARE_METAL: &str = "thumbv7em-none-eabihf";
 
@@ -61,9 +62,9 @@ const STEPS: [Step; 22] = [
             &DENY,
         )
     }),
-    ("ruff", || module(&["ruff", "check", ".", PEERS])),
+    ("ruff", || module(&["ruff", "check", ".", PEERS, EXAMPLES])),
     ("ruff format", || {
-        module(&["ruff", "format", "--check", ".", PEERS])
+        module(&["ruff", "format", "--check", ".", PEERS, EXAMPLES])
     }),
     ("mypy", || {
         module(&["mypy", "ahv_generator", "ahv_oracle", "tests", PEERS])

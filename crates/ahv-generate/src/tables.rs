@@ -26,7 +26,8 @@ pub(crate) struct Tables {
     pub(crate) parsed: Vec<Table>,
 }
 
-/// What the derivation finds wrong with a table: a key path, whose position only the text knows.
+/// What the derivation finds wrong with a table, at a key path, whose position only the text knows; or with the file of
+/// a family, at a line.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Diagnostic {
     rule: String,
@@ -35,6 +36,7 @@ pub(crate) struct Diagnostic {
     part: DiagnosticPart,
     message: String,
     help: Option<String>,
+    line: Option<usize>,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -108,7 +110,13 @@ impl Tables {
         for diagnostic in diagnostics {
             let named = |table: &Table| table.file_name == diagnostic.file;
             let Some(index) = self.parsed.iter().position(named) else {
-                return Failure::new(format!("{}: {}", diagnostic.file, diagnostic.message));
+                let Some(fault) = self.family_fault(&diagnostic) else {
+                    let at = diagnostic.line.map_or(String::new(), |it| format!(":{it}"));
+                    let Diagnostic { file, message, .. } = diagnostic;
+                    return Failure::new(format!("{file}{at}: {message}"));
+                };
+                faults.push(fault);
+                continue;
             };
             let path: Vec<&str> = diagnostic.path.iter().map(String::as_str).collect();
             let part = match diagnostic.part {
@@ -119,6 +127,25 @@ impl Tables {
             faults.push(self.fault(index, &path, part, message, diagnostic.help));
         }
         Failure::Tables(faults)
+    }
+
+    /// A fault at a line of a family's file, which is named relative to the folder of the tables.
+    fn family_fault(&self, diagnostic: &Diagnostic) -> Option<TableFault> {
+        let (line, table) = (diagnostic.line?, self.sources.first()?);
+        let bytes = files::read(&table.path.with_file_name(&diagnostic.file)).ok()?;
+        let text = String::from_utf8(bytes).ok()?;
+        let before: usize = text
+            .split_inclusive('\n')
+            .take(line.saturating_sub(1))
+            .map(str::len)
+            .sum();
+        let content = text.get(before..)?.lines().next().unwrap_or_default();
+        let start = before + content.len() - content.trim_start().len();
+        let span = start..before + content.trim_end().len();
+        let shown = Path::new(&table.shown).with_file_name(&diagnostic.file);
+        let message = with_rule(&diagnostic.message, &diagnostic.rule);
+        let (help, shown) = (diagnostic.help.clone(), shown.display().to_string());
+        Some(TableFault::new(message, help, &shown, &text, span))
     }
 
     fn fault(

@@ -8,8 +8,9 @@ use crate::reader::{GENERATE, Reader, SOURCES};
 use crate::{Checked, Family, Fault, Text, names};
 
 pub(crate) const HEADER: &str = "table";
-const KEYS: [&str; 7] = [
+const KEYS: [&str; 8] = [
     "name",
+    "family",
     "models",
     "units",
     "set",
@@ -98,6 +99,8 @@ fn sources(entries: &mut Entries<'_>) {
 
 /// The family of the models that the table lists, and those that are known, in order; `None` if none is.
 fn listed(entries: &mut Entries<'_>, families: &[Family]) -> Option<(Family, Vec<&'static str>)> {
+    // What a table should hold is not known without its family.
+    entries.text.item(&[HEADER, "family"])?;
     let path = [HEADER, "models"];
     let item = entries.text.item(&path)?;
     let known: Vec<&str> = families

@@ -1,1 +1,1 @@
-"""The models. A module that has a `FAMILY`, or a list `FAMILIES`, is found by that alone: see `..family`."""
+"""Parts that families share: any family may import them, one beside its table as well."""

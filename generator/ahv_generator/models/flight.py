@@ -3,33 +3,33 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
-from ..schema import POSITIVE, Choice, Option, ParameterSpec, VariableSpec, switch
-from ..traits import Equation, Given, Mode, Sought, Traits, Trim
+from ..modelling import POSITIVE, Choice, Equation, Given, Model, Option, Parameter, Sought, Variable, switch
 
-RIGID_STATE = (
-    VariableSpec("velocity", "V", "ft/s", "velocity", "velocity"),
-    VariableSpec("altitude", "h", "ft", "altitude", "altitude"),
-    VariableSpec("gamma", r"\gamma", "rad", "flight-path angle", "gamma"),
-    VariableSpec("alpha", r"\alpha", "rad", "angle of attack", "alpha"),
-    VariableSpec("pitch_rate", "Q", "rad/s", "pitch rate", "pitch_rate"),
+VELOCITY, ALTITUDE, GAMMA, ALPHA, PITCH_RATE = RIGID_STATE = (
+    Variable("velocity", "V", "ft/s", "velocity"),
+    Variable("altitude", "h", "ft", "altitude"),
+    Variable("gamma", r"\gamma", "rad", "flight-path angle"),
+    Variable("alpha", r"\alpha", "rad", "angle of attack"),
+    Variable("pitch_rate", "Q", "rad/s", "pitch rate"),
 )
-PHI = VariableSpec("phi", r"\phi", "1", "fuel equivalence ratio", "phi")
-DELTA_E = VariableSpec("delta_e", r"\delta_e", "rad", "elevator deflection", "delta_e")
+PHI = Variable("phi", r"\phi", "1", "fuel equivalence ratio")
+DELTA_E = Variable("delta_e", r"\delta_e", "rad", "elevator deflection")
 
 VEHICLE = (
-    ParameterSpec("m", "m", "slug/ft", "vehicle mass", POSITIVE),
-    ParameterSpec("I_yy", "I_{yy}", "slug*ft", "pitch moment of inertia", POSITIVE),
-    ParameterSpec("S", "S", "ft", "reference area", POSITIVE),
-    ParameterSpec("c_bar", r"\bar c", "ft", "mean aerodynamic chord", POSITIVE),
-    ParameterSpec("z_T", "z_T", "ft", "thrust-to-moment coupling arm"),
+    Parameter("m", "m", "slug/ft", "vehicle mass", POSITIVE),
+    Parameter("I_yy", "I_{yy}", "slug*ft", "pitch moment of inertia", POSITIVE),
+    Parameter("S", "S", "ft", "reference area", POSITIVE),
+    Parameter("c_bar", r"\bar c", "ft", "mean aerodynamic chord", POSITIVE),
+    Parameter("z_T", "z_T", "ft", "thrust-to-moment coupling arm"),
 )
 ENVIRONMENT = (
-    ParameterSpec("rho_0", r"\rho_0", "slug/ft^3", "air density at the reference altitude", POSITIVE),
-    ParameterSpec("h_0", "h_0", "ft", "reference altitude of the air density"),
-    ParameterSpec("h_s", "h_s", "ft", "scale height of the air density", POSITIVE),
-    ParameterSpec("g", "g", "ft/s^2", "acceleration of gravity at sea level", POSITIVE),
-    ParameterSpec("R_E", "R_E", "ft", "radius of the Earth", POSITIVE),
+    Parameter("rho_0", r"\rho_0", "slug/ft^3", "air density at the reference altitude", POSITIVE),
+    Parameter("h_0", "h_0", "ft", "reference altitude of the air density"),
+    Parameter("h_s", "h_s", "ft", "scale height of the air density", POSITIVE),
+    Parameter("g", "g", "ft/s^2", "acceleration of gravity at sea level", POSITIVE),
+    Parameter("R_E", "R_E", "ft", "radius of the Earth", POSITIVE),
 )
 EARTH = Choice(
     "earth",
@@ -43,52 +43,42 @@ EARTH = Choice(
 )
 
 
-def vehicle_traits(*modes: Mode) -> Traits:
-    """Steady flight on a straight path, modes besides those of the rigid body, and deviations that cost alike.
+def steady_flight(model: Model, modes: Mapping[str, tuple[str, ...]]) -> None:
+    """Steady flight on a straight path; the modes, those of the rigid body and `modes`; deviations that cost alike.
 
     Two rows of the drift are no equations: `altitude`, which is V sin(gamma) whatever the unknowns, and `alpha`, which
     at zero pitch rate is the row `gamma` again. The rate of the velocity weighs as V times that of gamma, for both are
     accelerations; flexible rows weigh more, so that where there is no trim the rigid body is off balance, not a mode.
     """
-    flexible = [state for mode in modes for state in mode.states]
-    numbers = [mode.name.rpartition(" ")[2] for mode in modes]
-    return Traits(
-        trim=Trim(
-            given=(
-                Given("velocity", 7702.0808, above=0.0),
-                Given("altitude", 85000.0),
-                Given("gamma", 0.0, -math.pi / 2, math.pi / 2),
-            ),
-            sought=(
-                Sought("alpha", scale=0.1),
-                *(Sought(name) for name in flexible),
-                Sought("phi", 0.25, 0.1),
-                Sought("delta_e", 0.2, 0.1),
-            ),
-            equations=(
-                Equation("velocity", like=("gamma", "velocity")),
-                Equation("gamma"),
-                Equation("pitch_rate"),
-                *(Equation(name, weight=100.0) for name in flexible),
-            ),
-            moving=("altitude",),
-            # A mode is told by its coordinate, be it a state or what coloured noise stands for.
-            shown=("alpha", "phi", "delta_e", *(f"eta_{number}" for number in numbers if number.isdigit())),
-        ),
-        modes=(
-            Mode("phugoid", ("velocity", "altitude", "gamma"), "height"),
-            Mode("short period", ("alpha", "pitch_rate")),
-            *modes,
-        ),
-        inputs=("phi", "delta_e"),
-        outputs=("velocity", "gamma"),
-        deviations={
-            "velocity": 10.0,
-            "altitude": 100.0,
-            "gamma": 0.01,
-            "alpha": 0.02,
-            "pitch_rate": 0.05,
-            "phi": 0.2,
-            "delta_e": 0.05,
-        },
+    flexible = [state for states in modes.values() for state in states]
+    numbers = [name.rpartition(" ")[2] for name in modes]
+    model.trim(
+        given=[
+            Given(VELOCITY, 7702.0808, above=0.0),
+            Given(ALTITUDE, 85000.0),
+            Given(GAMMA, 0.0, -math.pi / 2, math.pi / 2),
+        ],
+        sought=[
+            Sought(ALPHA, scale=0.1),
+            *(Sought(name) for name in flexible),
+            Sought(PHI, 0.25, 0.1),
+            Sought(DELTA_E, 0.2, 0.1),
+        ],
+        equations=[
+            Equation(VELOCITY, like=(GAMMA, VELOCITY)),
+            Equation(GAMMA),
+            Equation(PITCH_RATE),
+            *(Equation(name, weight=100.0) for name in flexible),
+        ],
+        moving=[ALTITUDE],
+        # A mode is shown by its coordinate, be it a state or the quantity in the place of one.
+        shown=[ALPHA, PHI, DELTA_E, *(f"eta_{number}" for number in numbers if number.isdigit())],
+    )
+    model.mode("phugoid", VELOCITY, ALTITUDE, GAMMA, slowest="height")
+    model.mode("short period", ALPHA, PITCH_RATE)
+    for name, states in modes.items():
+        model.mode(name, *states)
+    model.defaults(inputs=[PHI, DELTA_E], outputs=[VELOCITY, GAMMA])
+    model.deviations(
+        {VELOCITY: 10.0, ALTITUDE: 100.0, GAMMA: 0.01, ALPHA: 0.02, PITCH_RATE: 0.05, PHI: 0.2, DELTA_E: 0.05}
     )

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import casadi as ca
-
-from ..model import Model
-from ..schema import NOT_NEGATIVE, Choice, Option, ParameterSpec, VariableSpec, switch
-from ..stochastic import Gains
+from ..modelling import NOT_NEGATIVE, Choice, Expr, Model, Option, Parameter, Variable, sqrt, switch
 from .flexible import FLEXIBLE, index, of, subscript
 
 NOISE = Choice(
@@ -23,68 +19,60 @@ NOISE = Choice(
 )
 
 RIGID_INCREMENTS = (
-    VariableSpec("w_gamma", r"w_\gamma", "s^0.5", "Wiener increment that perturbs the flight-path angle"),
-    VariableSpec("w_alpha", r"w_\alpha", "s^0.5", "Wiener increment that perturbs the angle of attack"),
-    VariableSpec("w_q", "w_Q", "s^0.5", "Wiener increment that perturbs the pitch rate"),
+    Variable("w_gamma", r"w_\gamma", "s^0.5", "Wiener increment that perturbs the flight-path angle"),
+    Variable("w_alpha", r"w_\alpha", "s^0.5", "Wiener increment that perturbs the angle of attack"),
+    Variable("w_q", "w_Q", "s^0.5", "Wiener increment that perturbs the pitch rate"),
 )
 PERTURBATIONS = "the columns of w_gamma, w_alpha and w_q are derivatives of the drift"
 
-_PERTURBED = {"w_gamma": "x.gamma", "w_alpha": "x.alpha", "w_q": "x.pitch_rate"}
+_PERTURBED = {"w_gamma": "gamma", "w_alpha": "alpha", "w_q": "pitch_rate"}
 
 
-def intensity(suffix: str) -> ParameterSpec:
+def intensity(suffix: str) -> Parameter:
     """The intensity of the noise of a mode."""
     doc = f"intensity of the white noise{of(suffix).replace(' of', ' on')}"
-    return ParameterSpec(f"sigma{suffix}", rf"\sigma{subscript(suffix)}", f"{FLEXIBLE}/s^1.5", doc, NOT_NEGATIVE)
+    return Parameter(f"sigma{suffix}", rf"\sigma{subscript(suffix)}", f"{FLEXIBLE}/s^1.5", doc, NOT_NEGATIVE)
 
 
-def noise_parameters(modes: int) -> tuple[ParameterSpec, ...]:
+def noise_parameters(modes: range) -> tuple[Parameter, ...]:
     """Noise intensities of the flexible modes, then of the rigid body."""
     rigid = (
-        ParameterSpec(name, rf"\sigma_{{w_{label}}}", unit, f"intensity of the white noise w_{word}", NOT_NEGATIVE)
+        Parameter(name, rf"\sigma_{{w_{label}}}", unit, f"intensity of the white noise w_{word}", NOT_NEGATIVE)
         for name, label, unit, word in (
             ("w_gamma", r"\gamma", "rad*s^0.5", "gamma"),
             ("w_alpha", r"\alpha", "rad*s^0.5", "alpha"),
             ("w_q", "Q", "rad/s^0.5", "Q"),
         )
     )
-    return (*(intensity(f"_{i}") for i in range(1, modes + 1)), *rigid)
+    return (*(intensity(f"_{i}") for i in modes), *rigid)
 
 
-def modal_increments(modes: range) -> tuple[VariableSpec, ...]:
+def modal_increments(modes: range) -> tuple[Variable, ...]:
     """One Wiener increment for each flexible mode."""
     return tuple(
-        VariableSpec(f"xi_{i}", rf"\xi_{index(i)}", "s^0.5", f"Wiener increment that drives flexible mode {i}")
+        Variable(f"xi_{i}", rf"\xi_{index(i)}", "s^0.5", f"Wiener increment that drives flexible mode {i}")
         for i in modes
     )
 
 
-def perturbation_gains(m: Model, rates: Mapping[str, ca.SX]) -> Gains:
+def perturbation_gains(model: Model, rates: Mapping[str, Expr]) -> dict[tuple[str, str], Expr]:
     """The derivatives of the drift by gamma, alpha and Q, times the intensities of their noise."""
     return {
-        (row, column): m.graph.derivative(rates[row], leaf) * m.parameter(column)
-        for row in m.names("state")
-        for column, leaf in _PERTURBED.items()
+        (row, column): model.derivative(rates[row], state) * model[column]
+        for row in model.names("state")
+        for column, state in _PERTURBED.items()
     }
 
 
-def modal_gains(m: Model, by_row: Mapping[str, ca.SX]) -> Gains:
+def modal_gains(model: Model, by_row: Mapping[str, Expr]) -> dict[tuple[str, str], Expr]:
     """What drives the modes, by the rows that it enters: correlated with mode 1 as `shared_noise` says."""
-    share = m.parameter("shared_noise")
-    own = (
-        m.graph.define(
-            "own_noise",
-            ca.sqrt((1 - share) * (1 + share)),
-            symbol=r"\sqrt{1-\rho_\xi^2}",
-            unit="1",
-            doc="share of its own noise in what drives a mode",
-            equation="(16)",
-            section="Noise of the modes",
-        )
-        if len(by_row) > 1
-        else None
-    )
-    gains: Gains = {}
+    share = model["shared_noise"]
+    own = None
+    if len(by_row) > 1:
+        doc = "share of its own noise in what drives a mode"
+        with model.section("Noise of the modes", "(16)"):
+            own = model.define("own_noise", sqrt((1 - share) * (1 + share)), r"\sqrt{1-\rho_\xi^2}", "1", doc)
+    gains: dict[tuple[str, str], Expr] = {}
     for i, (row, gain) in enumerate(by_row.items(), start=1):
         if i == 1 or own is None:
             gains[row, "xi_1"] = gain

@@ -2,45 +2,59 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
 
 import casadi as ca
 
 from ..audit.corrected import corrected_expressions
-from ..derivatives import add_drift_and_derivatives, add_lie_derivatives
-from ..model import Model
-from ..stochastic import Gains, add_diffusion
-from ..table import Table
-from .dcom import define_surroundings
+from ..modelling import Model
 from .flexible import modes_of
-from .flight import vehicle_traits
-from .sdcom import EQUATION, FLEXIBLE_OUTLOOKS, coloured_gains, coloured_modes, define_exact_rates, reduced_bases
+from .sdcom import coloured_gains, define_exact_rates
 from .strict_feedback import ROWS, Parts, Row, add_row, define_part
-from .vehicle import add_outlooks
 
-NOTE = "sdcom_printed leaves out Delta f, which can exceed the exact rate itself; exact is --model sdcom"
+EQUATION = "(27)"
 
 
-def build_sdcom_printed(table: Table) -> Model:
-    """The stochastic model in the truncated form of the paper, and what it leaves out of the exact one."""
-    modes = modes_of(table)
-    bases = reduced_bases(modes)
-    title = "stochastic decoupled control-oriented model as printed, without its misprints"
-    traits = replace(vehicle_traits(*coloured_modes(modes)), note=NOTE, audited=True)
-    m = Model("sdcom_printed", title, "(24)-(35)", table, bases, traits)
-    define_surroundings(m)
-    exact, _ = define_exact_rates(m)
-    parts = {row.name: _parts(m, row) for row in ROWS}
-    rates = {"altitude": exact["altitude"]} | {row.state: _define_rate(m, row, parts[row.name]) for row in ROWS}
-    rates |= {f"chi_{i}": exact[f"chi_{i}"] for i in modes}
-    add_drift_and_derivatives(m, rates, EQUATION)
-    add_outlooks(m, *FLEXIBLE_OUTLOOKS)
-    _add_diffusion(m, rates, parts)
+@dataclass(frozen=True)
+class PrintedForm:
+    """The rates (27) as printed, their parts by row, and the rates of the exact form."""
+
+    rates: dict[str, ca.SX]
+    parts: dict[str, Parts]
+    exact: dict[str, ca.SX]
+
+
+def define_printed_rates(model: Model) -> PrintedForm:
+    """The truncated form of the paper, beside the exact one."""
+    exact, _ = define_exact_rates(model)
+    parts = {row.name: _parts(model, row) for row in ROWS}
+    rates = {"altitude": exact["altitude"]}
+    rates |= {row.state: _define_rate(model, row, parts[row.name]) for row in ROWS}
+    rates |= {f"chi_{i}": exact[f"chi_{i}"] for i in modes_of(model.table)}
+    return PrintedForm(rates, parts, exact)
+
+
+def printed_gains(model: Model, form: PrintedForm) -> dict[tuple[str, str], ca.SX]:
+    """The diffusion of (27): the column of w_alpha is H, w_gamma drives the altitude alone."""
+    gains = {(row.state, "w_alpha"): form.parts[row.name].H * model["w_alpha"] for row in ROWS}
+    gains["altitude", "w_gamma"] = model["velocity"] * model["w_gamma"]
+    gains["alpha", "w_q"] = model["w_q"]
+    return gains | coloured_gains(model)
+
+
+def add_printed_parts(model: Model, form: PrintedForm) -> None:
+    """The functions of every row, and what (27) calls Delta f, so that it holds identically, and the same of H."""
     for row in ROWS:
-        add_row(m, row, parts[row.name])
-    _add_differences(m, exact, rates, parts)
-    add_lie_derivatives(m, rates, EQUATION)
-    return m
+        add_row(model, row, form.parts[row.name])
+    for row in ROWS:
+        doc = f"Delta f of (27): the {row.state} rate of the exact form less that of the printed one"
+        difference = form.exact[row.state] - form.rates[row.state]
+        model.add_scalar(f"delta_f_{row.name}", "differences", doc, EQUATION, difference, row.rate_unit(model))
+    for row in ROWS:
+        doc = f"H of the {row.state} row in the exact form less that of the printed one"
+        difference = model.derivative(form.exact[row.state], "alpha") - form.parts[row.name].H
+        unit = f"{row.rate_unit(model)}/rad"
+        model.add_scalar(f"delta_H_{row.name}", "differences", doc, row.equation, difference, unit)
 
 
 class _Names(dict[str, object]):
@@ -52,18 +66,18 @@ class _Names(dict[str, object]):
         return ca.SX(0)
 
 
-def _names(m: Model, row: Row) -> _Names:
+def _names(model: Model, row: Row) -> _Names:
     angles = {f"x.{angle}": angle for angle in ("alpha", "gamma")}
-    names = _Names({p.name: m.parameter(p.name) for p in m.table.parameters})
+    names = _Names(model.parameters)
     mentioned = ("velocity", "gamma", "alpha", "phi", "delta_e", "dynamic_pressure", "turn_factor")
-    names |= {name: m[name] for name in mentioned}
+    names |= {name: model[name] for name in mentioned}
     names |= {
-        "sin": lambda angle: m[f"sin_{angles[angle.name()]}"],
-        "cos": lambda angle: m[f"cos_{angles[angle.name()]}"],
+        "sin": lambda angle: model[f"sin_{angles[angle.name()]}"],
+        "cos": lambda angle: model[f"cos_{angles[angle.name()]}"],
         # On the spherical Earth the path follows the curvature; along it gravity is whole.
-        "g": m["gravity"] if row.name == "V" else m["gravity_turn"] * m["velocity"],
+        "g": model["gravity"] if row.name == "V" else model["gravity_turn"] * model["velocity"],
         # Law (4) stands in the print as this ratio; the choice of the canard scales it.
-        "c_l_delta_e": -m["canard_gain"],
+        "c_l_delta_e": -model["canard_gain"],
         "c_l_delta_c": ca.SX(1),
     }
     return names
@@ -76,58 +90,30 @@ def _evaluated(text: str, names: _Names) -> ca.SX:
     return ca.SX(eval(text, {"__builtins__": {}}, names))
 
 
-def _parts(m: Model, row: Row) -> Parts:
+def _parts(model: Model, row: Row) -> Parts:
     texts = corrected_expressions()
-    names, unit = _names(m, row), row.rate_unit(m)
+    names, unit = _names(model, row), row.rate_unit(model)
     slopes, flexible = [], ca.SX(0)
-    for i in modes_of(m.table):
+    for i in modes_of(model.table):
         of_mode = _Names(names)
-        of_mode |= {"n": m[f"generalized_force_{i}"], "omega": m.parameter(f"omega_{i}")}
+        of_mode |= {"n": model[f"generalized_force_{i}"], "omega": model[f"omega_{i}"]}
         of_mode |= {f"{fit}_eta": names[f"{fit}_eta_{i}"] for fit in ("c_t", "c_l", "c_d", "c_m")}
         slopes.append(_evaluated(texts[f"h_{row.name}"], of_mode))
         flexible = flexible + _evaluated(texts[f"f_{row.name}_eta"], of_mode)
-    names[f"f_{row.name}_eta"] = f_eta = define_part(m, row, "f_eta", unit, flexible, row.next_equation)
+    names[f"f_{row.name}_eta"] = f_eta = define_part(model, row, "f_eta", unit, flexible, row.next_equation)
     return Parts(
-        define_part(m, row, "f", unit, _evaluated(texts[f"f_{row.name}"], names), row.equation),
-        define_part(m, row, "g", row.gain_unit, _evaluated(texts[f"g_{row.name}"], names), row.equation),
+        define_part(model, row, "f", unit, _evaluated(texts[f"f_{row.name}"], names), row.equation),
+        define_part(model, row, "g", row.gain_unit, _evaluated(texts[f"g_{row.name}"], names), row.equation),
         tuple(slopes),
-        define_part(m, row, "H", f"{unit}/rad", _evaluated(texts[f"H_{row.name}"], names), row.equation),
+        define_part(model, row, "H", f"{unit}/rad", _evaluated(texts[f"H_{row.name}"], names), row.equation),
         f_eta,
     )
 
 
-def _define_rate(m: Model, row: Row, parts: Parts) -> ca.SX:
-    total = parts.f + parts.g * m[row.control]
+def _define_rate(model: Model, row: Row, parts: Parts) -> ca.SX:
+    total = parts.f + parts.g * model[row.control]
     for i, slope in enumerate(parts.h, start=1):
-        total = total + slope * m[f"chi_{i}"]
-    return m.graph.define(
-        f"{row.state}_rate_printed",
-        total,
-        symbol=rf"\dot {{{'Q' if row.name == 'Q' else row.label}}}",
-        unit=row.rate_unit(m),
-        doc=f"rate of {row.state} in the printed form",
-        equation=EQUATION,
-        section="Printed form",
-    )
-
-
-def _add_diffusion(m: Model, rates: dict[str, ca.SX], parts: dict[str, Parts]) -> None:
-    gains: Gains = {(row.state, "w_alpha"): parts[row.name].H * m.parameter("w_alpha") for row in ROWS}
-    gains["altitude", "w_gamma"] = m["velocity"] * m.parameter("w_gamma")
-    gains["alpha", "w_q"] = m.parameter("w_q")
-    gains |= coloured_gains(m)
-    doc = "the column of w_alpha is H of (28)-(34), w_gamma drives the altitude alone"
-    add_diffusion(m, rates, gains, doc, EQUATION)
-
-
-def _add_differences(m: Model, exact: dict[str, ca.SX], rates: dict[str, ca.SX], parts: dict[str, Parts]) -> None:
-    """What (27) calls Delta f, so that it holds identically, and the same of H."""
-    for row in ROWS:
-        doc = f"Delta f of (27): the {row.state} rate of the exact form less that of the printed one"
-        difference = exact[row.state] - rates[row.state]
-        m.add_scalar(f"delta_f_{row.name}", "differences", doc, EQUATION, difference, row.rate_unit(m))
-    for row in ROWS:
-        doc = f"H of the {row.state} row in the exact form less that of the printed one"
-        difference = m.graph.derivative(exact[row.state], "x.alpha") - parts[row.name].H
-        unit = f"{row.rate_unit(m)}/rad"
-        m.add_scalar(f"delta_H_{row.name}", "differences", doc, row.equation, difference, unit)
+        total = total + slope * model[f"chi_{i}"]
+    symbol, doc = rf"\dot {{{'Q' if row.name == 'Q' else row.label}}}", f"rate of {row.state} in the printed form"
+    with model.section("Printed form", EQUATION):
+        return model.define(f"{row.state}_rate_printed", total, symbol, row.rate_unit(model), doc)

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import casadi as ca
-
-from ..model import Model
-from ..schema import Choice, Option, switch
+from ..modelling import Choice, Expr, Model, Option, sqrt, switch
 from .flexible import FLEXIBLE, of, subscript
 
 REDUCTION = Choice(
@@ -25,54 +22,33 @@ REDUCTION = Choice(
 SECTION = "Coloured noise"
 
 
-def define_decay(m: Model, suffix: str = "") -> ca.SX:
+def define_decay(model: Model, suffix: str = "") -> Expr:
     """The decay rate a of (18), by (23) or by matching moments."""
-    omega, zeta, moment = (m.parameter(name) for name in (f"omega{suffix}", f"zeta{suffix}", "moment_matching"))
+    omega, zeta, moment = model.symbols(f"omega{suffix}", f"zeta{suffix}", "moment_matching")
     printed = zeta * omega
     # Not a difference from the printed one: in that the other rate would drown where the damping is large.
-    return m.graph.define(
-        f"chi_decay{suffix}",
-        printed * (1 - moment) + moment * (omega / (2 * zeta)),
-        symbol=f"a{subscript(suffix)}",
-        unit="1/s",
-        doc=f"decay rate of the coloured noise{of(suffix)}",
-        equation="(23)",
-        section=SECTION,
-    )
+    decay = printed * (1 - moment) + moment * (omega / (2 * zeta))
+    doc = f"decay rate of the coloured noise{of(suffix)}"
+    with model.section(SECTION, "(23)"):
+        return model.define(f"chi_decay{suffix}", decay, f"a{subscript(suffix)}", "1/s", doc)
 
 
-def define_rate(m: Model, decay: ca.SX, suffix: str = "") -> ca.SX:
+def define_rate(model: Model, decay: Expr, suffix: str = "") -> Expr:
     """The drift of chi, (27)."""
-    return m.graph.define(
-        f"chi_rate{suffix}",
-        -decay * m[f"chi{suffix}"],
-        symbol=rf"\dot\chi{subscript(suffix)}",
-        unit=f"{FLEXIBLE}/s",
-        doc=f"drift of the coloured noise{of(suffix)}; (24) and (26) omit the factor chi",
-        equation="(27)",
-        section=SECTION,
-    )
+    rate = -decay * model[f"chi{suffix}"]
+    doc = f"drift of the coloured noise{of(suffix)}; (24) and (26) omit the factor chi"
+    with model.section(SECTION, "(27)"):
+        return model.define(f"chi_rate{suffix}", rate, rf"\dot\chi{subscript(suffix)}", f"{FLEXIBLE}/s", doc)
 
 
-def define_diffusion(m: Model, suffix: str = "") -> ca.SX:
+def define_diffusion(model: Model, suffix: str = "") -> Expr:
     """The diffusion b of (18), by (23) or by matching variances or moments."""
-    omega, zeta, sigma = (m.parameter(f"{name}{suffix}") for name in ("omega", "zeta", "sigma"))
-    variance, moment = m.parameter("variance_matching"), m.parameter("moment_matching")
-    share = m.graph.define(
-        f"chi_share{suffix}",
-        zeta * (1 - variance - moment) + variance / ca.sqrt(2) + moment / (2 * zeta),
-        symbol=rf"\beta{subscript(suffix)}",
-        unit="1",
-        doc=f"diffusion of the coloured noise{of(suffix)} over sigma/omega",
-        equation="(23)",
-        section=SECTION,
-    )
-    return m.graph.define(
-        f"chi_diffusion{suffix}",
-        share * sigma / omega,
-        symbol=f"b{subscript(suffix)}",
-        unit=f"{FLEXIBLE}/s^0.5",
-        doc=f"diffusion of the coloured noise{of(suffix)}",
-        equation="(23)",
-        section=SECTION,
-    )
+    omega, zeta, sigma = model.symbols(f"omega{suffix}", f"zeta{suffix}", f"sigma{suffix}")
+    variance, moment = model.symbols("variance_matching", "moment_matching")
+    with model.section(SECTION, "(23)"):
+        share = zeta * (1 - variance - moment) + variance / sqrt(2) + moment / (2 * zeta)
+        doc = f"diffusion of the coloured noise{of(suffix)} over sigma/omega"
+        share = model.define(f"chi_share{suffix}", share, rf"\beta{subscript(suffix)}", "1", doc)
+        doc = f"diffusion of the coloured noise{of(suffix)}"
+        diffusion = share * sigma / omega
+        return model.define(f"chi_diffusion{suffix}", diffusion, f"b{subscript(suffix)}", f"{FLEXIBLE}/s^0.5", doc)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import casadi as ca
-
 from .. import units
-from ..model import Entry, Model, Output
+from ..modelling import Entry, Expr, Model, Output
 
 GROUP = "strict_feedback"
 
@@ -32,9 +30,9 @@ class Row:
         """The subscript in LaTeX."""
         return self.name if self.name in ("V", "Q") else f"\\{self.name}"
 
-    def rate_unit(self, m: Model) -> str:
+    def rate_unit(self, model: Model) -> str:
         """The unit of the row."""
-        return units.quotient(m.unit(self.state), "s")
+        return units.quotient(model.unit(self.state), "s")
 
 
 ROWS = (
@@ -49,45 +47,41 @@ ROWS = (
 class Parts:
     """f, g, h by mode, H and the flexible part of f of one row."""
 
-    f: ca.SX
-    g: ca.SX
-    h: tuple[ca.SX, ...]
-    H: ca.SX
-    f_eta: ca.SX
+    f: Expr
+    g: Expr
+    h: tuple[Expr, ...]
+    H: Expr
+    f_eta: Expr
 
 
-def define_part(m: Model, row: Row, kind: str, unit: str, expr: ca.SX, equation: str) -> ca.SX:
+def define_part(model: Model, row: Row, kind: str, unit: str, expr: Expr, equation: str) -> Expr:
     """Names a part of a row, `f`, `g` or `H`, or `f_eta`, unless it is a number."""
     if expr.is_constant():
         return expr
     letter, _, flexible = kind.partition("_")
     # Names in the code are in lower case, where H would be h.
     stem = "alpha_slope" if letter == "H" else letter
-    return m.graph.define(
-        f"{stem}_{row.state}" + ("_eta" if flexible else ""),
-        expr,
-        symbol=rf"{letter}_{{{row.label}}}" + (r"^\eta" if flexible else ""),
-        unit=unit,
-        doc=f"{letter} of the {row.state} row" + (", flexible part" if flexible else ""),
-        equation=equation,
-        section="Strict-feedback form",
-    )
+    name = f"{stem}_{row.state}" + ("_eta" if flexible else "")
+    symbol = rf"{letter}_{{{row.label}}}" + (r"^\eta" if flexible else "")
+    doc = f"{letter} of the {row.state} row" + (", flexible part" if flexible else "")
+    with model.section("Strict-feedback form", equation):
+        return model.define(name, expr, symbol, unit, doc)
 
 
-def add_row(m: Model, row: Row, parts: Parts) -> None:
+def add_row(model: Model, row: Row, parts: Parts) -> None:
     """Add the functions of one row by the paper's names."""
-    unit = row.rate_unit(m)
+    unit = row.rate_unit(model)
 
-    def add(name: str, expr: ca.SX, unit: str, doc: str, equation: str) -> None:
-        m.add_scalar(name, GROUP, doc, equation, expr, unit)
+    def add(name: str, expr: Expr, unit: str, doc: str, equation: str) -> None:
+        model.add_scalar(name, GROUP, doc, equation, expr, unit)
 
     add(f"f_{row.name}", parts.f, unit, f"Part of the {row.state} rate that is left to f", row.equation)
-    doc = f"Coefficient of {row.control} ({m.unit(row.control)}) in the {row.state} rate"
+    doc = f"Coefficient of {row.control} ({model.unit(row.control)}) in the {row.state} rate"
     add(f"g_{row.name}", parts.g, row.gain_unit, doc, row.equation)
-    slopes = zip(m.names("mode"), parts.h, strict=True)
+    slopes = zip(model.names("mode"), parts.h, strict=True)
     entries = tuple(Entry((mode,), slope) for mode, slope in slopes if not slope.is_zero())
     doc = f"Derivatives of the {row.state} rate with respect to the coloured noises chi"
-    m.add(f"h_{row.name}", GROUP, doc, row.next_equation, [Output("", ("mode",), entries)])
+    model.add(f"h_{row.name}", GROUP, doc, row.next_equation, [Output("", ("mode",), entries)])
     doc = f"Derivative of the {row.state} rate with respect to the angle of attack, at frozen inputs"
     add(f"H_{row.name}", parts.H, units.quotient(unit, "rad"), doc, row.equation)
     doc = f"Part of f_{row.name} from the static flexible coordinates"

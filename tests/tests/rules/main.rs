@@ -91,6 +91,8 @@ enum Agreement {
     NeedsGeneration,
     /// The table has other sections than the package, by which a family may count what it has.
     OtherSections,
+    /// The table names another family, or a model of another one.
+    OtherFamily,
 }
 
 /// Whether the faults that `--table` and the generator's reader find are the same; `None` if not. They may differ:
@@ -98,7 +100,9 @@ enum Agreement {
 /// * if the text is not TOML: `ahv generate` reads tables with the same parser before it starts Python;
 /// * in and under a coefficient that the package does not have, of which `--table` says `needs-generation`;
 /// * if sections are missing or unknown. The sections of a table may say how many modes it has, to the generator.
-///   Both refuse it.
+///   Both refuse it;
+/// * if the family is another, or a model is of another. The generator takes the family that the table names, `--table`
+///   that of the models, whose name the package does not say.
 fn agree(ours: &Found, theirs: &Found) -> Option<Agreement> {
     let rule = |fault: &&Vec<String>, name: &str| fault[0] == name;
     if ours.iter().any(|fault| rule(&fault, "unreadable")) {
@@ -111,6 +115,11 @@ fn agree(ours: &Found, theirs: &Found) -> Option<Agreement> {
         } else {
             Agreement::Accepted
         });
+    }
+    let of_family =
+        |fault: &Vec<String>| ["unknown-family", "unknown-model"].contains(&fault[0].as_str());
+    if theirs.iter().any(of_family) {
+        return Some(Agreement::OtherFamily);
     }
     let new: Vec<&[String]> = ours
         .iter()
@@ -250,11 +259,12 @@ fn both_readers_have_the_same_rules() {
     let (accepted, refused) = (count(Agreement::Accepted), count(Agreement::Refused));
     println!(
         "{} changes: {accepted} accepted, {refused} refused with the same faults, {} not TOML, {} need generation, \
-         {} with other sections",
+         {} with other sections, {} with another family",
         cases.len(),
         count(Agreement::Unreadable),
         count(Agreement::NeedsGeneration),
         count(Agreement::OtherSections),
+        count(Agreement::OtherFamily),
     );
     assert!(
         accepted * 20 > cases.len() && refused * 3 > cases.len(),

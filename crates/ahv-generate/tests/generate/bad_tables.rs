@@ -210,6 +210,31 @@ fn what_the_derivation_finds_is_shown_in_the_table() {
 }
 
 #[test]
+fn what_the_derivation_finds_in_a_family_is_shown_at_its_line() {
+    let mut scratch = Scratch::new();
+    scratch.write(
+        "generator/tables/own.py",
+        "family = Family()\n    lift = 1\n",
+    );
+    let found = r#"{"diagnostics":[{"rule":"family","file":"own.py","path":[],"part":"key","message":"lift is no force","help":null,"line":2}]}"#;
+    scratch.use_python(scratch.interpreter("3 11", "", &format!("echo '{found}'; exit 2")));
+    let message = scratch.refusal();
+    for expected in [
+        "error: lift is no force [family]\n",
+        "generator/tables/own.py:2:5]",
+        "lift = 1",
+    ] {
+        assert!(message.contains(expected), "no {expected:?} in\n{message}");
+    }
+    // A family that comes along is not in the project.
+    let found = found.replace("own.py", "ahv_generator/families/com.py");
+    scratch.use_python(scratch.interpreter("3 11", "", &format!("echo '{found}'; exit 2")));
+    let message = scratch.refusal();
+    let expected = "error: ahv_generator/families/com.py:2: lift is no force";
+    assert!(message.starts_with(expected), "{message}");
+}
+
+#[test]
 fn a_derivation_that_breaks_down_is_shown() {
     let mut scratch = Scratch::new();
     for end in ["exit 1", "exit 2"] {

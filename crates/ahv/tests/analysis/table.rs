@@ -390,7 +390,7 @@ fn faults_are_reported_with_place_and_rule() {
             path.to_str().expect("UTF-8"),
         ],
         2,
-        &["not for dcom", "com.toml:6:"],
+        &["not for dcom", "com.toml:7:"],
     );
     fail(
         &["trim", "--model", "com", "--table", "missing.toml"],
