@@ -8,6 +8,7 @@ mod demo;
 mod determinism;
 mod firmware;
 mod instructions;
+mod names;
 mod no_panic;
 mod own_vehicle;
 mod plot;
@@ -50,6 +51,8 @@ enum Task {
     OwnVehicle,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
+    /// List the values of the generated code whose names only say whose part they are, each with the reason
+    Names,
     /// Measure the generated functions and the steppers beside CasADi's C
     Bench {
         /// Beside all peers, and write docs/benchmarks.md
@@ -83,6 +86,7 @@ fn main() -> ExitCode {
         Task::Determinism => determinism::run(),
         Task::OwnVehicle => own_vehicle::run(),
         Task::Vectors => vectors::run(),
+        Task::Names => names::run(),
         Task::Bench { peers } => bench::run(peers),
         Task::Instructions { write } => instructions::run(write),
         Task::Book => book::run(),

@@ -39,7 +39,7 @@ mod wording;
 use std::collections::BTreeMap;
 
 pub use ahv_table::{Part, Unreadable};
-pub use emit::{AUDIT, Core, Options, Target, emit};
+pub use emit::{AUDIT, Core, Numbered, Options, Target, emit, numbered};
 pub use graph::passes::{Pass, Passes, UnknownPass};
 pub use manifest::{Manifest, sha256};
 pub use table::Table;

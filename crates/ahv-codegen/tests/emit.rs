@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use ahv_codegen::ir::UnitSystem;
-use ahv_codegen::{Manifest, Options, Part, Pass, Passes, Table, Tree, emit};
+use ahv_codegen::{Manifest, Options, Part, Pass, Passes, Table, Tree, emit, numbered};
 use serde_json::Value;
 
 fn root() -> PathBuf {
@@ -576,4 +576,27 @@ fn names_are_those_of_the_functions_own_derivation() {
         }
     }
     assert!(checked > 2000, "{checked}");
+}
+
+/// A numbered name tells a reviewer nothing: there are few, and each has a reason.
+#[test]
+fn few_values_are_numbered_and_each_has_a_reason() {
+    let listed = numbered(&TABLES.map(table), &irs()).unwrap();
+    let tree = emit(&TABLES.map(table), &irs(), &Options::default()).unwrap();
+    let is_numbered = |word: &&str| word.contains("_term_") || word.contains("_constant_");
+    let sources = tree.iter().filter(|(path, _)| path.starts_with("src/"));
+    let mut emitted = BTreeSet::new();
+    for (path, text) in sources {
+        let words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        for word in words.filter(is_numbered) {
+            let model = path.split('/').nth(1).unwrap_or_default();
+            emitted.insert((model.to_owned(), word.to_owned()));
+        }
+    }
+    let known = |(model, name): &(String, String)| {
+        let mut listed = listed.iter();
+        listed.any(|it| it.model == *model && it.name == *name && !it.reason.is_empty())
+    };
+    assert!(emitted.iter().all(known), "{emitted:?}");
+    assert!(emitted.len() < 20, "{emitted:?}");
 }

@@ -457,7 +457,8 @@ fn parameter_jacobian_by_c_l_to_c_n_3<R: Real>(
     parameter.pitch_rate_by_c_l_delta_e = -p
         .c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy * i.reference_force
         * u.delta_e;
-    parameter.pitch_rate_by_c_l_delta_c = p.parameter_jacobian_constant_1
+    parameter.pitch_rate_by_c_l_delta_c = p
+        .c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy
         * i.reference_force * u.delta_e;
     parameter.eta_dot_1_by_c_l_delta_e = -i.reference_force
         * p.c_n_1_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e;

@@ -254,7 +254,7 @@ ahv_core::record! {
         /// `c_bar * c_m_delta_c * canard_slaving * inv_c_l_delta_c * inv_i_yy`.
         pub c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy: R,
         /// `c_bar * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy`.
-        pub parameter_jacobian_constant_1: R,
+        pub c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy: R,
         /// `c_bar * inv_i_yy`.
         pub c_bar_over_i_yy: R,
         /// `R::HALF * s`.
@@ -505,8 +505,9 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.z_t_over_i_yy = p.z_t * c.inv_i_yy;
     c.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy = p.c_bar * p.c_m_delta_c
         * p.canard_slaving * inv_c_l_delta_c * c.inv_i_yy;
-    c.parameter_jacobian_constant_1 = p.c_bar * p.c_m_delta_c * p.canard_slaving
-        * p.c_l_delta_e * inv_c_l_delta_c_2 * c.inv_i_yy;
+    c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar
+        * p.c_m_delta_c * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2
+        * c.inv_i_yy;
     c.c_bar_over_i_yy = p.c_bar * c.inv_i_yy;
     c.half_s = R::HALF * p.s;
     c.two_zeta_1 = R::TWO * p.zeta_1;

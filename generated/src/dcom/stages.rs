@@ -463,8 +463,14 @@ ahv_core::record! {
         pub d2_generalized_force_3_d_alpha_d_velocity: R,
         /// Derivative of generalized force of mode 3 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
         pub d2_generalized_force_3_d_alpha_d_altitude: R,
+        /// `m.d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_gamma`.
+        pub d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma: R,
+        /// `m.d2_force_turn_d_alpha_d_altitude * s.d_altitude_rate_d_gamma`.
+        pub d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma: R,
         /// `m.d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma`.
         pub d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma: R,
+        /// `m.d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_alpha`.
+        pub d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha: R,
         /// `m.d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha`.
         pub d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha: R,
     }
@@ -591,8 +597,14 @@ fn noise_slopes_part_2<R: Real>(m: &mut NoiseSlopes<R>, s: &Slopes<R>) {
     // Derivatives with respect to altitude
     m.d2_generalized_force_3_d_alpha_d_altitude = s.d_reference_force_d_altitude
         * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = m
+        .d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_gamma;
+    m.d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = m
+        .d2_force_turn_d_alpha_d_altitude * s.d_altitude_rate_d_gamma;
     m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = m
         .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
+    m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = m
+        .d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_alpha;
     m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = m
         .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
 }

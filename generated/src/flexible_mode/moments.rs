@@ -44,7 +44,7 @@ pub fn reduction_variance<R: Real>(
 ) -> (R, R) {
     // Result
     let decay = p.zeta_omega;
-    let diffusion = p.reduction_variance_constant_1;
+    let diffusion = p.root_half_sigma_over_omega;
     (decay, diffusion)
 }
 
@@ -57,7 +57,7 @@ pub fn chi_variance_variance<R: Real>(
     _u: &Input<R>,
     p: &Prepared<R>,
 ) -> R {
-    p.chi_variance_variance_constant_1
+    p.quarter_sigma_2_over_zeta_omega_stiffness
 }
 
 /// Decay rate (1/s) and diffusion that match variance and spectrum at zero frequency, eq. (23).
@@ -81,7 +81,7 @@ pub fn reduction_moment<R: Real>(
 /// No operations.
 #[inline(always)]
 pub fn chi_variance_moment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    p.chi_variance_variance_constant_1
+    p.quarter_sigma_2_over_zeta_omega_stiffness
 }
 
 /// Stationary variance of the mode, eq. (17). Unit: ft*slug.
@@ -89,7 +89,7 @@ pub fn chi_variance_moment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R
 /// No operations.
 #[inline(always)]
 pub fn eta_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    p.chi_variance_variance_constant_1
+    p.quarter_sigma_2_over_zeta_omega_stiffness
 }
 
 /// Stationary variance of its rate, eq. (17). Unit: ft*slug/s^2.
@@ -97,7 +97,7 @@ pub fn eta_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R
 /// No operations.
 #[inline(always)]
 pub fn eta_dot_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
-    p.eta_dot_variance_constant_1
+    p.quarter_sigma_2_over_zeta_omega
 }
 
 /// Stationary variance of the coloured noise, eq. (24). Unit: ft*slug.
@@ -190,15 +190,15 @@ pub fn eta_variance_at_underdamped<R: Real>(
     // Response of the mode, (14)
     let envelope = (-p.zeta_omega * time).exp();
     let phase = p.omega_damped_ratio * time;
-    let (sin_phase, cos_phase) = phase.sin_cos();
-    let sin_phase_term_1 = sin_phase * p.inv_damped_ratio;
+    let (sin_of_phase, cos_phase) = phase.sin_cos();
+    let sin_phase = sin_of_phase * p.inv_damped_ratio;
     let envelope_2 = envelope * envelope;
-    let sin_phase_2 = sin_phase_term_1 * sin_phase_term_1;
+    let sin_phase_2 = sin_phase * sin_phase;
 
-    p.chi_variance_variance_constant_1
+    p.quarter_sigma_2_over_zeta_omega_stiffness
         * (R::ONE
             - envelope_2
-                * (R::ONE + p.two_zeta * sin_phase_term_1 * cos_phase
+                * (R::ONE + p.two_zeta * sin_phase * cos_phase
                     + p.two_zeta_2 * sin_phase_2))
 }
 
@@ -215,11 +215,11 @@ pub fn eta_autocorrelation_underdamped<R: Real>(
     // Response of the mode, (14)
     let envelope = (-p.zeta_omega * time).exp();
     let phase = p.omega_damped_ratio * time;
-    let (sin_phase, cos_phase) = phase.sin_cos();
-    let sin_phase_term_1 = sin_phase * p.inv_damped_ratio;
+    let (sin_of_phase, cos_phase) = phase.sin_cos();
+    let sin_phase = sin_of_phase * p.inv_damped_ratio;
 
-    p.chi_variance_variance_constant_1 * envelope
-        * (cos_phase + p.zeta * sin_phase_term_1)
+    p.quarter_sigma_2_over_zeta_omega_stiffness * envelope
+        * (cos_phase + p.zeta * sin_phase)
 }
 
 /// Variance of the mode at a time, from rest, for zeta = 1, whatever zeta says, eq. (17). Unit: ft*slug.
@@ -238,7 +238,7 @@ pub fn eta_variance_at_critical<R: Real>(
     let critical_envelope_2 = critical_envelope * critical_envelope;
     let scaled_time_2 = scaled_time * scaled_time;
 
-    p.eta_variance_at_critical_constant_1
+    p.quarter_sigma_2_over_omega_stiffness
         * (R::ONE
             - critical_envelope_2
                 * (R::ONE + R::TWO * scaled_time + R::TWO * scaled_time_2))
@@ -259,7 +259,7 @@ pub fn eta_autocorrelation_critical<R: Real>(
     let scaled_time = p.omega * time;
     let critical_envelope = (-scaled_time).exp();
 
-    p.eta_variance_at_critical_constant_1 * critical_envelope * (R::ONE + scaled_time)
+    p.quarter_sigma_2_over_omega_stiffness * critical_envelope * (R::ONE + scaled_time)
 }
 
 /// Variance of the mode at a time, from rest, for zeta > 1, eq. (17). Unit: ft*slug.
@@ -279,7 +279,7 @@ pub fn eta_variance_at_overdamped<R: Real>(
     let power_2_of_slow_envelope_minus_fast_envelope = slow_envelope_minus_fast_envelope
         * slow_envelope_minus_fast_envelope;
 
-    p.chi_variance_variance_constant_1
+    p.quarter_sigma_2_over_zeta_omega_stiffness
         * (R::ONE - fast_envelope * slow_envelope
             - p.two_zeta_2_stiffness_inv_pole_gap_2
                 * power_2_of_slow_envelope_minus_fast_envelope
@@ -301,6 +301,6 @@ pub fn eta_autocorrelation_overdamped<R: Real>(
     let fast_envelope = (-p.fast_pole * time).exp();
     let slow_envelope = (-p.slow_pole * time).exp();
 
-    p.eta_autocorrelation_overdamped_constant_1
+    p.quarter_sigma_2_over_zeta_omega_stiffness_pole_gap
         * (p.fast_pole * slow_envelope - p.slow_pole * fast_envelope)
 }

@@ -43,15 +43,15 @@ ahv_core::record! {
         /// `R::HALF * zeta * sigma_2 * inv_omega * inv_stiffness`.
         pub half_zeta_sigma_2_over_omega_stiffness: R,
         /// `R::from_f64(0.7071067811865475) * sigma * inv_omega`.
-        pub reduction_variance_constant_1: R,
+        pub root_half_sigma_over_omega: R,
         /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega * inv_stiffness`.
-        pub chi_variance_variance_constant_1: R,
+        pub quarter_sigma_2_over_zeta_omega_stiffness: R,
         /// `R::HALF * omega * inv_zeta`.
         pub half_omega_over_zeta: R,
         /// `sigma * inv_damping`.
         pub sigma_over_damping: R,
         /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega`.
-        pub eta_dot_variance_constant_1: R,
+        pub quarter_sigma_2_over_zeta_omega: R,
         /// `R::HALF * chi_diffusion_2 * inv_chi_decay`.
         pub half_chi_diffusion_2_over_chi_decay: R,
         /// `R::from_f64(-2.0) * chi_decay`.
@@ -79,7 +79,7 @@ ahv_core::record! {
         /// `2 * zeta_2`.
         pub two_zeta_2: R,
         /// `R::from_f64(0.25) * sigma_2 * inv_omega * inv_stiffness`.
-        pub eta_variance_at_critical_constant_1: R,
+        pub quarter_sigma_2_over_omega_stiffness: R,
         /// Faster decay rate of the mode, 1/s.
         pub fast_pole: R,
         /// Slower decay rate of the mode, 1/s.
@@ -93,7 +93,7 @@ ahv_core::record! {
         /// `zeta * omega * inv_pole_gap`.
         pub zeta_omega_over_pole_gap: R,
         /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega * inv_stiffness * inv_pole_gap`.
-        pub eta_autocorrelation_overdamped_constant_1: R,
+        pub quarter_sigma_2_over_zeta_omega_stiffness_pole_gap: R,
     }
 }
 
@@ -149,14 +149,14 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.inv_stiffness = c.stiffness.recip();
     c.half_zeta_sigma_2_over_omega_stiffness = R::HALF * p.zeta * c.sigma_2 * c.inv_omega
         * c.inv_stiffness;
-    c.reduction_variance_constant_1 = R::from_f64(0.7071067811865475) * p.sigma
+    c.root_half_sigma_over_omega = R::from_f64(0.7071067811865475) * p.sigma
         * c.inv_omega;
-    c.chi_variance_variance_constant_1 = R::from_f64(0.25) * c.sigma_2 * inv_zeta
-        * c.inv_omega * c.inv_stiffness;
+    c.quarter_sigma_2_over_zeta_omega_stiffness = R::from_f64(0.25) * c.sigma_2
+        * inv_zeta * c.inv_omega * c.inv_stiffness;
     c.half_omega_over_zeta = R::HALF * p.omega * inv_zeta;
     let inv_damping = c.damping.recip();
     c.sigma_over_damping = p.sigma * inv_damping;
-    c.eta_dot_variance_constant_1 = R::from_f64(0.25) * c.sigma_2 * inv_zeta
+    c.quarter_sigma_2_over_zeta_omega = R::from_f64(0.25) * c.sigma_2 * inv_zeta
         * c.inv_omega;
     c.chi_diffusion_2 = c.chi_diffusion * c.chi_diffusion;
     let inv_chi_decay = c.chi_decay.recip();
@@ -168,7 +168,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.inv_damped_ratio = damped_ratio.recip();
     let zeta_2 = p.zeta * p.zeta;
     c.two_zeta_2 = R::TWO * zeta_2;
-    c.eta_variance_at_critical_constant_1 = R::from_f64(0.25) * c.sigma_2 * c.inv_omega
+    c.quarter_sigma_2_over_omega_stiffness = R::from_f64(0.25) * c.sigma_2 * c.inv_omega
         * c.inv_stiffness;
     c.inv_pole_gap = pole_gap.recip();
     c.stiffness_over_pole_gap = c.stiffness * c.inv_pole_gap;
@@ -176,7 +176,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.two_zeta_2_stiffness_inv_pole_gap_2 = R::TWO * zeta_2 * c.stiffness
         * inv_pole_gap_2;
     c.zeta_omega_over_pole_gap = p.zeta * p.omega * c.inv_pole_gap;
-    c.eta_autocorrelation_overdamped_constant_1 = R::from_f64(0.25) * c.sigma_2
+    c.quarter_sigma_2_over_zeta_omega_stiffness_pole_gap = R::from_f64(0.25) * c.sigma_2
         * inv_zeta * c.inv_omega * c.inv_stiffness * c.inv_pole_gap;
     c
 }

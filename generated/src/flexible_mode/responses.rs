@@ -18,9 +18,9 @@ pub fn transition_underdamped<R: Real>(
     // Response of the mode, (14)
     let envelope = (-p.zeta_omega * time).exp();
     let phase = p.omega_damped_ratio * time;
-    let (sin_phase, cos_phase) = phase.sin_cos();
-    let sin_phase_term_1 = sin_phase * p.inv_damped_ratio;
-    let zeta_sin_phase = p.zeta * sin_phase_term_1;
+    let (sin_of_phase, cos_phase) = phase.sin_cos();
+    let sin_phase = sin_of_phase * p.inv_damped_ratio;
+    let zeta_sin_phase = p.zeta * sin_phase;
     let exp_minus_chi_decay_time = (-p.chi_decay * time).exp();
 
     // Result
@@ -28,11 +28,11 @@ pub fn transition_underdamped<R: Real>(
     State {
         eta: State {
             eta: envelope * (cos_phase + zeta_sin_phase),
-            eta_dot: envelope * sin_phase_term_1 * p.inv_omega,
+            eta_dot: envelope * sin_phase * p.inv_omega,
             ..no_state
         },
         eta_dot: State {
-            eta: -envelope * p.omega * sin_phase_term_1,
+            eta: -envelope * p.omega * sin_phase,
             eta_dot: envelope * (cos_phase - zeta_sin_phase),
             ..no_state
         },
@@ -57,19 +57,19 @@ pub fn response_underdamped<R: Real>(
     let eta_static = u.force * p.inv_stiffness; // (ft*slug)^0.5
     let envelope = (-p.zeta_omega * time).exp();
     let phase = p.omega_damped_ratio * time;
-    let (sin_phase, cos_phase) = phase.sin_cos();
-    let sin_phase_term_1 = sin_phase * p.inv_damped_ratio;
-    let zeta_sin_phase = p.zeta * sin_phase_term_1;
+    let (sin_of_phase, cos_phase) = phase.sin_cos();
+    let sin_phase = sin_of_phase * p.inv_damped_ratio;
+    let zeta_sin_phase = p.zeta * sin_phase;
     let eta_minus_eta_static = x.eta - eta_static;
     let exp_minus_chi_decay_time = (-p.chi_decay * time).exp();
 
     State {
         eta: envelope
             * ((cos_phase + zeta_sin_phase) * eta_minus_eta_static
-                + sin_phase_term_1 * p.inv_omega * x.eta_dot) + eta_static,
+                + sin_phase * p.inv_omega * x.eta_dot) + eta_static,
         eta_dot: envelope
             * ((cos_phase - zeta_sin_phase) * x.eta_dot
-                - p.omega * sin_phase_term_1 * eta_minus_eta_static),
+                - p.omega * sin_phase * eta_minus_eta_static),
         chi: exp_minus_chi_decay_time * x.chi,
     }
 }

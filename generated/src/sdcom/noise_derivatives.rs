@@ -60,16 +60,10 @@ pub fn noise_derivatives_values<R: Real>(
     let noise_derivatives_term_1 = m.d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
         + m.d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
         + m.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
-    let noise_derivatives_term_2 = m.d2_force_turn_d_alpha_d_velocity
-        * s.d_velocity_rate_d_gamma;
-    let noise_derivatives_term_3 = m.d2_force_turn_d_alpha_d_altitude
-        * s.d_altitude_rate_d_gamma;
-    let noise_derivatives_term_4 = m.d2_gamma_rate_d_gamma_d_velocity
+    let noise_derivatives_term_2 = m.d2_gamma_rate_d_gamma_d_velocity
         * s.d_velocity_rate_d_alpha
         + m.d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
-    let noise_derivatives_term_5 = m.d2_force_turn_d_alpha_d_velocity
-        * s.d_velocity_rate_d_alpha;
-    let noise_derivatives_term_6 = p.shared_noise
+    let noise_derivatives_term_3 = p.shared_noise
         * (p.chi_diffusion_2 * m.d2_force_turn_d_alpha_d_chi_2
             + p.chi_diffusion_3 * m.d2_force_turn_d_alpha_d_chi_3)
         + p.chi_diffusion_1 * m.d2_force_turn_d_alpha_d_chi_1;
@@ -105,14 +99,15 @@ pub fn noise_derivatives_values<R: Real>(
                 + m.d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
         gamma_by_w_gamma_w_gamma: p.w_gamma_2 * noise_derivatives_term_1,
         gamma_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (noise_derivatives_term_2 + noise_derivatives_term_3
+            * (m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
+                + m.d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma
                 - m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma),
-        gamma_by_w_alpha_w_gamma: p.w_alpha_w_gamma * noise_derivatives_term_4,
+        gamma_by_w_alpha_w_gamma: p.w_alpha_w_gamma * noise_derivatives_term_2,
         gamma_by_w_alpha_w_alpha: p.w_alpha_2
-            * (noise_derivatives_term_5
+            * (m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
                 - m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
         gamma_by_w_q_w_alpha: p.w_alpha_w_q * m.d2_force_turn_d_alpha_d_alpha,
-        gamma_by_xi_1_w_alpha: p.w_alpha * noise_derivatives_term_6,
+        gamma_by_xi_1_w_alpha: p.w_alpha * noise_derivatives_term_3,
         gamma_by_xi_2_w_alpha: p.w_alpha_chi_diffusion_2_own_noise
             * m.d2_force_turn_d_alpha_d_chi_2,
         gamma_by_xi_3_w_alpha: p.w_alpha_chi_diffusion_3_own_noise
@@ -120,13 +115,14 @@ pub fn noise_derivatives_values<R: Real>(
         alpha_by_w_gamma_w_gamma: -p.w_gamma_2 * noise_derivatives_term_1,
         alpha_by_w_gamma_w_alpha: p.w_alpha_w_gamma
             * (m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
-                - noise_derivatives_term_2 - noise_derivatives_term_3),
-        alpha_by_w_alpha_w_gamma: -p.w_alpha_w_gamma * noise_derivatives_term_4,
+                - m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
+                - m.d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma),
+        alpha_by_w_alpha_w_gamma: -p.w_alpha_w_gamma * noise_derivatives_term_2,
         alpha_by_w_alpha_w_alpha: p.w_alpha_2
             * (m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
-                - noise_derivatives_term_5),
+                - m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha),
         alpha_by_w_q_w_alpha: -p.w_alpha_w_q * m.d2_force_turn_d_alpha_d_alpha,
-        alpha_by_xi_1_w_alpha: -p.w_alpha * noise_derivatives_term_6,
+        alpha_by_xi_1_w_alpha: -p.w_alpha * noise_derivatives_term_3,
         alpha_by_xi_2_w_alpha: -p.w_alpha_chi_diffusion_2_own_noise
             * m.d2_force_turn_d_alpha_d_chi_2,
         alpha_by_xi_3_w_alpha: -p.w_alpha_chi_diffusion_3_own_noise
@@ -166,8 +162,6 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         * (m.d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
             + m.d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
             + m.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
-    let ito_correction_term_2 = m.d2_force_turn_d_alpha_d_velocity
-        * s.d_velocity_rate_d_alpha;
 
     State {
         velocity: p.half_w_gamma_2
@@ -181,11 +175,12 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
                 + m.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         gamma: ito_correction_term_1
             + p.half_w_alpha_2
-                * (ito_correction_term_2
+                * (m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
                     - m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
         alpha: p.half_w_alpha_2
             * (m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
-                - ito_correction_term_2) - ito_correction_term_1,
+                - m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha)
+            - ito_correction_term_1,
         pitch_rate: p.half_w_alpha_2
             * (m.d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
                 - m.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),

@@ -627,11 +627,11 @@ fn parameter_jacobian_by_c_l<R: Real>(
     s: &Slopes<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_c_t_d_c_l_delta_e_term_1 = p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
+    let sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e = p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
         + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
         + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
     let d_c_t_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * i.reference_force
-        * d_c_t_d_c_l_delta_e_term_1; // rad
+        * sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
     let d_thrust_d_c_l_delta_e = i.reference_force * d_c_t_d_c_l_delta_e; // lb*rad/ft
     let d_c_d_d_c_l_delta_e_term_1 = i.reference_force
         * (p.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 * u.delta_e
@@ -670,7 +670,7 @@ fn parameter_jacobian_by_c_l<R: Real>(
     let d_pitch_acceleration_d_c_l_delta_e = d_pitching_moment_d_c_l_delta_e
         * p.inv_i_yy; // rad^2/s^2
     let d_c_t_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * i.reference_force * d_c_t_d_c_l_delta_e_term_1; // rad
+        * i.reference_force * sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
     let d_thrust_d_c_l_delta_c = i.reference_force * d_c_t_d_c_l_delta_c; // lb*rad/ft
     let d_c_d_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_c_d_d_c_l_delta_e_term_1; // rad

@@ -671,8 +671,14 @@ ahv_core::record! {
         pub d2_pitch_acceleration_d_alpha_d_velocity: R,
         /// Derivative of pitch acceleration with respect to alpha and altitude, 1/s^2/ft.
         pub d2_pitch_acceleration_d_alpha_d_altitude: R,
+        /// `m.d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_gamma`.
+        pub d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma: R,
+        /// `m.d2_force_turn_d_alpha_d_altitude * s.d_altitude_rate_d_gamma`.
+        pub d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma: R,
         /// `m.d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma`.
         pub d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma: R,
+        /// `m.d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_alpha`.
+        pub d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha: R,
         /// `m.d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha`.
         pub d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha: R,
     }
@@ -896,8 +902,14 @@ fn noise_slopes_part_2<R: Real>(
 /// Fills a part of [`NoiseSlopes`].
 #[inline(always)]
 fn noise_slopes_part_3<R: Real>(m: &mut NoiseSlopes<R>, s: &Slopes<R>) {
+    m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = m
+        .d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_gamma;
+    m.d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = m
+        .d2_force_turn_d_alpha_d_altitude * s.d_altitude_rate_d_gamma;
     m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = m
         .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
+    m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = m
+        .d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_alpha;
     m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = m
         .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
 }

@@ -187,9 +187,9 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_alpha = p.c_l_eta_1 * i.eta_static_1
         + p.c_l_eta_2 * i.eta_static_2
         + p.c_l_eta_3 * i.eta_static_3;
-    let f_alpha_eta_term_1 = i.turn_factor
-        * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
-    let f_alpha_eta = -f_alpha_eta_term_1; // rad/s
+    let sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor = i
+        .turn_factor * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
+    let f_alpha_eta = -sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor; // rad/s
     let c_t_of_f_alpha = p.c_t_0
         + p.c_t_phi_alpha_3 * u.phi * i.alpha_3
         + p.c_t_phi_alpha_2 * u.phi * i.alpha_2
@@ -250,10 +250,10 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let c_l_of_f_eta_alpha = p.c_l_eta_1 * i.eta_static_1
         + p.c_l_eta_2 * i.eta_static_2
         + p.c_l_eta_3 * i.eta_static_3;
-    let f_alpha_eta_term_1 = i.turn_factor
-        * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
+    let sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor = i
+        .turn_factor * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
 
-    -f_alpha_eta_term_1
+    -sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor
 }
 
 /// Part of the pitch_rate rate that is left to f, eq. (34). Unit: rad/s^2.

@@ -86,7 +86,6 @@ ahv_core::entries! {
 #[inline(always)]
 fn hessian_by_velocity<R: Real>(
     hessian: &mut HessianEntries<R>,
-    x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
@@ -113,10 +112,8 @@ fn hessian_by_velocity<R: Real>(
         * i.density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
     let d2_g_velocity_d_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure
         * i.density; // 1/ft
-    let d2_velocity_rate_printed_d_velocity_d_velocity = p.s_over_m
-        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) * i.density
+    let d2_velocity_rate_printed_d_velocity_d_velocity =
+        p.s_over_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi * i.density
         + d2_f_velocity_d_velocity_d_velocity
         + u.phi * d2_g_velocity_d_velocity_d_velocity; // 1/ft
     let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
@@ -191,12 +188,9 @@ fn hessian_by_velocity<R: Real>(
                 + R::TWO * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * s.d_generalized_force_3_d_velocity)
             + p.s
-                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
-                    * i.generalized_force_1_inv_omega_1_2
-                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
-                        * i.generalized_force_2_inv_omega_2_2
-                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
-                        * i.generalized_force_3_inv_omega_3_2) * i.density)
+                * s
+                    .sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
+                * i.density)
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
             * d2_generalized_force_1_d_velocity_d_velocity
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
@@ -208,10 +202,8 @@ fn hessian_by_velocity<R: Real>(
         + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
     let d2_g_pitch_rate_d_velocity_d_velocity = p
         .slope_of_g_pitch_rate_in_dynamic_pressure * i.density; // 1/ft^2
-    let d2_pitch_rate_rate_printed_d_velocity_d_velocity = p.s_over_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) * i.density
+    let d2_pitch_rate_rate_printed_d_velocity_d_velocity =
+        p.s_over_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi * i.density
         + d2_f_pitch_rate_d_velocity_d_velocity
         + u.delta_e * d2_g_pitch_rate_d_velocity_d_velocity; // rad/ft^2
 
@@ -269,11 +261,8 @@ fn hessian_by_altitude_of_velocity<R: Real>(
         + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
     let d2_g_velocity_d_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft
-    let d2_velocity_rate_printed_d_velocity_d_altitude_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
     let d2_velocity_rate_printed_d_velocity_d_altitude =
-        d2_reference_force_d_velocity_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_altitude_term_1
+        d2_reference_force_d_velocity_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d2_f_velocity_d_velocity_d_altitude
         + u.phi * d2_g_velocity_d_velocity_d_altitude; // 1/s/ft
     let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
@@ -310,7 +299,7 @@ fn hessian_by_altitude_of_velocity<R: Real>(
     let d2_g_velocity_d_altitude_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
     let d2_velocity_rate_printed_d_altitude_d_altitude =
-        d2_reference_force_d_altitude_d_altitude * p.inv_m * d2_velocity_rate_printed_d_velocity_d_altitude_term_1
+        d2_reference_force_d_altitude_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d2_f_velocity_d_altitude_d_altitude
         + u.phi * d2_g_velocity_d_altitude_d_altitude; // 1/s^2/ft
 
@@ -374,23 +363,31 @@ fn hessian_by_altitude_of_gamma<R: Real>(
     let d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude = i
         .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
         * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
-    let d2_f_gamma_eta_d_velocity_d_altitude =
-        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
-        + i.f_gamma_eta_over_turn_factor * d2_turn_factor_d_velocity_d_altitude
+    let d2_f_gamma_eta_d_velocity_d_altitude = s
+        .slope_of_f_gamma_eta_in_generalized_force_1
+        * d2_generalized_force_1_d_velocity_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_2
+            * d2_generalized_force_2_d_velocity_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_velocity_d_altitude
+        + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
+            * d2_turn_factor_d_velocity_d_altitude
         + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
-        + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
-        + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+        + s.d_generalized_force_1_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_velocity
+            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
     let d2_f_gamma_d_velocity_d_altitude =
         i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_velocity_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude
         + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
-    let d2_g_gamma_d_velocity_d_altitude = i.g_gamma_over_turn_factor
+    let d2_g_gamma_d_velocity_d_altitude = i
+        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
     let d2_gamma_rate_printed_d_velocity_d_altitude =
-        s.slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * d2_turn_factor_d_velocity_d_altitude
         + d2_f_gamma_d_velocity_d_altitude
         + x.alpha * d2_g_gamma_d_velocity_d_altitude; // rad/ft^2
     let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
@@ -398,23 +395,31 @@ fn hessian_by_altitude_of_gamma<R: Real>(
     let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
         * i.inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_f_gamma_eta_d_altitude_d_altitude =
-        s.d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + s.d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
-        + s.d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
-        + s.d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
-        + i.f_gamma_eta_over_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_f_gamma_eta_d_altitude_d_altitude = s.d_turn_factor_d_altitude
+        * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        + s.d_generalized_force_1_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        + s.d_generalized_force_2_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        + s.d_generalized_force_3_d_altitude
+            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_1
+            * d2_generalized_force_1_d_altitude_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_2
+            * d2_generalized_force_2_d_altitude_d_altitude
+        + s.slope_of_f_gamma_eta_in_generalized_force_3
+            * d2_generalized_force_3_d_altitude_d_altitude
+        + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
+            * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_gamma_d_altitude_d_altitude =
         i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_altitude_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude
         + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_g_gamma_d_altitude_d_altitude = i.g_gamma_over_turn_factor
+    let d2_g_gamma_d_altitude_d_altitude = i
+        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
     let d2_gamma_rate_printed_d_altitude_d_altitude =
-        s.slope_of_gamma_rate_printed_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * d2_turn_factor_d_altitude_d_altitude
         + d2_f_gamma_d_altitude_d_altitude
         + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
 
@@ -530,9 +535,9 @@ fn hessian_by_altitude_of_alpha<R: Real>(
     hessian.alpha_by_altitude_altitude = d2_alpha_rate_printed_d_altitude_d_altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate.
+/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate_gamma.
 #[inline(always)]
-fn hessian_by_altitude_of_pitch_rate<R: Real>(
+fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
     hessian: &mut HessianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
@@ -564,90 +569,7 @@ fn hessian_by_altitude_of_pitch_rate<R: Real>(
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
         * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
-        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-        * s.d_generalized_force_1_d_altitude;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p
-        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-        * s.d_generalized_force_2_d_altitude;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3 = p
-        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-        * s.d_generalized_force_3_d_altitude;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_4 =
-        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude = p.inv_i_yy
-        * (s.d_reference_force_d_velocity
-            * (d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
-                + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
-                + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
-            + s.d_reference_force_d_altitude
-                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
-                    * s.d_generalized_force_1_d_velocity
-                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
-                        * s.d_generalized_force_2_d_velocity
-                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
-                        * s.d_generalized_force_3_d_velocity)
-            + d2_reference_force_d_velocity_d_altitude
-                * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_4)
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_altitude
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_altitude
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_f_pitch_rate_d_velocity_d_altitude = s
-        .slope_of_f_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_velocity_d_altitude
-        + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_g_pitch_rate_d_velocity_d_altitude = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft^2
-    let d2_pitch_rate_rate_printed_d_velocity_d_altitude_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
-    let d2_pitch_rate_rate_printed_d_velocity_d_altitude = d2_reference_force_d_velocity_d_altitude
-        * p.inv_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_altitude_term_1
-        + d2_f_pitch_rate_d_velocity_d_altitude
-        + u.delta_e * d2_g_pitch_rate_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_f_pitch_rate_eta_d_altitude_d_altitude = p.inv_i_yy
-        * (s.d_reference_force_d_altitude
-            * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
-                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
-                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
-            + d2_reference_force_d_altitude_d_altitude
-                * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_4)
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_altitude_d_altitude
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_altitude_d_altitude
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_f_pitch_rate_d_altitude_d_altitude = s
-        .slope_of_f_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude
-        + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_g_pitch_rate_d_altitude_d_altitude = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft^2
-    let d2_pitch_rate_rate_printed_d_altitude_d_altitude = d2_reference_force_d_altitude_d_altitude
-        * p.inv_i_yy * d2_pitch_rate_rate_printed_d_velocity_d_altitude_term_1
-        + d2_f_pitch_rate_d_altitude_d_altitude
-        + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
 
-    hessian.pitch_rate_by_altitude_velocity = d2_pitch_rate_rate_printed_d_velocity_d_altitude;
-    hessian.pitch_rate_by_altitude_altitude = d2_pitch_rate_rate_printed_d_altitude_d_altitude;
-}
-
-/// Entries of [`hessian_values`]: derivatives by gamma.
-#[inline(always)]
-fn hessian_by_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
     // Derivatives with respect to gamma
     let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
     let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
@@ -664,6 +586,76 @@ fn hessian_by_gamma<R: Real>(
         * s.d_cos_gamma_d_gamma; // 1/s/ft
     let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
+    // Derivatives with respect to altitude
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
+        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+        * s.d_generalized_force_1_d_altitude;
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p
+        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+        * s.d_generalized_force_2_d_altitude;
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3 = p
+        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
+        * s.d_generalized_force_3_d_altitude;
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude = p.inv_i_yy
+        * (s.d_reference_force_d_velocity
+            * (d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
+                + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
+                + d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
+            + s.d_reference_force_d_altitude
+                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+                    * s.d_generalized_force_1_d_velocity
+                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+                        * s.d_generalized_force_2_d_velocity
+                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
+                        * s.d_generalized_force_3_d_velocity)
+            + d2_reference_force_d_velocity_d_altitude
+                * s
+                    .sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2)
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_velocity_d_altitude
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_velocity_d_altitude
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
+    let d2_f_pitch_rate_d_velocity_d_altitude = s
+        .slope_of_f_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_velocity_d_altitude
+        + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
+    let d2_g_pitch_rate_d_velocity_d_altitude = p
+        .slope_of_g_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft^2
+    let d2_pitch_rate_rate_printed_d_velocity_d_altitude =
+        d2_reference_force_d_velocity_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        + d2_f_pitch_rate_d_velocity_d_altitude
+        + u.delta_e * d2_g_pitch_rate_d_velocity_d_altitude; // rad/s/ft^2
+    let d2_f_pitch_rate_eta_d_altitude_d_altitude = p.inv_i_yy
+        * (s.d_reference_force_d_altitude
+            * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
+                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
+                + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
+            + d2_reference_force_d_altitude_d_altitude
+                * s
+                    .sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2)
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+            * d2_generalized_force_1_d_altitude_d_altitude
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+            * d2_generalized_force_2_d_altitude_d_altitude
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+            * d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
+    let d2_f_pitch_rate_d_altitude_d_altitude = s
+        .slope_of_f_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude
+        + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
+    let d2_g_pitch_rate_d_altitude_d_altitude = p
+        .slope_of_g_pitch_rate_in_dynamic_pressure
+        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft^2
+    let d2_pitch_rate_rate_printed_d_altitude_d_altitude =
+        d2_reference_force_d_altitude_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        + d2_f_pitch_rate_d_altitude_d_altitude
+        + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
+
+    hessian.pitch_rate_by_altitude_velocity = d2_pitch_rate_rate_printed_d_velocity_d_altitude;
+    hessian.pitch_rate_by_altitude_altitude = d2_pitch_rate_rate_printed_d_altitude_d_altitude;
     hessian.velocity_by_gamma_altitude = d2_f_velocity_d_altitude_d_gamma;
     hessian.velocity_by_gamma_gamma = d2_f_velocity_d_gamma_d_gamma;
     hessian.altitude_by_gamma_velocity = i.cos_gamma;
@@ -690,9 +682,7 @@ fn hessian_by_alpha_of_velocity<R: Real>(
         * (i.cos_alpha * p.c_t_alpha - p.c_d_alpha
             + s.c_t_alpha_alpha_plus_c_t_0 * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha = p.s_over_m
-        * ((i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-            + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-            + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3) * s.d_cos_alpha_d_alpha
+        * (s.sum_of_generalized_force_inv_omega_2_c_t_eta * s.d_cos_alpha_d_alpha
             + p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
                 * s.d_generalized_force_1_d_alpha
             + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
@@ -726,9 +716,9 @@ fn hessian_by_alpha_of_velocity<R: Real>(
             + s.c_t_phi_alpha_alpha_plus_c_t_phi * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
     let d2_g_velocity_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s/rad
-    let d2_velocity_rate_printed_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * p.inv_m * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
-        * s.d_cos_alpha_d_alpha + d2_f_velocity_d_velocity_d_alpha
+    let d2_velocity_rate_printed_d_velocity_d_alpha =
+        s.d_reference_force_d_velocity * p.inv_m * s.sum_of_chi_c_t_eta * s.d_cos_alpha_d_alpha
+        + d2_f_velocity_d_velocity_d_alpha
         + u.phi * d2_g_velocity_d_velocity_d_alpha; // 1/s/rad
     let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
@@ -754,9 +744,9 @@ fn hessian_by_alpha_of_velocity<R: Real>(
         + d2_f_velocity_eta_d_altitude_d_alpha; // 1/s^2/rad
     let d2_g_velocity_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s^2/rad
-    let d2_velocity_rate_printed_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * p.inv_m * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
-        * s.d_cos_alpha_d_alpha + d2_f_velocity_d_altitude_d_alpha
+    let d2_velocity_rate_printed_d_altitude_d_alpha =
+        s.d_reference_force_d_altitude * p.inv_m * s.sum_of_chi_c_t_eta * s.d_cos_alpha_d_alpha
+        + d2_f_velocity_d_altitude_d_alpha
         + u.phi * d2_g_velocity_d_altitude_d_alpha; // 1/s^2/rad
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d_slope_of_f_velocity_in_cos_alpha_d_alpha = i.reference_force
@@ -818,20 +808,14 @@ fn hessian_by_alpha_of_gamma<R: Real>(
     let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s
-        .chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 * i.cos_alpha;
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s.sum_of_chi_c_t_eta
+        * i.cos_alpha;
     let d_slope_of_f_gamma_in_turn_factor_d_alpha = (i.c_t_phi_phi + p.c_t_0)
         * i.cos_alpha;
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = (i
-        .generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-        + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-        + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3) * i.cos_alpha
-        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-            * s.d_generalized_force_1_d_alpha
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-            * s.d_generalized_force_2_d_alpha
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-            * s.d_generalized_force_3_d_alpha;
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = s.sum_of_generalized_force_inv_omega_2_c_t_eta * i.cos_alpha
+        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = i.turn_factor
         * p.c_t_eta_1_inv_omega_1_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = i.turn_factor
@@ -900,8 +884,6 @@ fn hessian_by_alpha_of_gamma<R: Real>(
 #[inline(always)]
 fn hessian_by_alpha_of_alpha<R: Real>(
     hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
@@ -923,18 +905,12 @@ fn hessian_by_alpha_of_alpha<R: Real>(
     let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s
-        .chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 * i.cos_alpha;
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = (i
-        .generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-        + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-        + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3) * i.cos_alpha
-        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
-            * s.d_generalized_force_1_d_alpha
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2
-            * s.d_generalized_force_2_d_alpha
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
-            * s.d_generalized_force_3_d_alpha;
+    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s.sum_of_chi_c_t_eta
+        * i.cos_alpha;
+    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = s.sum_of_generalized_force_inv_omega_2_c_t_eta * i.cos_alpha
+        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
     let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = i.turn_factor
         * (p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
             + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
@@ -956,8 +932,8 @@ fn hessian_by_alpha_of_alpha<R: Real>(
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_in_turn_factor_d_alpha = -(p.c_l_alpha
         + i.sin_alpha * s.c_t_alpha_plus_c_t_phi_alpha_phi
-        + (p.c_t_phi_alpha * u.phi * x.alpha + i.c_t_alpha_alpha + i.c_t_phi_phi
-            + p.c_t_0) * i.cos_alpha);
+        + i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
+            * i.cos_alpha);
     let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_1
         * p.inv_omega_1_2; // s/ft^0.5/slug^0.5
@@ -1280,15 +1256,14 @@ pub fn hessian_values<R: Real>(
     let n = noise_terms(x, u, p, &i, &s);
     let m = noise_slopes(x, u, p, &i, &s, &n);
     let mut hessian = HessianEntries::splat(R::ZERO);
-    hessian_by_velocity(&mut hessian, x, u, p, &i, &s);
+    hessian_by_velocity(&mut hessian, u, p, &i, &s);
     hessian_by_altitude_of_velocity(&mut hessian, x, u, p, &i, &s);
     hessian_by_altitude_of_gamma(&mut hessian, x, p, &i, &s);
     hessian_by_altitude_of_alpha(&mut hessian, x, p, &i, &s);
-    hessian_by_altitude_of_pitch_rate(&mut hessian, x, u, p, &i, &s);
-    hessian_by_gamma(&mut hessian, x, &i, &s);
+    hessian_by_altitude_of_pitch_rate_gamma(&mut hessian, x, u, p, &i, &s);
     hessian_by_alpha_of_velocity(&mut hessian, u, p, &i, &s);
     hessian_by_alpha_of_gamma(&mut hessian, x, p, &i, &s, &n);
-    hessian_by_alpha_of_alpha(&mut hessian, x, u, p, &i, &s, &m);
+    hessian_by_alpha_of_alpha(&mut hessian, p, &i, &s, &m);
     hessian_by_alpha_of_pitch_rate_chi_1(&mut hessian, x, p, &i, &s);
     hessian_by_chi_2_chi_3(&mut hessian, p, &i, &s);
     hessian

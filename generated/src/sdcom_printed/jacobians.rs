@@ -90,12 +90,12 @@ fn jacobians_by_velocity<R: Real>(
         * s.d_dynamic_pressure_d_velocity + d_f_velocity_eta_d_velocity; // 1/s
     let d_g_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure
         * s.d_dynamic_pressure_d_velocity; // 1/s
-    let d_velocity_rate_printed_d_velocity = s.d_reference_force_d_velocity * p.inv_m
-        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + d_f_velocity_d_velocity
+    let d_velocity_rate_printed_d_velocity =
+        s.d_reference_force_d_velocity * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
+        + d_f_velocity_d_velocity
         + u.phi * d_g_velocity_d_velocity; // 1/s
-    let d_f_gamma_eta_d_velocity = i.f_gamma_eta_over_turn_factor * s.d_turn_factor_d_velocity
+    let d_f_gamma_eta_d_velocity =
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * s.d_turn_factor_d_velocity
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_velocity
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * s.d_generalized_force_2_d_velocity
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_velocity; // rad/ft
@@ -104,7 +104,8 @@ fn jacobians_by_velocity<R: Real>(
     let d_f_gamma_d_velocity = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_velocity
         - cos_gamma_times_d_gravity_turn_d_velocity
         + d_f_gamma_eta_d_velocity; // rad/ft
-    let d_gamma_rate_printed_d_velocity = s.slope_of_gamma_rate_printed_in_turn_factor * s.d_turn_factor_d_velocity
+    let d_gamma_rate_printed_d_velocity =
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * s.d_turn_factor_d_velocity
         + d_f_gamma_d_velocity
         + x.alpha * s.d_g_gamma_d_velocity; // rad/ft
     let d_f_alpha_eta_d_velocity = s.slope_of_f_alpha_eta_in_turn_factor * s.d_turn_factor_d_velocity
@@ -125,21 +126,15 @@ fn jacobians_by_velocity<R: Real>(
                 + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * s.d_generalized_force_3_d_velocity)
             + s.d_reference_force_d_velocity
-                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
-                    * i.generalized_force_1_inv_omega_1_2
-                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
-                        * i.generalized_force_2_inv_omega_2_2
-                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
-                        * i.generalized_force_3_inv_omega_3_2)); // rad/s/ft
+                * s
+                    .sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2); // rad/s/ft
     let d_f_pitch_rate_d_velocity = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_velocity + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
     let d_g_pitch_rate_d_velocity = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_velocity; // 1/s/ft
-    let d_pitch_rate_rate_printed_d_velocity = s.d_reference_force_d_velocity
-        * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + d_f_pitch_rate_d_velocity
+    let d_pitch_rate_rate_printed_d_velocity =
+        s.d_reference_force_d_velocity * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        + d_f_pitch_rate_d_velocity
         + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
 
     state.velocity_by_velocity = d_velocity_rate_printed_d_velocity;
@@ -174,12 +169,12 @@ fn jacobians_by_altitude_gamma<R: Real>(
         + d_f_velocity_eta_d_altitude; // 1/s^2
     let d_g_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * s.d_dynamic_pressure_d_altitude; // 1/s^2
-    let d_velocity_rate_printed_d_altitude = s.d_reference_force_d_altitude * p.inv_m
-        * (i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-            + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-            + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + d_f_velocity_d_altitude
+    let d_velocity_rate_printed_d_altitude =
+        s.d_reference_force_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
+        + d_f_velocity_d_altitude
         + u.phi * d_g_velocity_d_altitude; // 1/s^2
-    let d_f_gamma_eta_d_altitude = i.f_gamma_eta_over_turn_factor * s.d_turn_factor_d_altitude
+    let d_f_gamma_eta_d_altitude =
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * s.d_turn_factor_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * s.d_generalized_force_2_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_altitude; // rad/s/ft
@@ -188,7 +183,8 @@ fn jacobians_by_altitude_gamma<R: Real>(
     let d_f_gamma_d_altitude = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_altitude
         - cos_gamma_times_d_gravity_turn_d_altitude
         + d_f_gamma_eta_d_altitude; // rad/s/ft
-    let d_gamma_rate_printed_d_altitude = s.slope_of_gamma_rate_printed_in_turn_factor * s.d_turn_factor_d_altitude
+    let d_gamma_rate_printed_d_altitude =
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * s.d_turn_factor_d_altitude
         + d_f_gamma_d_altitude
         + x.alpha * s.d_g_gamma_d_altitude; // rad/s/ft
     let d_f_alpha_eta_d_altitude = s.slope_of_f_alpha_eta_in_turn_factor * s.d_turn_factor_d_altitude
@@ -209,21 +205,15 @@ fn jacobians_by_altitude_gamma<R: Real>(
                 + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                     * s.d_generalized_force_3_d_altitude)
             + s.d_reference_force_d_altitude
-                * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1
-                    * i.generalized_force_1_inv_omega_1_2
-                    + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2
-                        * i.generalized_force_2_inv_omega_2_2
-                    + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
-                        * i.generalized_force_3_inv_omega_3_2)); // rad/s^2/ft
+                * s
+                    .sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2); // rad/s^2/ft
     let d_f_pitch_rate_d_altitude = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
     let d_g_pitch_rate_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_altitude; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_altitude = s.d_reference_force_d_altitude
-        * p.inv_i_yy
-        * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-            + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-            + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3) + d_f_pitch_rate_d_altitude
+    let d_pitch_rate_rate_printed_d_altitude =
+        s.d_reference_force_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        + d_f_pitch_rate_d_altitude
         + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
 
     // Derivatives with respect to gamma

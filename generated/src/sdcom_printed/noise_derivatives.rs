@@ -47,7 +47,8 @@ pub fn noise_derivatives_values<R: Real>(
     let d_alpha_slope_velocity_d_altitude = (n
         .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha)
         * s.d_reference_force_d_altitude * p.inv_m; // 1/s^2/rad
-    let slope_of_alpha_slope_alpha_in_turn_factor = -i.g_gamma_over_turn_factor;
+    let slope_of_alpha_slope_alpha_in_turn_factor = -i
+        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
     let d_alpha_slope_alpha_d_altitude = slope_of_alpha_slope_alpha_in_turn_factor
         * s.d_turn_factor_d_altitude; // 1/s/ft
     let d_alpha_slope_pitch_rate_d_altitude = (p.c_bar_c_m_alpha

@@ -196,9 +196,9 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle_of_velocity to vehicle_of_alpha.
+/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle.
 #[inline(always)]
-fn parameter_jacobian_by_vehicle_of_velocity_to_vehicle_of_alpha<R: Real>(
+fn parameter_jacobian_by_vehicle<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
@@ -207,11 +207,12 @@ fn parameter_jacobian_by_vehicle_of_velocity_to_vehicle_of_alpha<R: Real>(
     s: &Slopes<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_f_velocity_eta_d_m_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * i.generalized_force_1_inv_omega_1_2
+    let sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_generalized_force_inv_omega_2 =
+        i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * i.generalized_force_1_inv_omega_1_2
         + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * i.generalized_force_2_inv_omega_2_2
         + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * i.generalized_force_3_inv_omega_3_2;
     let d_f_velocity_eta_d_m = -i.reference_force * p.inv_m_2
-        * d_f_velocity_eta_d_m_term_1; // ft^2/s^2/slug
+        * sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_generalized_force_inv_omega_2; // ft^2/s^2/slug
     let d_f_velocity_d_m_term_1 = i.cos_alpha * s.c_t_alpha_alpha_plus_c_t_0
         - p.c_d_alpha * x.alpha
         - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e
@@ -220,18 +221,18 @@ fn parameter_jacobian_by_vehicle_of_velocity_to_vehicle_of_alpha<R: Real>(
         - d_f_velocity_d_m_term_1 * i.reference_force * p.inv_m_2; // ft^2/s^2/slug
     let d_g_velocity_d_m = -s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha
         * i.reference_force * p.inv_m_2; // ft^2/s^2/slug
-    let d_velocity_rate_printed_d_m_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
     let d_velocity_rate_printed_d_m = d_f_velocity_d_m
-        - i.reference_force * p.inv_m_2 * d_velocity_rate_printed_d_m_term_1
+        - i.reference_force * p.inv_m_2 * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + u.phi * d_g_velocity_d_m; // ft^2/s^2/slug
     let d_f_gamma_d_m = -s.d_reference_force_d_velocity * p.inv_m_2
         * (R::HALF * i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-            + R::HALF * i.f_gamma_eta_over_turn_factor); // rad*ft/s/slug
-    let alpha_slope_of_g_gamma_in_turn_factor = x.alpha * i.g_gamma_over_turn_factor;
+            + R::HALF
+                * i
+                    .sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2); // rad*ft/s/slug
+    let alpha_slope_of_g_gamma_in_turn_factor = x.alpha
+        * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
     let d_gamma_rate_printed_d_m = s.d_reference_force_d_velocity * p.inv_m_2
-        * (-R::HALF * s.slope_of_gamma_rate_printed_in_turn_factor
+        * (-R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi
             - R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_m; // rad*ft/s/slug
     let d_f_alpha_d_m = -s.d_reference_force_d_velocity * p.inv_m_2
         * (R::HALF * s.slope_of_f_alpha_in_turn_factor
@@ -239,8 +240,25 @@ fn parameter_jacobian_by_vehicle_of_velocity_to_vehicle_of_alpha<R: Real>(
     let d_alpha_rate_printed_d_m = d_f_alpha_d_m
         - s.slope_of_alpha_rate_printed_in_turn_factor * s.d_reference_force_d_velocity
             * p.half_inv_m_2; // rad*ft/s/slug
+    let d_f_pitch_rate_eta_d_i_yy = -p.inv_i_yy_2 * i.reference_force
+        * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2; // rad/s^2/slug/ft
+    let c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0 = p.c_m_alpha_2 * i.alpha_2
+        + p.c_m_alpha * x.alpha
+        + p.c_m_0;
+    let d_f_pitch_rate_d_i_yy_term_1 = p.z_t
+        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
+        + p.c_bar * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0;
+    let d_f_pitch_rate_d_i_yy = d_f_pitch_rate_eta_d_i_yy
+        - d_f_pitch_rate_d_i_yy_term_1 * i.reference_force * p.inv_i_yy_2; // rad/s^2/slug/ft
+    let d_g_pitch_rate_d_i_yy = -p
+        .c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2
+        * i.reference_force; // 1/s^2/slug/ft
+    let d_pitch_rate_rate_printed_d_i_yy = d_f_pitch_rate_d_i_yy
+        - p.inv_i_yy_2 * i.reference_force * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        + u.delta_e * d_g_pitch_rate_d_i_yy; // rad/s^2/slug/ft
     let d_f_velocity_eta_d_s = i.dynamic_pressure
-        * (p.inv_m * d_f_velocity_eta_d_m_term_1
+        * (p.inv_m
+            * sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_generalized_force_inv_omega_2
             + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * i.c_n_1
             + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * i.c_n_2
             + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * i.c_n_3); // 1/s^2
@@ -248,19 +266,19 @@ fn parameter_jacobian_by_vehicle_of_velocity_to_vehicle_of_alpha<R: Real>(
         + d_f_velocity_eta_d_s; // 1/s^2
     let d_g_velocity_d_s = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha
         * i.dynamic_pressure * p.inv_m; // 1/s^2
-    let d_velocity_rate_printed_d_s = i.dynamic_pressure * p.inv_m * d_velocity_rate_printed_d_m_term_1
+    let d_velocity_rate_printed_d_s = i.dynamic_pressure * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_s
         + u.phi * d_g_velocity_d_s; // 1/s^2
     let d_f_gamma_eta_d_s = i.dynamic_pressure
         * (s.slope_of_f_gamma_eta_in_generalized_force_1 * i.c_n_1
             + s.slope_of_f_gamma_eta_in_generalized_force_2 * i.c_n_2
             + s.slope_of_f_gamma_eta_in_generalized_force_3 * i.c_n_3)
-        + i.f_gamma_eta_over_turn_factor * s.d_dynamic_pressure_d_velocity
-            * p.half_over_m; // rad/s/ft
+        + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
+            * s.d_dynamic_pressure_d_velocity * p.half_over_m; // rad/s/ft
     let d_f_gamma_d_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_gamma_eta_d_s; // rad/s/ft
     let d_gamma_rate_printed_d_s = s.d_dynamic_pressure_d_velocity * p.inv_m
-        * (R::HALF * s.slope_of_gamma_rate_printed_in_turn_factor
+        * (R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi
             + R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_s; // rad/s/ft
     let d_f_alpha_eta_d_s = i.dynamic_pressure
         * (s.slope_of_f_alpha_eta_in_generalized_force_1 * i.c_n_1
@@ -272,58 +290,19 @@ fn parameter_jacobian_by_vehicle_of_velocity_to_vehicle_of_alpha<R: Real>(
         * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_alpha_eta_d_s; // rad/s/ft
     let d_alpha_rate_printed_d_s = s.slope_of_alpha_rate_printed_in_turn_factor
         * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_alpha_d_s; // rad/s/ft
-
-    parameter.velocity_by_m = d_velocity_rate_printed_d_m;
-    parameter.velocity_by_s = d_velocity_rate_printed_d_s;
-    parameter.gamma_by_m = d_gamma_rate_printed_d_m;
-    parameter.gamma_by_s = d_gamma_rate_printed_d_s;
-    parameter.alpha_by_m = d_alpha_rate_printed_d_m;
-    parameter.alpha_by_s = d_alpha_rate_printed_d_s;
-}
-
-/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle_of_pitch_rate.
-#[inline(always)]
-fn parameter_jacobian_by_vehicle_of_pitch_rate<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to parameters
-    let d_f_pitch_rate_eta_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
-    let d_f_pitch_rate_eta_d_i_yy = -p.inv_i_yy_2 * i.reference_force
-        * d_f_pitch_rate_eta_d_i_yy_term_1; // rad/s^2/slug/ft
-    let d_f_pitch_rate_d_i_yy_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + i.c_t_alpha_alpha
-        + i.c_t_phi_phi
-        + p.c_t_0;
-    let c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0 = p.c_m_alpha_2 * i.alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_0;
-    let d_f_pitch_rate_d_i_yy_term_2 = p.z_t * d_f_pitch_rate_d_i_yy_term_1
-        + p.c_bar * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0;
-    let d_f_pitch_rate_d_i_yy = d_f_pitch_rate_eta_d_i_yy
-        - d_f_pitch_rate_d_i_yy_term_2 * i.reference_force * p.inv_i_yy_2; // rad/s^2/slug/ft
-    let d_g_pitch_rate_d_i_yy = -p.d_g_pitch_rate_d_i_yy_constant_1 * i.reference_force; // 1/s^2/slug/ft
-    let d_pitch_rate_rate_printed_d_i_yy_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
-    let d_pitch_rate_rate_printed_d_i_yy = d_f_pitch_rate_d_i_yy
-        - p.inv_i_yy_2 * i.reference_force * d_pitch_rate_rate_printed_d_i_yy_term_1
-        + u.delta_e * d_g_pitch_rate_d_i_yy; // rad/s^2/slug/ft
     let d_f_pitch_rate_eta_d_s = i.dynamic_pressure
-        * (p.inv_i_yy * d_f_pitch_rate_eta_d_i_yy_term_1
+        * (p.inv_i_yy
+            * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
             + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * i.c_n_1
             + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * i.c_n_2
             + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * i.c_n_3); // rad/s^2/ft
-    let d_f_pitch_rate_d_s = d_f_pitch_rate_d_i_yy_term_2 * i.dynamic_pressure
+    let d_f_pitch_rate_d_s = d_f_pitch_rate_d_i_yy_term_1 * i.dynamic_pressure
         * p.inv_i_yy + d_f_pitch_rate_eta_d_s; // rad/s^2/ft
-    let d_g_pitch_rate_d_s = p.g_pitch_rate_constant_1 * i.dynamic_pressure; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_s = p.inv_i_yy * i.dynamic_pressure * d_pitch_rate_rate_printed_d_i_yy_term_1
+    let d_g_pitch_rate_d_s = p
+        .c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy
+        * i.dynamic_pressure; // 1/s^2/ft
+    let d_pitch_rate_rate_printed_d_s =
+        p.inv_i_yy * i.dynamic_pressure * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_s
         + u.delta_e * d_g_pitch_rate_d_s; // rad/s^2/ft
     let d_f_pitch_rate_eta_d_c_bar = i.reference_force * p.inv_i_yy
@@ -340,15 +319,19 @@ fn parameter_jacobian_by_vehicle_of_pitch_rate<R: Real>(
         + d_f_pitch_rate_d_c_bar
         + u.delta_e * d_g_pitch_rate_d_c_bar; // rad/s^2/ft
     let d_f_pitch_rate_eta_d_z_t = i.reference_force * p.inv_i_yy
-        * (i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
-            + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
-            + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3); // rad/s^2/ft
+        * s.sum_of_generalized_force_inv_omega_2_c_t_eta; // rad/s^2/ft
     let d_f_pitch_rate_d_z_t = i.reference_force * p.inv_i_yy
-        * d_f_pitch_rate_d_i_yy_term_1 + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
+        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
+        + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
     let d_pitch_rate_rate_printed_d_z_t = i.reference_force * p.inv_i_yy
-        * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3
-        + d_f_pitch_rate_d_z_t; // rad/s^2/ft
+        * s.sum_of_chi_c_t_eta + d_f_pitch_rate_d_z_t; // rad/s^2/ft
 
+    parameter.velocity_by_m = d_velocity_rate_printed_d_m;
+    parameter.velocity_by_s = d_velocity_rate_printed_d_s;
+    parameter.gamma_by_m = d_gamma_rate_printed_d_m;
+    parameter.gamma_by_s = d_gamma_rate_printed_d_s;
+    parameter.alpha_by_m = d_alpha_rate_printed_d_m;
+    parameter.alpha_by_s = d_alpha_rate_printed_d_s;
     parameter.pitch_rate_by_i_yy = d_pitch_rate_rate_printed_d_i_yy;
     parameter.pitch_rate_by_s = d_pitch_rate_rate_printed_d_s;
     parameter.pitch_rate_by_c_bar = d_pitch_rate_rate_printed_d_c_bar;
@@ -378,11 +361,9 @@ fn parameter_jacobian_by_environment_of_velocity<R: Real>(
             + R::HALF * s.slope_of_f_velocity_eta_in_dynamic_pressure * i.velocity_2); // ft^4/s^2/slug
     let d_f_velocity_d_rho_0 = R::HALF * s.slope_of_f_velocity_in_dynamic_pressure
         * i.velocity_2 * i.density_ratio + d_f_velocity_eta_d_rho_0; // ft^4/s^2/slug
-    let d_velocity_rate_printed_d_rho_0_term_1 = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
-        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
-        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
     let d_velocity_rate_printed_d_rho_0 = i.density_ratio
-        * (p.half_s_over_m * d_velocity_rate_printed_d_rho_0_term_1 * i.velocity_2
+        * (p.half_s_over_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
+            * i.velocity_2
             + R::HALF * u.phi * s.slope_of_g_velocity_in_dynamic_pressure * i.velocity_2)
         + d_f_velocity_d_rho_0; // ft^4/s^2/slug
     let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
@@ -400,7 +381,8 @@ fn parameter_jacobian_by_environment_of_velocity<R: Real>(
         * d_dynamic_pressure_d_h_0 + d_f_velocity_eta_d_h_0; // 1/s^2
     let d_g_velocity_d_h_0 = s.slope_of_g_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0; // 1/s^2
-    let d_velocity_rate_printed_d_h_0 = d_reference_force_d_h_0 * p.inv_m * d_velocity_rate_printed_d_rho_0_term_1
+    let d_velocity_rate_printed_d_h_0 =
+        d_reference_force_d_h_0 * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_h_0
         + u.phi * d_g_velocity_d_h_0; // 1/s^2
     let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
@@ -418,7 +400,8 @@ fn parameter_jacobian_by_environment_of_velocity<R: Real>(
         * d_dynamic_pressure_d_h_s + d_f_velocity_eta_d_h_s; // 1/s^2
     let d_g_velocity_d_h_s = s.slope_of_g_velocity_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s; // 1/s^2
-    let d_velocity_rate_printed_d_h_s = d_reference_force_d_h_s * p.inv_m * d_velocity_rate_printed_d_rho_0_term_1
+    let d_velocity_rate_printed_d_h_s =
+        d_reference_force_d_h_s * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_h_s
         + u.phi * d_g_velocity_d_h_s; // 1/s^2
 
@@ -442,7 +425,8 @@ fn parameter_jacobian_by_environment_of_gamma<R: Real>(
 ) {
     // Derivatives with respect to parameters
     let d_f_gamma_eta_d_rho_0 = p.s * i.density_ratio
-        * (i.f_gamma_eta_over_turn_factor * p.half_over_m * x.velocity
+        * (i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
+            * p.half_over_m * x.velocity
             + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_1 * i.c_n_1
                 * i.velocity_2
             + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_2 * i.c_n_2
@@ -452,9 +436,10 @@ fn parameter_jacobian_by_environment_of_gamma<R: Real>(
     let d_f_gamma_d_rho_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * p.half_s_over_m * x.velocity * i.density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
     let d_gamma_rate_printed_d_rho_0 = p.s_over_m * i.density_ratio
-        * (R::HALF * s.slope_of_gamma_rate_printed_in_turn_factor * x.velocity
-            + R::HALF * x.alpha * i.g_gamma_over_turn_factor * x.velocity)
-        + d_f_gamma_d_rho_0; // rad*ft^3/s/slug
+        * (R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * x.velocity
+            + R::HALF * x.alpha
+                * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+                * x.velocity) + d_f_gamma_d_rho_0; // rad*ft^3/s/slug
     let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
@@ -463,14 +448,17 @@ fn parameter_jacobian_by_environment_of_gamma<R: Real>(
     let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_f_gamma_eta_d_h_0 = i.f_gamma_eta_over_turn_factor * d_turn_factor_d_h_0
+    let d_f_gamma_eta_d_h_0 =
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * d_turn_factor_d_h_0
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
     let d_f_gamma_d_h_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * d_turn_factor_d_h_0 + d_f_gamma_eta_d_h_0; // rad/s/ft
-    let d_g_gamma_d_h_0 = i.g_gamma_over_turn_factor * d_turn_factor_d_h_0; // 1/s/ft
-    let d_gamma_rate_printed_d_h_0 = s.slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_h_0
+    let d_g_gamma_d_h_0 = i
+        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+        * d_turn_factor_d_h_0; // 1/s/ft
+    let d_gamma_rate_printed_d_h_0 = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * d_turn_factor_d_h_0
         + d_f_gamma_d_h_0
         + x.alpha * d_g_gamma_d_h_0; // rad/s/ft
     let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
@@ -481,14 +469,17 @@ fn parameter_jacobian_by_environment_of_gamma<R: Real>(
     let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_f_gamma_eta_d_h_s = i.f_gamma_eta_over_turn_factor * d_turn_factor_d_h_s
+    let d_f_gamma_eta_d_h_s =
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * d_turn_factor_d_h_s
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
     let d_f_gamma_d_h_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * d_turn_factor_d_h_s + d_f_gamma_eta_d_h_s; // rad/s/ft
-    let d_g_gamma_d_h_s = i.g_gamma_over_turn_factor * d_turn_factor_d_h_s; // 1/s/ft
-    let d_gamma_rate_printed_d_h_s = s.slope_of_gamma_rate_printed_in_turn_factor * d_turn_factor_d_h_s
+    let d_g_gamma_d_h_s = i
+        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+        * d_turn_factor_d_h_s; // 1/s/ft
+    let d_gamma_rate_printed_d_h_s = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * d_turn_factor_d_h_s
         + d_f_gamma_d_h_s
         + x.alpha * d_g_gamma_d_h_s; // rad/s/ft
     let d_gravity_turn_d_r_e = p.inv_r_e
@@ -587,11 +578,10 @@ fn parameter_jacobian_by_environment_of_pitch_rate<R: Real>(
     s: &Slopes<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_f_pitch_rate_eta_d_rho_0_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
     let d_f_pitch_rate_eta_d_rho_0 = p.s * i.density_ratio
-        * (p.half_over_i_yy * d_f_pitch_rate_eta_d_rho_0_term_1 * i.velocity_2
+        * (p.half_over_i_yy
+            * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
+            * i.velocity_2
             + s.d_pitch_rate_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * i.c_n_1
                 * i.velocity_2
             + s.d_pitch_rate_rate_printed_d_chi_2 * p.half_inv_omega_2_2 * i.c_n_2
@@ -600,11 +590,9 @@ fn parameter_jacobian_by_environment_of_pitch_rate<R: Real>(
                 * i.velocity_2); // rad*ft^3/s^2/slug
     let d_f_pitch_rate_d_rho_0 = R::HALF * s.slope_of_f_pitch_rate_in_dynamic_pressure
         * i.velocity_2 * i.density_ratio + d_f_pitch_rate_eta_d_rho_0; // rad*ft^3/s^2/slug
-    let d_pitch_rate_rate_printed_d_rho_0_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
-        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
-        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
     let d_pitch_rate_rate_printed_d_rho_0 = i.density_ratio
-        * (p.half_s_over_i_yy * d_pitch_rate_rate_printed_d_rho_0_term_1 * i.velocity_2
+        * (p.half_s_over_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+            * i.velocity_2
             + u.delta_e * p.half_slope_of_g_pitch_rate_in_dynamic_pressure
                 * i.velocity_2) + d_f_pitch_rate_d_rho_0; // rad*ft^3/s^2/slug
     let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
@@ -614,16 +602,20 @@ fn parameter_jacobian_by_environment_of_pitch_rate<R: Real>(
     let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_f_pitch_rate_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy * d_f_pitch_rate_eta_d_rho_0_term_1
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // rad/s^2/ft
+    let d_f_pitch_rate_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy
+        * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+            * d_generalized_force_1_d_h_0
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+            * d_generalized_force_2_d_h_0
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+            * d_generalized_force_3_d_h_0; // rad/s^2/ft
     let d_f_pitch_rate_d_h_0 = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0 + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
     let d_g_pitch_rate_d_h_0 = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_0; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_h_0 =
-        d_reference_force_d_h_0 * p.inv_i_yy * d_pitch_rate_rate_printed_d_rho_0_term_1
+        d_reference_force_d_h_0 * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_h_0
         + u.delta_e * d_g_pitch_rate_d_h_0; // rad/s^2/ft
     let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
@@ -633,16 +625,20 @@ fn parameter_jacobian_by_environment_of_pitch_rate<R: Real>(
     let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_f_pitch_rate_eta_d_h_s = d_reference_force_d_h_s * p.inv_i_yy * d_f_pitch_rate_eta_d_rho_0_term_1
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // rad/s^2/ft
+    let d_f_pitch_rate_eta_d_h_s = d_reference_force_d_h_s * p.inv_i_yy
+        * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+            * d_generalized_force_1_d_h_s
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+            * d_generalized_force_2_d_h_s
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+            * d_generalized_force_3_d_h_s; // rad/s^2/ft
     let d_f_pitch_rate_d_h_s = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
     let d_g_pitch_rate_d_h_s = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * d_dynamic_pressure_d_h_s; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_h_s =
-        d_reference_force_d_h_s * p.inv_i_yy * d_pitch_rate_rate_printed_d_rho_0_term_1
+        d_reference_force_d_h_s * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_h_s
         + u.delta_e * d_g_pitch_rate_d_h_s; // rad/s^2/ft
 
@@ -887,27 +883,30 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_f_velocity_eta_d_c_l_delta_e_term_1 =
+    let sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e =
         s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
     let d_f_velocity_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
-        * i.reference_force * d_f_velocity_eta_d_c_l_delta_e_term_1; // ft*rad/s^2
+        * i.reference_force
+        * sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_e = i.reference_force
         * p.c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_c_l_delta_e; // ft*rad/s^2
-    let d_f_gamma_eta_d_c_l_delta_e_term_1 =
+    let sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e =
         s.slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
     let d_f_gamma_eta_d_c_l_delta_e = -i.reference_force
-        * p.canard_slaving_over_c_l_delta_c * d_f_gamma_eta_d_c_l_delta_e_term_1; // rad^2/s
-    let d_f_alpha_eta_d_c_l_delta_e_term_1 =
+        * p.canard_slaving_over_c_l_delta_c
+        * sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
+    let sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e =
         s.slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
         + s.slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
     let d_f_alpha_eta_d_c_l_delta_e = -i.reference_force
-        * p.canard_slaving_over_c_l_delta_c * d_f_alpha_eta_d_c_l_delta_e_term_1; // rad^2/s
+        * p.canard_slaving_over_c_l_delta_c
+        * sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_e_term_1 =
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
@@ -918,20 +917,21 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
         - u.delta_e * i.reference_force
             * p.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c; // rad^2/s^2
     let d_f_velocity_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * i.reference_force * d_f_velocity_eta_d_c_l_delta_e_term_1; // ft*rad/s^2
+        * i.reference_force
+        * sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_c = d_f_velocity_eta_d_c_l_delta_c
         - i.reference_force * p.d_f_velocity_d_c_l_delta_c_constant_1 * u.delta_e; // ft*rad/s^2
     let d_f_gamma_eta_d_c_l_delta_c = i.reference_force
         * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * d_f_gamma_eta_d_c_l_delta_e_term_1; // rad^2/s
+        * sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_alpha_eta_d_c_l_delta_c = i.reference_force
         * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * d_f_alpha_eta_d_c_l_delta_e_term_1; // rad^2/s
+        * sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * i.reference_force * d_f_pitch_rate_eta_d_c_l_delta_e_term_1; // rad^2/s^2
     let d_pitch_rate_rate_printed_d_c_l_delta_c = d_f_pitch_rate_eta_d_c_l_delta_c
         + u.delta_e * i.reference_force
-            * p.d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1; // rad^2/s^2
+            * p.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy; // rad^2/s^2
     let d_gamma_rate_printed_d_c_l_eta_1 = i.turn_factor
         * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s
     let d_alpha_rate_printed_d_c_l_eta_1 = -d_gamma_rate_printed_d_c_l_eta_1; // rad*ft^0.5*slug^0.5/s
@@ -1187,15 +1187,7 @@ pub fn parameter_jacobian_values<R: Real>(
     let s = slopes(x, u, p, &i);
     let q = sensitivities(x, u, p, &i);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
-    parameter_jacobian_by_vehicle_of_velocity_to_vehicle_of_alpha(
-        &mut parameter,
-        x,
-        u,
-        p,
-        &i,
-        &s,
-    );
-    parameter_jacobian_by_vehicle_of_pitch_rate(&mut parameter, x, u, p, &i, &s);
+    parameter_jacobian_by_vehicle(&mut parameter, x, u, p, &i, &s);
     parameter_jacobian_by_environment_of_velocity(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_environment_of_gamma(&mut parameter, x, p, &i, &s, &q);
     parameter_jacobian_by_environment_of_alpha(&mut parameter, x, p, &i, &s, &q);

@@ -119,7 +119,7 @@ ahv_core::record! {
         /// Constant part of C_M, dimensionless.
         pub c_m_0: R,
         /// `c_bar * inv_i_yy * c_m_delta_e_plus_canard_gain_c_m_delta_c`.
-        pub g_pitch_rate_constant_1: R,
+        pub c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy: R,
         /// Decay rate of the coloured noise of mode 1, 1/s.
         pub chi_decay_1: R,
         /// Decay rate of the coloured noise of mode 2, 1/s.
@@ -235,7 +235,7 @@ ahv_core::record! {
         /// `inv_i_yy * inv_i_yy`.
         pub inv_i_yy_2: R,
         /// `c_m_delta_e_plus_canard_gain_c_m_delta_c * c_bar * inv_i_yy_2`.
-        pub d_g_pitch_rate_d_i_yy_constant_1: R,
+        pub c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2: R,
         /// Coefficient of eta_1 in C_M, 1/(ft*slug)^0.5.
         pub c_m_eta_1: R,
         /// Coefficient of eta_2 in C_M, 1/(ft*slug)^0.5.
@@ -255,7 +255,7 @@ ahv_core::record! {
         /// `c_bar * inv_i_yy * c_m_delta_c * canard_slaving * inv_c_l_delta_c`.
         pub c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c: R,
         /// `c_bar * inv_i_yy * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-        pub d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1: R,
+        pub c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy: R,
         /// `c_bar * inv_i_yy`.
         pub c_bar_over_i_yy: R,
         /// `c_bar * inv_i_yy * canard_gain`.
@@ -563,8 +563,8 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 = p.z_t * p.c_t_eta_1 + p.c_bar * p.c_m_eta_1;
     c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 = p.z_t * p.c_t_eta_2 + p.c_bar * p.c_m_eta_2;
     c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 = p.z_t * p.c_t_eta_3 + p.c_bar * p.c_m_eta_3;
-    c.g_pitch_rate_constant_1 = p.c_bar * c.inv_i_yy
-        * c.c_m_delta_e_plus_canard_gain_c_m_delta_c;
+    c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy = p.c_bar
+        * c.inv_i_yy * c.c_m_delta_e_plus_canard_gain_c_m_delta_c;
     c.s_over_m = p.s * c.inv_m;
     c.two_g = R::TWO * p.g;
     c.two_c_n_1_alpha_2 = R::TWO * p.c_n_1_alpha_2;
@@ -630,8 +630,8 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_over_omega_2 = R::TWO * c.inv_omega_2;
     c.two_over_omega_3 = R::TWO * c.inv_omega_3;
     c.inv_i_yy_2 = c.inv_i_yy * c.inv_i_yy;
-    c.d_g_pitch_rate_d_i_yy_constant_1 = c.c_m_delta_e_plus_canard_gain_c_m_delta_c
-        * p.c_bar * c.inv_i_yy_2;
+    c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2 = c
+        .c_m_delta_e_plus_canard_gain_c_m_delta_c * p.c_bar * c.inv_i_yy_2;
     c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy = c
         .c_m_delta_e_plus_canard_gain_c_m_delta_c * c.inv_i_yy;
     c.half_s_over_i_yy = R::HALF * p.s * c.inv_i_yy;
@@ -642,8 +642,9 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
         * p.c_m_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c;
     c.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c = p.c_bar * c.inv_i_yy
         * p.c_m_delta_c * p.canard_slaving * c.inv_c_l_delta_c;
-    c.d_pitch_rate_rate_printed_d_c_l_delta_c_constant_1 = p.c_bar * c.inv_i_yy
-        * p.c_m_delta_c * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
+    c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar
+        * c.inv_i_yy * p.c_m_delta_c * p.canard_slaving * p.c_l_delta_e
+        * c.inv_c_l_delta_c_2;
     c.c_bar_over_i_yy = p.c_bar * c.inv_i_yy;
     c.c_bar_canard_gain_over_i_yy = p.c_bar * c.inv_i_yy * c.canard_gain;
     c.two_earth_curvature_2 = R::TWO * c.earth_curvature_2;

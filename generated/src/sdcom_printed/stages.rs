@@ -87,7 +87,7 @@ ahv_core::record! {
         /// `i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * i.generalized_force_1_inv_omega_1_2 +
         /// i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * i.generalized_force_2_inv_omega_2_2 +
         /// i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * i.generalized_force_3_inv_omega_3_2`.
-        pub f_gamma_eta_over_turn_factor: R,
+        pub sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2: R,
         /// F of the gamma row, flexible part, rad/s.
         pub f_gamma_eta: R,
         /// `c_t_phi * u.phi`.
@@ -99,11 +99,13 @@ ahv_core::record! {
         /// F of the gamma row, rad/s.
         pub f_gamma: R,
         /// `c_l_alpha + i.sin_alpha * (c_t_alpha + c_t_phi_alpha * u.phi)`.
-        pub g_gamma_over_turn_factor: R,
+        pub c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha: R,
         /// G of the gamma row, 1/s.
         pub g_gamma: R,
         /// F of the alpha row, flexible part, rad/s.
         pub f_alpha_eta: R,
+        /// `c_t_phi_alpha * u.phi * x.alpha + i.c_t_alpha_alpha + i.c_t_phi_phi + c_t_0`.
+        pub c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0: R,
         /// F of the alpha row, rad/s.
         pub f_alpha: R,
         /// F of the pitch_rate row, flexible part, rad/s^2.
@@ -114,12 +116,9 @@ ahv_core::record! {
         pub g_pitch_rate: R,
         /// Rate of velocity in the printed form, ft/s^2.
         pub velocity_rate_printed: R,
-        /// `i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1`.
-        pub sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1: R,
-        /// `i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2`.
-        pub sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2: R,
-        /// `i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3`.
-        pub sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3: R,
+        /// `sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 +
+        /// sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3`.
+        pub sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi: R,
         /// Rate of gamma in the printed form, rad/s.
         pub gamma_rate_printed: R,
         /// Rate of alpha in the printed form, rad/s.
@@ -201,6 +200,7 @@ fn intermediates_part_1<R: Real>(
             + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * i.generalized_force_2_inv_omega_2_2
             + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
                 * i.generalized_force_3_inv_omega_3_2); // ft/s^2
+    i.c_t_alpha_alpha = p.c_t_alpha * x.alpha;
 }
 
 /// Fills a part of [`Intermediates`].
@@ -211,7 +211,6 @@ fn intermediates_part_2<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) {
-    i.c_t_alpha_alpha = p.c_t_alpha * x.alpha;
     i.f_velocity = i.reference_force * p.inv_m
         * (i.cos_alpha * (i.c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
             - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
@@ -221,10 +220,12 @@ fn intermediates_part_2<R: Real>(
     i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1;
     i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2;
     i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3;
-    i.f_gamma_eta_over_turn_factor = i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * i.generalized_force_1_inv_omega_1_2
+    i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 =
+        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * i.generalized_force_1_inv_omega_1_2
         + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * i.generalized_force_2_inv_omega_2_2
         + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * i.generalized_force_3_inv_omega_3_2;
-    i.f_gamma_eta = i.turn_factor * i.f_gamma_eta_over_turn_factor; // rad/s
+    i.f_gamma_eta = i.turn_factor
+        * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2; // rad/s
     i.c_t_phi_phi = p.c_t_phi * u.phi;
     i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
         + i.sin_alpha * (i.c_t_phi_phi + p.c_t_0);
@@ -232,16 +233,21 @@ fn intermediates_part_2<R: Real>(
     i.f_gamma = i.turn_factor * i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - i.gravity_turn_cos_gamma
         + i.f_gamma_eta; // rad/s
-    i.g_gamma_over_turn_factor = p.c_l_alpha
+    i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha = p.c_l_alpha
         + i.sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    i.g_gamma = i.turn_factor * i.g_gamma_over_turn_factor; // 1/s
+    i.g_gamma = i.turn_factor
+        * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha; // 1/s
     i.f_alpha_eta = -i.f_gamma_eta; // rad/s
-    let f_alpha_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
+    i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0 = p.c_t_phi_alpha * u.phi * x.alpha
         + i.c_t_alpha_alpha
         + i.c_t_phi_phi
         + p.c_t_0;
     i.f_alpha = i.gravity_turn_cos_gamma
-        - i.turn_factor * (p.c_l_0 + p.c_l_alpha * x.alpha + i.sin_alpha * f_alpha_term_1)
+        - i.turn_factor
+            * (p.c_l_0 + p.c_l_alpha * x.alpha
+                + i.sin_alpha
+                    * i
+                        .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0)
         + i.f_alpha_eta; // rad/s
     i.f_pitch_rate_eta = i.reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
@@ -249,10 +255,12 @@ fn intermediates_part_2<R: Real>(
             + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3
                 * i.generalized_force_3_inv_omega_3_2); // rad/s^2
     i.f_pitch_rate = i.reference_force * p.inv_i_yy
-        * (p.z_t * f_alpha_term_1
+        * (p.z_t
+            * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
             + p.c_bar * (p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
         + i.f_pitch_rate_eta; // rad/s^2
-    i.g_pitch_rate = i.reference_force * p.g_pitch_rate_constant_1; // 1/s^2
+    i.g_pitch_rate = i.reference_force
+        * p.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy; // 1/s^2
 
     // Printed form, (27)
     i.velocity_rate_printed = i.reference_force * p.inv_m
@@ -260,23 +268,22 @@ fn intermediates_part_2<R: Real>(
             + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + i.f_velocity
         + i.g_velocity * u.phi; // ft/s^2
-    i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = i
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = i
         .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1;
-    i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = i
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = i
         .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2;
-    i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = i
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = i
         .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
-    let gamma_rate_printed_term_1 = i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
-    i.gamma_rate_printed = i.turn_factor * gamma_rate_printed_term_1
+    i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+        + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+        + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
+    i.gamma_rate_printed = i.turn_factor * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi
         + i.f_gamma
         + i.g_gamma * x.alpha; // rad/s
     i.alpha_rate_printed = i.turn_factor
-        * (-i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-            - i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-            - i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + i.f_alpha
-        + x.pitch_rate; // rad/s
+        * (-sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
+            - sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
+            - sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3) + i.f_alpha + x.pitch_rate; // rad/s
     i.pitch_rate_rate_printed = i.reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
             + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
@@ -320,11 +327,11 @@ ahv_core::record! {
         pub c_t_phi_alpha_alpha_plus_c_t_phi: R,
         /// Partial derivative of g of the velocity row with respect to dynamic pressure, ft^3/s^2/lb.
         pub slope_of_g_velocity_in_dynamic_pressure: R,
+        /// `i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1 + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2 +
+        /// i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3`.
+        pub sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi: R,
         /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
         pub d_turn_factor_d_velocity: R,
-        /// Partial derivative of rate of gamma in the printed form with respect to turn rate per force coefficient
-        /// across the flight path, rad.
-        pub slope_of_gamma_rate_printed_in_turn_factor: R,
         /// `i.inv_velocity * i.inv_velocity`.
         pub inv_velocity_2: R,
         /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
@@ -361,6 +368,13 @@ ahv_core::record! {
         pub slope_of_f_alpha_eta_in_generalized_force_3: R,
         /// Partial derivative of f of the pitch_rate row with respect to dynamic pressure, rad*ft^2/s^2/lb.
         pub slope_of_f_pitch_rate_in_dynamic_pressure: R,
+        /// `z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2 +
+        /// z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2 +
+        /// z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2`.
+        pub sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2: R,
+        /// `z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1 + z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2 +
+        /// z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3`.
+        pub sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi: R,
         /// Derivative of air density with respect to altitude, slug/ft^4.
         pub d_density_d_altitude: R,
         /// Derivative of dynamic pressure with respect to altitude, lb/ft^3.
@@ -391,12 +405,15 @@ ahv_core::record! {
         /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
         pub d_cos_alpha_d_alpha: R,
         /// `x.chi_1 * c_t_eta_1 + x.chi_2 * c_t_eta_2 + x.chi_3 * c_t_eta_3`.
-        pub chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3: R,
+        pub sum_of_chi_c_t_eta: R,
         /// Partial derivative of rate of velocity in the printed form with respect to cos of the angle of attack,
         /// ft/s^2.
         pub slope_of_velocity_rate_printed_in_cos_alpha: R,
         /// Partial derivative of f of the velocity row with respect to cos of the angle of attack, ft/s^2.
         pub slope_of_f_velocity_in_cos_alpha: R,
+        /// `i.generalized_force_1_inv_omega_1_2 * c_t_eta_1 + i.generalized_force_2_inv_omega_2_2 * c_t_eta_2 +
+        /// i.generalized_force_3_inv_omega_3_2 * c_t_eta_3`.
+        pub sum_of_generalized_force_inv_omega_2_c_t_eta: R,
         /// Partial derivative of f of the velocity row, flexible part with respect to cos of the angle of attack,
         /// ft/s^2.
         pub slope_of_f_velocity_eta_in_cos_alpha: R,
@@ -498,9 +515,6 @@ fn slopes_part_1<R: Real>(
     s.slope_of_g_velocity_in_dynamic_pressure = s.c_t_phi_alpha_alpha_plus_c_t_phi
         * i.cos_alpha * p.s_over_m; // ft^3/s^2/lb
     s.d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
-    s.slope_of_gamma_rate_printed_in_turn_factor = i.sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3; // rad
     s.inv_velocity_2 = i.inv_velocity * i.inv_velocity;
     s.d_gravity_turn_d_velocity = -(i.gravity * s.inv_velocity_2
         + p.earth_curvature * i.radius_ratio); // 1/ft
@@ -510,16 +524,17 @@ fn slopes_part_1<R: Real>(
         * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
     s.slope_of_f_gamma_eta_in_generalized_force_3 = i.turn_factor
         * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    s.d_g_gamma_d_velocity = i.g_gamma_over_turn_factor * s.d_turn_factor_d_velocity; // 1/ft
-    s.slope_of_alpha_rate_printed_in_turn_factor = -s
-        .slope_of_gamma_rate_printed_in_turn_factor; // rad
-    let slope_of_f_alpha_in_turn_factor_term_1 = p.c_t_phi_alpha * u.phi * x.alpha
-        + i.c_t_alpha_alpha
-        + i.c_t_phi_phi
-        + p.c_t_0;
+    s.d_g_gamma_d_velocity = i
+        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+        * s.d_turn_factor_d_velocity; // 1/ft
+    s.slope_of_alpha_rate_printed_in_turn_factor = -i
+        .sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi; // rad
     s.slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
-        + i.sin_alpha * slope_of_f_alpha_in_turn_factor_term_1); // rad
-    s.slope_of_f_alpha_eta_in_turn_factor = -i.f_gamma_eta_over_turn_factor; // rad
+        + i.sin_alpha
+            * i
+                .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0); // rad
+    s.slope_of_f_alpha_eta_in_turn_factor = -i
+        .sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2; // rad
     s.slope_of_f_alpha_eta_in_generalized_force_1 = -s
         .slope_of_f_gamma_eta_in_generalized_force_1; // rad*s/ft^0.5/slug^0.5
     s.slope_of_f_alpha_eta_in_generalized_force_2 = -s
@@ -527,7 +542,7 @@ fn slopes_part_1<R: Real>(
     s.slope_of_f_alpha_eta_in_generalized_force_3 = -s
         .slope_of_f_gamma_eta_in_generalized_force_3; // rad*s/ft^0.5/slug^0.5
     s.slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
-        * slope_of_f_alpha_in_turn_factor_term_1
+        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
         + p.c_bar * (p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
         * p.s_over_i_yy; // rad*ft^2/s^2/lb
 
@@ -544,7 +559,9 @@ fn slopes_part_1<R: Real>(
     s.d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * s.d_density_d_altitude; // 1/s/ft
     s.d_gravity_turn_d_altitude = s.d_gravity_d_altitude * i.inv_velocity
         - x.velocity * p.earth_curvature * s.d_radius_ratio_d_altitude; // 1/s/ft
-    s.d_g_gamma_d_altitude = i.g_gamma_over_turn_factor * s.d_turn_factor_d_altitude; // 1/s/ft
+    s.d_g_gamma_d_altitude = i
+        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+        * s.d_turn_factor_d_altitude; // 1/s/ft
 
     // Derivatives with respect to gamma
     s.d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
@@ -552,38 +569,23 @@ fn slopes_part_1<R: Real>(
 
     // Derivatives with respect to alpha
     s.d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
-    s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3 = x.chi_1 * p.c_t_eta_1
+    s.sum_of_chi_c_t_eta = x.chi_1 * p.c_t_eta_1
         + x.chi_2 * p.c_t_eta_2
         + x.chi_3 * p.c_t_eta_3;
     s.slope_of_velocity_rate_printed_in_cos_alpha = i.reference_force * p.inv_m
-        * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // ft/s^2
+        * s.sum_of_chi_c_t_eta; // ft/s^2
     s.slope_of_f_velocity_in_cos_alpha = i.reference_force * p.inv_m
         * s.c_t_alpha_alpha_plus_c_t_0; // ft/s^2
-    let slope_of_f_velocity_eta_in_cos_alpha_term_1 = i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
+    s.sum_of_generalized_force_inv_omega_2_c_t_eta = i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
         + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
         + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
     s.slope_of_f_velocity_eta_in_cos_alpha = i.reference_force * p.inv_m
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // ft/s^2
+        * s.sum_of_generalized_force_inv_omega_2_c_t_eta; // ft/s^2
     s.d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
     s.d_generalized_force_1_d_alpha = i.reference_force * s.d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
     s.d_generalized_force_2_d_alpha = i.reference_force * s.d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
-    s.d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_c_t_phi
-        * i.reference_force * p.inv_m; // ft/s^2
-    s.slope_of_gamma_rate_printed_in_sin_alpha = i.turn_factor
-        * s.chi_1_c_t_eta_1_plus_chi_2_c_t_eta_2_plus_chi_3_c_t_eta_3; // rad/s
-    s.slope_of_f_gamma_in_sin_alpha = i.turn_factor * (i.c_t_phi_phi + p.c_t_0); // rad/s
-    s.slope_of_f_gamma_eta_in_sin_alpha = i.turn_factor
-        * slope_of_f_velocity_eta_in_cos_alpha_term_1; // rad/s
-    s.c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
-    s.slope_of_g_gamma_in_sin_alpha = i.turn_factor * s.c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
-    s.d_g_gamma_d_alpha = s.slope_of_g_gamma_in_sin_alpha * i.cos_alpha; // 1/s/rad
-    s.slope_of_alpha_rate_printed_in_sin_alpha = -s
-        .slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
-    s.slope_of_f_alpha_in_sin_alpha = -i.turn_factor
-        * slope_of_f_alpha_in_turn_factor_term_1; // rad/s
 }
 
 /// Fills a part of [`Slopes`].
@@ -591,9 +593,24 @@ fn slopes_part_1<R: Real>(
 fn slopes_part_2<R: Real>(
     s: &mut Slopes<R>,
     x: &State<R>,
+    u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) {
+    s.d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_c_t_phi
+        * i.reference_force * p.inv_m; // ft/s^2
+    s.slope_of_gamma_rate_printed_in_sin_alpha = i.turn_factor * s.sum_of_chi_c_t_eta; // rad/s
+    s.slope_of_f_gamma_in_sin_alpha = i.turn_factor * (i.c_t_phi_phi + p.c_t_0); // rad/s
+    s.slope_of_f_gamma_eta_in_sin_alpha = i.turn_factor
+        * s.sum_of_generalized_force_inv_omega_2_c_t_eta; // rad/s
+    s.c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
+    s.slope_of_g_gamma_in_sin_alpha = i.turn_factor * s.c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
+    s.d_g_gamma_d_alpha = s.slope_of_g_gamma_in_sin_alpha * i.cos_alpha; // 1/s/rad
+    s.slope_of_alpha_rate_printed_in_sin_alpha = -s
+        .slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
+    s.slope_of_f_alpha_in_sin_alpha = -i.turn_factor
+        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0; // rad/s
     s.slope_of_f_alpha_eta_in_sin_alpha = -s.slope_of_f_gamma_eta_in_sin_alpha; // rad/s
 
     // Derivatives with respect to chi_1
@@ -656,6 +673,16 @@ fn slopes_part_2<R: Real>(
     s.d_f_gamma_eta_d_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
+    s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
+        + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
+        + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
+    s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2 =
+        p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2;
+    s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1
+        + p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2
+        + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3;
 }
 
 /// Computes [`Slopes`].
@@ -668,7 +695,7 @@ pub fn slopes<R: Real>(
 ) -> Slopes<R> {
     let mut s = Slopes::splat(R::ZERO);
     slopes_part_1(&mut s, x, u, p, i);
-    slopes_part_2(&mut s, x, p, i);
+    slopes_part_2(&mut s, x, u, p, i);
     s
 }
 
@@ -748,7 +775,8 @@ pub fn noise_slopes<R: Real>(
         * s.d_cos_alpha_d_alpha; // ft/s^2/rad^2
 
     // Derivatives with respect to altitude
-    let slope_of_alpha_slope_alpha_in_turn_factor = -i.g_gamma_over_turn_factor;
+    let slope_of_alpha_slope_alpha_in_turn_factor = -i
+        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
 
     // Derivatives with respect to velocity
     m.d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor

@@ -36,5 +36,6 @@ pub(crate) fn body(
     Body {
         statements,
         results,
+        numbered: scope.numbered,
     }
 }

@@ -6,7 +6,7 @@ use crate::graph::{Call, Dag, Id, Kind, Node};
 use crate::ir;
 
 /// Longer names are not read; such a value is numbered under the quantity that it belongs to.
-const LONGEST: usize = 60;
+const LONGEST: usize = 80;
 
 /// What the nodes of a graph are called in a function.
 pub(crate) struct Names<'a> {
@@ -45,14 +45,43 @@ impl Names<'_> {
         let Node::Product(coefficient, factors) = self.dag.node(whole) else {
             return None;
         };
-        let others: Vec<Id> = factors.iter().copied().filter(|&it| it != id).collect();
-        if *coefficient != 1.0 || others.is_empty() || others.len() == factors.len() {
+        let others = factors.iter().copied().filter(|&it| it != id);
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for other in others {
+            match *self.dag.node(other) {
+                // To leave a reciprocal out is to multiply.
+                Node::Power(base, -1) if self.quantity(other).is_none() => {
+                    above.push(self.spell(base)?);
+                }
+                _ => below.push(self.spell(other)?),
+            }
+        }
+        let all = || above.iter().chain(&below);
+        let is_part = above.len() + below.len() == factors.len() - 1 && factors.len() > 1;
+        let is_plain = !all().any(|it| is_sum(it) || is_derivative(it) || it.contains("over_"));
+        if coefficient.abs() != 1.0 || !is_part || !is_plain {
             return None;
         }
-        let others = self.spell_product(1.0, &others)?;
-        let is_plain = !is_sum(&others) && !others.contains("over_") && !others.contains("inv_");
-        let name = format!("{owner}_over_{others}");
-        (is_plain && name.len() <= LONGEST).then_some(name)
+        let sign = if *coefficient < 0.0 { "minus_" } else { "" };
+        let mut name = format!("{sign}{owner}");
+        if !above.is_empty() {
+            name += &format!("_times_{}", above.join("_"));
+        }
+        if !below.is_empty() {
+            name += &format!("_over_{}", below.join("_"));
+        }
+        (name.len() <= LONGEST).then_some(name)
+    }
+
+    /// Why a node has no name that describes it, as a sentence.
+    pub(crate) fn reason(&self, id: Id) -> String {
+        match self.spell(id) {
+            Some(name) if name.len() > LONGEST => {
+                format!("its description has {} letters: {name}", name.len())
+            }
+            Some(name) => format!("another value is called {name}"),
+            None => "a product of sums, or a number without a word, has no description".to_owned(),
+        }
     }
 
     fn spell(&self, id: Id) -> Option<String> {
@@ -94,8 +123,16 @@ impl Names<'_> {
             Call::Exp => "exp",
             Call::Sqrt => "sqrt",
         };
-        let of = if self.is_open(argument) { "_of" } else { "" };
-        Some(format!("{function}{of}_{}", self.spell(argument)?))
+        let text = self.spell(argument)?;
+        let name = format!("{function}_{text}");
+        // A quantity of that name is something else.
+        let own = self.dag.quantities(id);
+        let mut quantities = self.model.quantities.iter().zip(0..);
+        let is_taken = quantities.any(|(it, place)| it.name == name && !own.contains(&place));
+        if is_taken || self.is_open(argument) {
+            return Some(format!("{function}_of_{text}"));
+        }
+        Some(name)
     }
 
     /// Whether what follows a node's name would read as a part of it: of its last addend, or of what it is differentiated by.
@@ -109,7 +146,32 @@ impl Names<'_> {
         self.spell(id).is_some_and(|name| is_sum(&name))
     }
 
+    /// A sum whose addends differ in an index alone, 1, 2, 3 and so on, as "sum_of_c_t_eta_times_chi".
+    fn spell_indexed_sum(&self, terms: &[(f64, Id)]) -> Option<String> {
+        let addends = terms.iter().map(|&(coefficient, id)| {
+            let name = self.spell(id).filter(|_| coefficient == 1.0)?;
+            Some(name.split('_').map(str::to_owned).collect())
+        });
+        let addends: Vec<Vec<String>> = addends.collect::<Option<_>>()?;
+        let first = addends.first().filter(|_| addends.len() > 1)?;
+        let mut words = vec!["sum_of"];
+        for (position, word) in first.iter().enumerate() {
+            let others: Vec<&String> = addends.iter().filter_map(|it| it.get(position)).collect();
+            let is_index = others.iter().zip(1..).all(|(it, k)| **it == k.to_string());
+            if others.iter().all(|it| *it == word) {
+                words.push(word);
+            } else if !is_index || others.len() != addends.len() {
+                return None;
+            }
+        }
+        let same = addends.iter().all(|it| it.len() == first.len());
+        same.then(|| words.join("_"))
+    }
+
     fn spell_sum(&self, terms: &[(f64, Id)]) -> Option<String> {
+        if let Some(name) = self.spell_indexed_sum(terms) {
+            return Some(name);
+        }
         let mut text = String::new();
         for (position, &(coefficient, id)) in terms.iter().enumerate() {
             text += match (position, coefficient < 0.0) {
@@ -142,10 +204,11 @@ impl Names<'_> {
         for &factor in factors {
             match self.dag.node(factor) {
                 Node::Power(base, -1) if self.quantity(factor).is_none() => {
-                    if self.is_open_sum(*base) {
-                        return None;
+                    match self.known.get(&factor).filter(|name| !is_numbered(name)) {
+                        Some(name) if self.is_open_sum(*base) => above.push(name.clone()),
+                        None if self.is_open_sum(*base) => return None,
+                        _ => below.push(self.spell(*base)?),
                     }
-                    below.push(self.spell(*base)?);
                 }
                 _ if self.is_open_sum(factor) => sums.push(self.spell(factor)?),
                 _ => above.push(self.spell(factor)?),
@@ -174,7 +237,7 @@ impl Names<'_> {
 }
 
 fn is_sum(name: &str) -> bool {
-    name.contains("_plus_") || name.contains("_minus_")
+    name.contains("_plus_") || name.contains("_minus_") || name.starts_with("sum_of_")
 }
 
 fn is_derivative(name: &str) -> bool {
@@ -188,12 +251,14 @@ pub(super) fn is_numbered(name: &str) -> bool {
 
 fn number_word(value: f64) -> Option<&'static str> {
     Some(match value {
+        0.25 => "quarter",
         0.5 => "half",
         2.0 => "two",
         3.0 => "three",
         4.0 => "four",
         5.0 => "five",
         6.0 => "six",
+        _ if (value * value - 0.5).abs() < 1e-15 => "root_half",
         _ => return None,
     })
 }

@@ -167,7 +167,7 @@ pub(super) fn sliced(statements: Vec<Statement>) -> Vec<Body> {
 fn body_of(statements: Vec<Statement>) -> Body {
     Body {
         statements,
-        results: Vec::new(),
+        ..Body::default()
     }
 }
 

@@ -19,6 +19,8 @@ pub(crate) struct Field {
 #[derive(Default)]
 pub(crate) struct Prepared {
     pub(crate) fields: Vec<Field>,
+    /// Names that only say whose part a value is, each with the reason.
+    pub(crate) numbered: Vec<(String, String)>,
     names: HashMap<Id, String>,
 }
 
@@ -87,7 +89,7 @@ impl Prepared {
         self.fields.push(Field { id, name });
     }
 
-    fn unique_name(&self, dag: &Dag, model: &ir::Model, id: Id, owner: &str) -> String {
+    fn unique_name(&mut self, dag: &Dag, model: &ir::Model, id: Id, owner: &str) -> String {
         let taken = |name: &str| self.fields.iter().any(|f| f.name == name);
         // A value of the model, whichever function needs it.
         let names = Names {
@@ -96,12 +98,14 @@ impl Prepared {
             home: None,
             known: &self.names,
         };
-        match names.describe(id) {
-            Some(name) if !taken(&name) => name,
-            _ => (1..)
-                .map(|k| format!("{}_constant_{k}", owner.to_lowercase()))
-                .find(|name| !taken(name))
-                .unwrap_or_default(),
+        if let Some(name) = names.describe(id).filter(|name| !taken(name)) {
+            return name;
         }
+        let numbers = (1..).map(|k| format!("{}_constant_{k}", owner.to_lowercase()));
+        let mut free = numbers.filter(|name| !taken(name));
+        let name = free.next().unwrap_or_default();
+        let reason = names.reason(id);
+        self.numbered.push((name.clone(), reason));
+        name
     }
 }

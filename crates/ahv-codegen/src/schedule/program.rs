@@ -170,6 +170,27 @@ impl<'a> Program<'a> {
         functions.map(|it| (it.ir.name.clone(), cost(it))).collect()
     }
 
+    /// Names that only say whose part a value is: the function, the name, the reason.
+    pub(crate) fn numbered(&self) -> Vec<(String, String, String)> {
+        let of = |function: &str, names: &[(String, String)]| {
+            let names = names
+                .iter()
+                .map(|(name, reason)| (function.to_owned(), name.clone(), reason.clone()));
+            names.collect::<Vec<_>>()
+        };
+        let mut found = Vec::new();
+        for stage in [&self.prepared].into_iter().chain(&self.stages) {
+            found.extend(of(stage.kind.function, &stage.numbered));
+        }
+        for function in &self.functions {
+            let pieces = function.pieces.iter().map(|(_, body)| body);
+            for body in pieces.chain([&function.body]) {
+                found.extend(of(&function.ir.name, &body.numbered));
+            }
+        }
+        found
+    }
+
     /// The groups of the functions, in the order of the IR: each becomes a file, or a section of one.
     pub(crate) fn groups(&self) -> Vec<&'a str> {
         let mut groups: Vec<&str> = Vec::new();
@@ -193,6 +214,7 @@ fn prepare(
     let fields: Vec<(Id, String)> = fields.map(|it| (it.id, it.name.clone())).collect();
     let kind = &stages::PREPARED;
     let mut stage = Stage::new(dag, model, Given::NOTHING, kind, fields);
+    stage.numbered.extend(prepared.numbered.iter().cloned());
     for (field, prepared) in stage.fields.iter_mut().zip(&prepared.fields) {
         if let Node::Leaf(_, name) = dag.node(prepared.id) {
             field.about = Some(parameter_doc(document, name));

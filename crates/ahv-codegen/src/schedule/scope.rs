@@ -23,6 +23,8 @@ pub(super) struct Scope<'a> {
     pub(super) model: &'a ir::Model,
     pub(super) given: Given<'a>,
     target: Option<Target<'a>>,
+    /// Names that only say whose part a value is, each with the reason.
+    pub(super) numbered: Vec<(String, String)>,
     pub(super) bound: HashMap<Id, Expr>,
     bound_in_order: Vec<Id>,
     /// What nodes are called in names: what is given, and what is bound.
@@ -56,6 +58,7 @@ impl<'a> Scope<'a> {
             model,
             given,
             target,
+            numbered: Vec::new(),
             bound: HashMap::new(),
             bound_in_order: Vec::new(),
             spelled: given.names(),
@@ -238,6 +241,10 @@ impl<'a> Scope<'a> {
                 .find(|name| !self.taken.contains(name))
                 .unwrap_or_default()
         });
+        if is_numbered(&name) {
+            let reason = self.names().reason(id);
+            self.numbered.push((name.clone(), reason));
+        }
         self.taken.insert(name.clone());
         name
     }

@@ -90,6 +90,8 @@ pub(crate) struct Stage {
     pub(crate) fields: Vec<Field>,
     /// What fills the fields, one part after the other.
     pub(crate) parts: Vec<Body>,
+    /// Names that only say whose part a value is, each with the reason.
+    pub(crate) numbered: Vec<(String, String)>,
     names: HashMap<Id, String>,
 }
 
@@ -142,12 +144,12 @@ impl Stage {
         kind: &'static Kind,
         mut fields: Vec<(Id, String)>,
     ) -> Self {
-        let (mut parts, others) = parts(dag, model, given, kind, &fields);
+        let (mut parts, mut numbered, others) = parts(dag, model, given, kind, &fields);
         if parts.iter().any(|part| length(part) > LONGEST) {
             // Its parts know each other's values as fields.
             let ids: HashSet<Id> = fields.iter().map(|(id, _)| *id).collect();
             fields.extend(others.into_iter().filter(|(id, _)| !ids.contains(id)));
-            parts = self::parts(dag, model, given, kind, &fields).0;
+            (parts, numbered, _) = self::parts(dag, model, given, kind, &fields);
         }
         // A value that is a quantity of another function is named from what it is, and so described.
         let about = |id: Id, name: &str| {
@@ -162,6 +164,7 @@ impl Stage {
         Self {
             kind,
             parts,
+            numbered,
             names: fields.iter().cloned().collect(),
             fields: fields.into_iter().map(field).collect(),
         }
@@ -173,14 +176,14 @@ impl Stage {
     }
 }
 
-/// What fills these fields, and what else is bound there by a name that describes it.
+/// What fills these fields; names there that are numbered, with reasons; what is bound there by a name that describes it.
 fn parts(
     dag: &mut Dag,
     model: &ir::Model,
     given: Given<'_>,
     kind: &'static Kind,
     fields: &[(Id, String)],
-) -> (Vec<Body>, Vec<(Id, String)>) {
+) -> (Vec<Body>, Vec<(String, String)>, Vec<(Id, String)>) {
     // What is handed on unchanged comes first.
     let is_leaf = |id: &Id| matches!(dag.node(*id), Node::Leaf(..));
     let ids = fields.iter().map(|(id, _)| *id);
@@ -198,7 +201,8 @@ fn parts(
     };
     let mut statements = scope.handed_on(&leaves);
     statements.extend(scope.write(owner, &computed));
-    (sliced(statements), scope.described())
+    let others = scope.described();
+    (sliced(statements), scope.numbered, others)
 }
 
 /// The stages of a model whose functions have these roots.

@@ -79,6 +79,8 @@ pub(crate) enum Statement {
 pub(crate) struct Body {
     pub(crate) statements: Vec<Statement>,
     pub(crate) results: Vec<Expr>,
+    /// Names that only say whose part a value is, each with the reason.
+    pub(crate) numbered: Vec<(String, String)>,
 }
 
 impl Expr {
