@@ -1,7 +1,7 @@
 //! The intermediate representation: what the derivation hands to the emitter, as JSON.
 
 use serde::Deserialize;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fmt;
 use std::str::FromStr;
 
@@ -538,6 +538,20 @@ impl Document {
 }
 
 impl Model {
+    /// Two components of one vector must not share a name.
+    pub(crate) fn check_names(&self) -> Result<(), EmitError> {
+        for (basis, variables) in &self.bases {
+            let names: BTreeSet<_> = variables.iter().map(|v| &v.name).collect();
+            if names.len() != variables.len() {
+                return Err(EmitError::Mismatch(format!(
+                    "the basis `{basis}` of model `{}` holds a name twice",
+                    self.name
+                )));
+            }
+        }
+        Ok(())
+    }
+
     /// Positions of the quantities that the derivation of a function goes through.
     pub(crate) fn derivation(&self, function: &Function) -> HashSet<usize> {
         let quantities = self.quantities.iter().zip(0..);

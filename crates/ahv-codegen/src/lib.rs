@@ -26,11 +26,14 @@ mod evaluate;
 mod graph;
 pub mod ir;
 mod manifest;
+mod numbered;
 mod parallel;
 mod rust;
 mod schedule;
 mod shape;
+mod subject;
 mod table;
+mod template;
 #[cfg(test)]
 mod testing;
 mod values;
@@ -39,9 +42,10 @@ mod wording;
 use std::collections::BTreeMap;
 
 pub use ahv_table::{Part, Unreadable};
-pub use emit::{AUDIT, Core, Numbered, Options, Target, emit, numbered};
+pub use emit::{AUDIT, Core, Options, Target, emit};
 pub use graph::passes::{Pass, Passes, UnknownPass};
 pub use manifest::{Manifest, sha256};
+pub use numbered::{Numbered, numbered};
 pub use table::Table;
 
 /// Files by their path relative to the folder of the generated package, with `/` between its parts.

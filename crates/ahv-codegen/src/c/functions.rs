@@ -4,10 +4,11 @@ use super::print::{Printer, broken, comments};
 use super::types::Types;
 use crate::graph::Kind;
 use crate::ir::capitalised;
+use crate::schedule::given::Stage;
 use crate::schedule::pieces::Group;
 use crate::schedule::program::{Function, Program};
-use crate::schedule::stages::{self, Stage};
-use crate::schedule::tree::{Body, Source};
+use crate::schedule::stages;
+use crate::schedule::tree::{Body, Source, StageKind};
 use crate::shape::Shape;
 use crate::wording::summary;
 
@@ -86,13 +87,13 @@ impl Functions<'_> {
         (format!("const {}{of} *", self.types.own), name.to_owned())
     }
 
-    fn stage_argument(&self, kind: &stages::Kind) -> Argument {
+    fn stage_argument(&self, kind: &StageKind) -> Argument {
         let of = format!("const {}{} *", self.types.own, kind.type_name);
         (of, kind.argument.to_owned())
     }
 
     /// What a body refers to, as arguments.
-    fn taken(&self, uses: impl Fn(Source) -> bool, but: Option<&stages::Kind>) -> Vec<Argument> {
+    fn taken(&self, uses: impl Fn(Source) -> bool, but: Option<&StageKind>) -> Vec<Argument> {
         let kinds = [Kind::State, Kind::Input, Kind::Parameter, Kind::Noise];
         let kinds = kinds.into_iter();
         let kinds = kinds.filter(|kind| uses(Source::Argument(*kind)));

@@ -1,8 +1,8 @@
 //! The structs of a model: its vectors, its matrices, what is prepared and computed once.
 
 use crate::ir::{self, Basis, capitalised};
+use crate::schedule::given::Stage;
 use crate::schedule::program::Program;
-use crate::schedule::stages::Stage;
 use crate::shape::{Axis, Shape};
 
 /// A struct.

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::tidy;
 use crate::EmitError;
-use crate::emit::render;
+use crate::template::render;
 
 /// The schema of the audit that this crate reads.
 const SCHEMA_VERSION: u64 = 1;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::functions::{definition, right_side};
 use super::latex::{Printer, Style, has_name, is_derivative};
 use super::lines::{equation, listed};
-use super::subject::{Subject, cell, inline_math, is_fit, unit_text};
+use super::subject::{Subject, cell, inline_math, is_fit, tag, unit_text};
 use super::typeset::signed;
 use crate::ir::{Expr, Quantity};
 
@@ -24,14 +24,6 @@ pub(super) struct SymbolRow {
     pub(super) name: String,
     pub(super) unit: String,
     pub(super) doc: String,
-}
-
-/// The tag of an equation of the paper.
-pub(super) fn tag(equation: &str) -> String {
-    let inner = equation
-        .strip_prefix('(')
-        .and_then(|text| text.strip_suffix(')'));
-    inner.unwrap_or(equation).to_owned()
 }
 
 /// The right-hand side of the model: `ẋ = …` for each state.

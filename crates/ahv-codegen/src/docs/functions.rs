@@ -134,7 +134,7 @@ pub(super) fn paper_symbol(name: &str) -> String {
 
 /// A function as formulas, one display for each entry; `None` where they are too long.
 pub(super) fn formulas(printer: &Printer<'_>, function: &Function) -> Option<Vec<Vec<String>>> {
-    let tag = super::equations::tag(&function.equation);
+    let tag = super::subject::tag(&function.equation);
     let mut displays = Vec::new();
     for output in &function.outputs {
         for entry in &output.entries {

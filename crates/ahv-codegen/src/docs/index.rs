@@ -4,8 +4,8 @@ use askama::Template;
 
 use super::subject::{Subject, verbatim};
 use crate::EmitError;
-use crate::emit::render;
 use crate::ir::Basis;
+use crate::template::render;
 
 #[derive(Template)]
 #[template(path = "docs/index.md")]

@@ -24,7 +24,7 @@ pub(crate) use audit::audit;
 pub(crate) use functions::Costs;
 pub(crate) use index::Page;
 pub(crate) use passes_page::passes_page;
-pub(crate) use subject::Subject;
+use subject::Subject;
 
 use crate::ir::Model;
 use crate::schedule::effect::Effect;

@@ -9,8 +9,8 @@ use super::latex::Printer;
 use super::noise::{self, Noise};
 use super::subject::{Subject, cell, inline_math, plain_number, readable, unit_text, verbatim};
 use crate::EmitError;
-use crate::emit::render;
 use crate::ir::{self, Function, Model};
+use crate::template::render;
 
 /// Groups of functions that are printed as formulas.
 const AS_FORMULAS: [&str; 3] = ["strict_feedback", "moments", "responses"];

@@ -6,11 +6,11 @@ use askama::Template;
 
 use super::index::Page;
 use crate::EmitError;
-use crate::emit::render;
 use crate::graph::passes::Pass;
 use crate::ir::Model;
 use crate::schedule::Cost;
 use crate::schedule::effect::Effect;
+use crate::template::render;
 
 /// Where the page stands, relative to the index.
 pub(super) const PATH: &str = "passes.md";

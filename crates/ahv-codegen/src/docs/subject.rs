@@ -1,60 +1,15 @@
-//! A table and its IR, and how their numbers and words are written.
+//! How the numbers and words of a table are written in the documentation.
 
-use crate::Table;
-use crate::ir::{Choice, ChoiceOption, Document, Parameter, ParameterSet};
+pub(super) use crate::subject::Subject;
 pub(super) use crate::values::CHOICES;
-use crate::values::Values;
 use crate::wording::visible;
 
 /// Sections of a table that hold parameters of the vehicle and its surroundings rather than a curve fit.
 const PLAIN_SECTIONS: [&str; 5] = ["vehicle", "environment", "modes", "noise", CHOICES];
 
-/// A table beside its IR, and the numbers that the IR names in the units of the package.
-#[derive(Clone, Copy)]
-pub(crate) struct Subject<'a> {
-    /// Sources and choices.
-    pub(crate) table: &'a Table,
-    /// The structure.
-    pub(crate) document: &'a Document,
-    /// The numbers.
-    pub(crate) values: &'a Values,
-}
-
 /// Whether a section of a table holds the coefficients of a curve fit.
 pub(super) fn is_fit(section: &str) -> bool {
     !PLAIN_SECTIONS.contains(&section)
-}
-
-impl<'a> Subject<'a> {
-    /// The nominal value of a parameter.
-    pub(super) fn value(&self, parameter: &Parameter) -> f64 {
-        let parameters = self.document.parameters.iter().zip(&self.values.nominal);
-        let found = parameters.filter(|(known, _)| known.name == parameter.name);
-        found.map(|(_, value)| *value).next().unwrap_or(f64::NAN)
-    }
-
-    /// The value that a set gives to a parameter.
-    pub(super) fn replacement(&self, set: &ParameterSet, parameter: &str) -> f64 {
-        let sets = self.document.sets.iter().zip(&self.values.sets);
-        let mut values = sets
-            .filter(|(known, _)| known.name == set.name)
-            .flat_map(|(_, values)| values);
-        let found = values.find(|(name, _)| name == parameter);
-        found.map_or(f64::NAN, |(_, value)| *value)
-    }
-
-    /// The option that the table chooses.
-    pub(super) fn chosen(&self, choice: &'a Choice) -> Option<&'a ChoiceOption> {
-        let name = self.table.text(&[CHOICES, &choice.name])?;
-        choice.options.iter().find(|option| option.name == name)
-    }
-
-    /// An entry of the validity box, angles in rad.
-    pub(super) fn bounds(&self, name: &str) -> Option<(f64, f64)> {
-        let entries = self.document.validity.iter().zip(&self.values.bounds);
-        let found = entries.filter(|(variable, _)| variable.name == name);
-        found.map(|(_, bounds)| *bounds).next()
-    }
 }
 
 /// A value as a reader wants it: an angle in degrees, and nothing of what rounding left behind.
@@ -112,4 +67,12 @@ pub(super) fn verbatim(text: &str) -> String {
 pub(super) fn inline_math(latex: &str) -> String {
     // A bar would end the cell.
     format!("${}$", latex.replace('|', "\\vert "))
+}
+
+/// The tag of an equation of the paper.
+pub(super) fn tag(equation: &str) -> String {
+    let inner = equation
+        .strip_prefix('(')
+        .and_then(|text| text.strip_suffix(')'));
+    inner.unwrap_or(equation).to_owned()
 }

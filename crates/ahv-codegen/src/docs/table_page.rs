@@ -7,8 +7,8 @@ use super::subject::{
     CHOICES, Subject, cell, inline_math, is_fit, plain_number, readable, unit_text, verbatim,
 };
 use crate::EmitError;
-use crate::emit::render;
 use crate::ir::{Parameter, ParameterSet};
+use crate::template::render;
 
 #[derive(Template)]
 #[template(path = "docs/table.md")]

@@ -5,8 +5,8 @@ use askama::Template;
 use super::filters;
 use super::wording::vector_impl;
 use crate::EmitError;
-use crate::emit::render;
 use crate::ir::{Basis, Choice, Document, Parameter, Status, Variable, capitalised};
+use crate::template::render;
 use crate::values::Values;
 
 #[derive(Template)]

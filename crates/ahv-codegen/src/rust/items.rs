@@ -7,10 +7,10 @@ use super::print::{expression, section, statement, value_of};
 use super::wording::{arguments, tuple, values_name};
 use crate::graph::Kind;
 use crate::ir::capitalised;
+use crate::schedule::given::Stage;
 use crate::schedule::pieces::Group;
 use crate::schedule::program::{Function, Program};
-use crate::schedule::stages::{self, Stage};
-use crate::schedule::tree::{Body, Source, Statement};
+use crate::schedule::tree::{Body, Source, StageKind, Statement};
 use crate::shape::Shape;
 use crate::wording::summary;
 
@@ -162,7 +162,7 @@ fn place(function: &Function<'_>, entry: usize) -> String {
 }
 
 /// The argument that holds a stage.
-pub(super) fn stage_argument(kind: &stages::Kind, is_used: bool) -> String {
+pub(super) fn stage_argument(kind: &StageKind, is_used: bool) -> String {
     let unused = if is_used { "" } else { "_" };
     format!("{unused}{}: &{}<R>", kind.argument, kind.type_name)
 }

@@ -13,12 +13,13 @@ use askama::Template;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::EmitError;
-use crate::emit::render;
 use crate::ir::{self, Basis, Variable};
 use crate::schedule::Cost;
+use crate::schedule::given::Stage;
 use crate::schedule::program::Program;
-use crate::schedule::stages::{self, Stage};
-use crate::schedule::tree::{Source, Statement};
+use crate::schedule::stages;
+use crate::schedule::tree::{Source, StageKind, Statement};
+use crate::template::render;
 use crate::wording::wrapped;
 use items::Item;
 use print::statement;
@@ -118,7 +119,7 @@ struct StagesTemplate<'a> {
 }
 
 struct StageText<'a> {
-    kind: &'static stages::Kind,
+    kind: &'static StageKind,
     docs: Vec<String>,
     fields: Vec<(&'a str, Vec<String>)>,
     arguments: String,

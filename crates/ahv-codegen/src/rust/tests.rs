@@ -5,7 +5,7 @@
 use super::print::{expression, statement};
 use crate::graph::Dag;
 use crate::graph::passes::{Pass, Passes};
-use crate::schedule::stages::Given;
+use crate::schedule::given::Given;
 use crate::schedule::tree::{Body, Statement};
 use crate::schedule::{Cost, Prepared, body};
 use crate::testing::{

@@ -1,6 +1,6 @@
 //! The operations of a function as emitted.
 
-use super::tree::{Expr, Operation};
+use super::tree::{Body, Expr, Operation, Statement};
 use crate::graph::Call;
 
 /// Operations by kind.
@@ -16,7 +16,7 @@ pub(crate) struct Cost {
 
 impl Cost {
     /// Counts the operation of an expression, that of its parts not.
-    pub(super) fn add(&mut self, expr: &Expr) {
+    fn add(&mut self, expr: &Expr) {
         match expr {
             Expr::Number(_) | Expr::Component(..) | Expr::Name(_) | Expr::Negative(_) => {}
             Expr::Sum(addends) => self.additions += addends.len() - 1,
@@ -80,5 +80,18 @@ impl std::ops::AddAssign for Cost {
         self.sin_cos += other.sin_cos;
         self.exp += other.exp;
         self.sqrt += other.sqrt;
+    }
+}
+
+impl Body {
+    /// The operations.
+    pub(crate) fn cost(&self) -> Cost {
+        let mut cost = Cost::default();
+        self.walk(&mut |expr| cost.add(expr));
+        let pairs = self.statements.iter();
+        cost.sin_cos += pairs
+            .filter(|it| matches!(it, Statement::SinCos { .. }))
+            .count();
+        cost
     }
 }

@@ -7,7 +7,7 @@ use crate::graph::passes::{Pass, Passes};
 use crate::graph::{Dag, Id};
 use crate::ir::{Function, Model};
 
-use super::stages::Given;
+use super::given::Given;
 use super::{Cost, Prepared, body};
 
 /// The functions that are counted, where a model has them.

@@ -3,6 +3,7 @@
 mod cost;
 pub(crate) mod effect;
 mod expressions;
+pub(crate) mod given;
 mod names;
 pub(crate) mod pieces;
 mod prepared;
@@ -18,8 +19,8 @@ use crate::ir;
 pub(crate) use cost::Cost;
 pub(crate) use prepared::Prepared;
 
+use given::Given;
 use scope::Scope;
-use stages::Given;
 use tree::Body;
 
 /// What a function of this name does that computes the roots; without anything given it is `prepare` itself.

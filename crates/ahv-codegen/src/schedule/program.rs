@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use super::given::{Given, Stage};
 use super::pieces::{Group, groups, joined, length};
-use super::stages::{self, Given, Stage};
+use super::stages;
 use super::tree::{Body, Source};
 use super::{Cost, Prepared, body};
 use crate::EmitError;

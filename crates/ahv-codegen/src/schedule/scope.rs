@@ -2,8 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::given::Given;
 use super::names::{Names, is_numbered};
-use super::stages::Given;
 use super::tree::{Expr, Source, Statement};
 use crate::graph::{Dag, Id, Node};
 use crate::ir;

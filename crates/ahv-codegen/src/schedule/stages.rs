@@ -6,31 +6,18 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::given::{Field, Given, Stage};
 use super::pieces::{Group, LONGEST, groups, length, sliced};
 use super::scope::{Scope, Target};
-use super::tree::{Body, Source};
+use super::tree::{Body, Source, StageKind};
 use crate::graph::{Dag, Id, Node};
 use crate::ir::{self, described};
 
 /// Fewer fields are no struct.
 const FEWEST: usize = 4;
 
-/// What a stage is called, and whose values it holds.
-#[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Kind {
-    /// The function whose values they are.
-    of: &'static str,
-    /// The function that computes them.
-    pub(crate) function: &'static str,
-    /// The struct.
-    pub(crate) type_name: &'static str,
-    /// The struct as an argument.
-    pub(crate) argument: &'static str,
-    pub(crate) doc: &'static str,
-}
-
 /// What depends on parameters alone. Functions take it as `p`; while it is computed, `p` are the parameters.
-pub(crate) const PREPARED: Kind = Kind {
+pub(crate) const PREPARED: StageKind = StageKind {
     of: "",
     function: "prepare",
     type_name: "Prepared",
@@ -39,43 +26,43 @@ pub(crate) const PREPARED: Kind = Kind {
 };
 
 /// The other stages, each may take those before it.
-const KINDS: [Kind; 6] = [
-    Kind {
+const KINDS: [StageKind; 6] = [
+    StageKind {
         of: "drift",
         function: "intermediates",
         type_name: "Intermediates",
         argument: "i",
         doc: "Quantities of the drift that other functions need",
     },
-    Kind {
+    StageKind {
         of: "jacobians",
         function: "slopes",
         type_name: "Slopes",
         argument: "s",
         doc: "Quantities of the Jacobians that other functions need",
     },
-    Kind {
+    StageKind {
         of: "diffusion",
         function: "noise_terms",
         type_name: "NoiseTerms",
         argument: "n",
         doc: "Quantities of the diffusion that other functions need",
     },
-    Kind {
+    StageKind {
         of: "noise_derivatives",
         function: "noise_slopes",
         type_name: "NoiseSlopes",
         argument: "m",
         doc: "Quantities of the noise's derivatives that other functions, or several parts of these, need",
     },
-    Kind {
+    StageKind {
         of: "hessian",
         function: "curvatures",
         type_name: "Curvatures",
         argument: "h",
         doc: "Quantities of the second derivatives that several parts of these need",
     },
-    Kind {
+    StageKind {
         of: "parameter_jacobian",
         function: "sensitivities",
         type_name: "Sensitivities",
@@ -84,64 +71,13 @@ const KINDS: [Kind; 6] = [
     },
 ];
 
-/// A stage of a model.
-pub(crate) struct Stage {
-    pub(crate) kind: &'static Kind,
-    pub(crate) fields: Vec<Field>,
-    /// What fills the fields, one part after the other.
-    pub(crate) parts: Vec<Body>,
-    /// Names that only say whose part a value is, each with the reason.
-    pub(crate) numbered: Vec<(String, String)>,
-    names: HashMap<Id, String>,
-}
-
-/// A field of a stage.
-pub(crate) struct Field {
-    pub(crate) name: String,
-    /// What it is, as a sentence; `None` where its formula says it.
-    pub(crate) about: Option<String>,
-}
-
-/// What a body may refer to besides its arguments.
-#[derive(Clone, Copy)]
-pub(crate) struct Given<'a> {
-    /// Names of prepared values; `None` in `prepare` itself.
-    pub(crate) prepared: Option<&'a HashMap<Id, String>>,
-    pub(crate) stages: &'a [Stage],
-}
-
-impl Given<'_> {
-    /// Nothing is given but arguments.
-    pub(crate) const NOTHING: Self = Self {
-        prepared: None,
-        stages: &[],
-    };
-
-    /// Where a value is given, and its name there.
-    pub(super) fn find(&self, id: Id) -> Option<(Source, &str)> {
-        if let Some(name) = self.prepared.and_then(|it| it.get(&id)) {
-            return Some((Source::Argument(crate::graph::Kind::Parameter), name));
-        }
-        let mut stages = self.stages.iter();
-        stages.find_map(|stage| Some((Source::Stage(stage.kind), &**stage.names.get(&id)?)))
-    }
-
-    /// What given values are called in names.
-    pub(super) fn names(&self) -> HashMap<Id, String> {
-        let prepared = self.prepared.into_iter().flatten();
-        let stages = self.stages.iter().flat_map(|stage| &stage.names);
-        let names = prepared.chain(stages);
-        names.map(|(id, name)| (*id, name.clone())).collect()
-    }
-}
-
 impl Stage {
     /// The stage of this kind with these fields, in the order in which they are computed.
     pub(super) fn new(
         dag: &mut Dag,
         model: &ir::Model,
         given: Given<'_>,
-        kind: &'static Kind,
+        kind: &'static StageKind,
         mut fields: Vec<(Id, String)>,
     ) -> Self {
         let (mut parts, mut numbered, others) = parts(dag, model, given, kind, &fields);
@@ -169,11 +105,6 @@ impl Stage {
             fields: fields.into_iter().map(field).collect(),
         }
     }
-
-    /// Whether any part refers to a component that stands there.
-    pub(crate) fn uses(&self, source: Source) -> bool {
-        self.parts.iter().any(|part| part.uses(source))
-    }
 }
 
 /// What fills these fields; names there that are numbered, with reasons; what is bound there by a name that describes it.
@@ -181,7 +112,7 @@ fn parts(
     dag: &mut Dag,
     model: &ir::Model,
     given: Given<'_>,
-    kind: &'static Kind,
+    kind: &'static StageKind,
     fields: &[(Id, String)],
 ) -> (Vec<Body>, Vec<(String, String)>, Vec<(Id, String)>) {
     // What is handed on unchanged comes first.

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use super::cost::Cost;
-use super::stages;
 use crate::graph::{Call, Kind};
 
 /// An expression. Sums and products are evaluated from left to right, so that every language has the same bits.
@@ -29,7 +27,21 @@ pub(crate) enum Source {
     /// In an argument of the model's functions; prepared values stand for the parameters.
     Argument(Kind),
     /// In what is computed once for several functions.
-    Stage(&'static stages::Kind),
+    Stage(&'static StageKind),
+}
+
+/// What a stage is called, and whose values it holds.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct StageKind {
+    /// The function whose values they are.
+    pub(super) of: &'static str,
+    /// The function that computes them.
+    pub(crate) function: &'static str,
+    /// The struct.
+    pub(crate) type_name: &'static str,
+    /// The struct as an argument.
+    pub(crate) argument: &'static str,
+    pub(crate) doc: &'static str,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,17 +132,6 @@ impl Body {
     pub(crate) fn walk<'a>(&'a self, see: &mut impl FnMut(&'a Expr)) {
         let values = self.statements.iter().filter_map(Statement::value);
         values.chain(&self.results).for_each(|it| it.walk(see));
-    }
-
-    /// The operations.
-    pub(crate) fn cost(&self) -> Cost {
-        let mut cost = Cost::default();
-        self.walk(&mut |expr| cost.add(expr));
-        let pairs = self.statements.iter();
-        cost.sin_cos += pairs
-            .filter(|it| matches!(it, Statement::SinCos { .. }))
-            .count();
-        cost
     }
 
     /// Whether the function refers to a component that stands there.
