@@ -21,13 +21,15 @@ if TYPE_CHECKING:
 class Family:
     """Models, in the order in which a table lists them, with what builds each; and what their tables hold.
 
-    `schema` is given the models that a table lists, any of the family, and the table as TOML has it: how many flexible
-    modes there are, a table itself may say.
+    `schema` is given the models that a table lists, any of the family, and the keys of the table's sections: how many
+    flexible modes there are, a table itself may say. It is given no values, because `ahv generate` does not derive
+    again when only values changed. The audit of the printed equations comes with the models `audited`.
     """
 
     name: str
     builders: Mapping[str, Builder]
-    schema: Callable[[tuple[str, ...], Mapping[str, object]], Schema]
+    schema: Callable[[tuple[str, ...], Mapping[str, tuple[str, ...]]], Schema]
+    audited: tuple[str, ...] = ()
 
     @property
     def models(self) -> tuple[str, ...]:

@@ -56,6 +56,7 @@ class Table:
     `schemas` are what a table of one of the models by itself holds.
     """
 
+    file: str
     name: str
     models: tuple[str, ...]
     units: str
@@ -65,6 +66,11 @@ class Table:
     parameters: tuple[Parameter, ...]
     polynomials: dict[str, Polynomial]
     sets: tuple[ParameterSet, ...]
+
+    @property
+    def audited(self) -> tuple[str, ...]:
+        """Those of its models with which the audit of the printed equations comes."""
+        return tuple(name for name in self.models if name in self.family.audited)
 
     def build(self) -> list[Model]:
         """The models that it lists."""
@@ -108,7 +114,8 @@ class _Reader:
         self.entries.system = system
         self._sources()
         family, models = self._models()
-        schema = family.schema(models, self.document)
+        sections = {name: tuple(it) if isinstance(it, dict) else () for name, it in self.document.items()}
+        schema = family.schema(models, sections)
         self.known = (*schema.parameters, *(q.key for q in schema.quantities))
         known = ("table", "sources", CHOICES, "validity", "sets", *self.known)
         self.entries.only((), self.document, [k for k in known if k != CHOICES or schema.choices], "section")
@@ -121,9 +128,9 @@ class _Reader:
         self._validity(schema.validity)
         sets = (ParameterSet(own_set, ()), *self._sets(own_set, schema))
         self._rules(schema.rules(), sets)
-        schemas = {model: family.schema((model,), self.document) for model in models}
+        schemas = {model: family.schema((model,), sections) for model in models}
         parameters = tuple(self.parameters.values())
-        return Table(name, models, system, family, schema, schemas, parameters, polynomials, sets)
+        return Table(self.faults.file, name, models, system, family, schema, schemas, parameters, polynomials, sets)
 
     def add(self, parameter: Parameter) -> None:
         """Takes up a parameter of the table."""

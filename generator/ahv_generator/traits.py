@@ -71,7 +71,6 @@ class Traits:
     outputs: tuple[str, ...] = ()
     deviations: Mapping[str, float] = field(default_factory=dict)
     note: str | None = None  # printed before the model is used
-    audited: bool = False  # whether the audit of the printed equations is told with it
 
     def faults(self, states: Iterable[str], inputs: Iterable[str]) -> list[str]:
         """What does not fit a model with these states and inputs; for whoever writes one."""

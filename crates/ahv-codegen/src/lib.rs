@@ -49,8 +49,8 @@ mod wording;
 use std::collections::BTreeMap;
 
 pub use ahv_table::{Part, Unreadable};
-pub use emit::{AUDIT, Core, Options, emit};
-pub use manifest::{Manifest, sha256};
+pub use emit::{AUDIT, Core, Known, Options, emit, emit_again};
+pub use manifest::{Earlier, Manifest, sha256};
 pub use passes::{Pass, Passes, UnknownPass};
 pub use table::Table;
 

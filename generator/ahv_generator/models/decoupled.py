@@ -18,9 +18,9 @@ from .sdcom import ALPHA_GUST, GUST, build_sdcom, build_sdcom_gust
 _FORCE = re.compile(r"C_N_[1-9][0-9]*")
 
 
-def _schema(models: tuple[str, ...], document: Mapping[str, object]) -> Schema:
+def _schema(models: tuple[str, ...], sections: Mapping[str, object]) -> Schema:
     # By their count, not the highest number: a gap in the numbers is a section that is missing and one too many.
-    modes = range(1, max(1, sum(_FORCE.fullmatch(section) is not None for section in document)) + 1)
+    modes = range(1, max(1, sum(_FORCE.fullmatch(section) is not None for section in sections)) + 1)
     coordinate = coordinates(modes)
     control = ("alpha", "delta_e", "delta_c")
     gust = "sdcom_gust" in models
@@ -64,4 +64,5 @@ FAMILY = Family(
         "sdcom_gust": build_sdcom_gust,
     },
     _schema,
+    audited=("sdcom_printed",),
 )

@@ -26,7 +26,7 @@ def build_sdcom_printed(table: Table) -> Model:
     modes = modes_of(table)
     bases = reduced_bases(modes)
     title = "stochastic decoupled control-oriented model as printed, without its misprints"
-    traits = replace(vehicle_traits(*coloured_modes(modes)), note=NOTE, audited=True)
+    traits = replace(vehicle_traits(*coloured_modes(modes)), note=NOTE)
     m = Model("sdcom_printed", title, "(24)-(35)", table, bases, traits)
     define_surroundings(m)
     exact, _ = define_exact_rates(m)
