@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use crate::{EmitError, Tree};
 
 /// Provenance of a generated package. No time, path or user stands in it.
-#[derive(Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
 pub struct Manifest {
     /// Version of the IR's schema.
     pub schema_version: u64,

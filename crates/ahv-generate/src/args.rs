@@ -23,6 +23,14 @@ pub struct Args {
     #[arg(long, requires = "check")]
     pub from_ir: bool,
 
+    /// Derive and emit everything again, also what the hashes in the manifest vouch for
+    #[arg(long, conflicts_with = "check")]
+    pub derive: bool,
+
+    /// Generate whenever a table is saved, until Ctrl-C
+    #[arg(long, conflicts_with_all = ["check", "json"])]
+    pub watch: bool,
+
     /// Folder of the tables [default: generator/tables in the project]
     #[arg(long, value_name = "DIR")]
     pub tables: Option<PathBuf>,
