@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import multiprocessing.connection
 import os
@@ -13,7 +14,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import audit, ir
+from . import ir
 from .diagnostics import Diagnostic, TableError
 from .table import Table
 
@@ -45,6 +46,8 @@ def derive(tables: Iterable[Table], known: Iterable[str] = (), *, audit_known: b
     Raises:
         TableError: for a table whose models cannot be derived.
     """
+    # A derivation is over before its garbage needs room; looking for it takes a tenth of the time.
+    gc.disable()
     tables = list(tables)
     audited = [(table.name, model) for table in tables for model in table.audited]
     sought = [table for table in tables if table.name not in known]
@@ -62,7 +65,7 @@ def derive(tables: Iterable[Table], known: Iterable[str] = (), *, audit_known: b
     texts = {table.name: ir.assemble(table, (done[table.name, m].part for m in table.models)) for table in sought}
     if audited:
         made = next((it.audit for it in done.values() if it.audit is not None), None)
-        texts[AUDIT] = "" if audit_known else made or audit.render()
+        texts[AUDIT] = "" if audit_known else made or _audit()
     return texts
 
 
@@ -105,7 +108,14 @@ def _work(job: _Job) -> _Done:
     except Exception as error:
         # What the checks of a table let through is a fault of that table all the same.
         return _Done(fault=f"the models cannot be derived from this table: {escaped(error)}")
-    return _Done(part, audit.render() if job.audit else None)
+    return _Done(part, _audit() if job.audit else None)
+
+
+def _audit() -> str:
+    # Here, because SymPy takes long to import and most processes need none of it.
+    from . import audit
+
+    return audit.render()
 
 
 def escaped(error: Exception) -> str:

@@ -224,7 +224,7 @@ pub fn emit_again(
     manifest.files = files
         .map(|(path, text)| (path.clone(), sha256(text)))
         .collect();
-    tree.insert("manifest.json".to_owned(), manifest.render());
+    tree.insert("manifest.json".to_owned(), manifest.sealed().render());
     Ok(tree)
 }
 
@@ -520,6 +520,7 @@ fn manifest(
             .map(|p| p.name().to_owned())
             .collect(),
         files: BTreeMap::new(),
+        seal: String::new(),
     }
 }
 

@@ -37,6 +37,9 @@ pub struct Manifest {
     /// Hash of each file of the package but the IRs and the manifest, by its path. Older versions wrote none.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub files: BTreeMap<String, String>,
+    /// Hash of all that stands before it. A merge of two manifests has none that fits.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub seal: String,
 }
 
 impl Manifest {
@@ -54,6 +57,20 @@ impl Manifest {
             return Err(EmitError::Manifest("a hash is missing".to_owned()));
         }
         Ok(manifest)
+    }
+
+    /// The same with the seal that fits.
+    #[must_use]
+    pub fn sealed(mut self) -> Self {
+        self.seal = String::new();
+        self.seal = sha256(&self.render());
+        self
+    }
+
+    /// Whether it stands as one run wrote it.
+    #[must_use]
+    pub fn is_sealed(&self) -> bool {
+        self.clone().sealed().seal == self.seal
     }
 
     /// The hash of the text that ahv wrote to a path, with line feeds alone at the ends of lines.

@@ -160,6 +160,17 @@ mod tests {
     }
 
     #[test]
+    fn watching_goes_with_no_check_and_no_json() {
+        for other in ["--check", "--json"] {
+            let message = parse(&["--watch", other]).unwrap_err();
+            assert!(
+                message.contains("'--watch' cannot be used with"),
+                "{message}"
+            );
+        }
+    }
+
+    #[test]
     fn a_command_survives_the_shell() {
         assert_eq!(quoted("../a/b.toml"), "../a/b.toml");
         assert_eq!(quoted("my tables"), "'my tables'");

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ..audit.corrected import corrected_expressions
 from ..derivatives import add_drift_and_derivatives, add_lie_derivatives
 from ..model import Model
 from ..stochastic import Gains, add_diffusion
@@ -77,6 +76,9 @@ def _evaluated(text: str, names: _Names) -> ca.SX:
 
 
 def _parts(m: Model, row: Row) -> Parts:
+    # Here, because SymPy takes long to import and most models need none of it.
+    from ..audit.corrected import corrected_expressions
+
     texts = corrected_expressions()
     names, unit = _names(m, row), row.rate_unit(m)
     slopes, flexible = [], ca.SX(0)

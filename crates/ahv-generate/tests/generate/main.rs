@@ -1,6 +1,7 @@
 //! Generating and checking, in projects of all kinds.
 #![cfg(unix)]
 
+mod again;
 mod bad_tables;
 mod owned;
 mod passes;
