@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{
-    Earlier, Known, Manifest, Options, Part, Pass, Passes, Table, Tree, emit, emit_again,
+    Earlier, Known, Manifest, Options, Part, Pass, Passes, Table, Tree, emit, emit_again, sha256,
 };
 use serde_json::Value;
 

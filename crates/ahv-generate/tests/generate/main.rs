@@ -8,4 +8,5 @@ mod passes;
 mod process;
 mod python;
 mod scratch;
+mod stale;
 mod tree;
