@@ -30,8 +30,8 @@ impl Display for Seconds {
     }
 }
 
-/// Lines of a difference in the documentation that are printed; the others show the same numbers again.
-const DOCUMENTATION_LINES: usize = 12;
+/// Lines that are printed of a difference which follows from others: in the documentation, or in the hashes of the manifest.
+const FOLDED_LINES: usize = 12;
 
 /// What a file is, in the order in which a reader wants to see differences.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -339,14 +339,15 @@ impl Checked {
     }
 }
 
-/// A difference in the documentation without what follows its first lines.
+/// A difference without its last lines, where it is long and follows from others.
 fn folded(diff: &str, path: &str) -> String {
+    let follows = path == MANIFEST || Kind::of(path) == Kind::Documentation;
     let lines = diff.lines().count();
-    if Kind::of(path) != Kind::Documentation || lines <= DOCUMENTATION_LINES + 1 {
+    if !follows || lines <= FOLDED_LINES + 1 {
         return diff.to_owned();
     }
-    let first = diff.split_inclusive('\n').take(DOCUMENTATION_LINES);
-    let more = lines - DOCUMENTATION_LINES;
+    let first = diff.split_inclusive('\n').take(FOLDED_LINES);
+    let more = lines - FOLDED_LINES;
     first
         .chain([&*format!("... {more} more lines\n")])
         .collect()

@@ -315,7 +315,7 @@ fn no_casadi() {
     let bare = scratch.path("bare-python");
     // -S: without the packages that are installed.
     executable(&bare, "#!/bin/sh\nexec python3 -S \"$@\"\n");
-    let answer = crate::common::answer(scratch.command(&[]).env("AHV_PYTHON", &bare));
+    let answer = crate::common::answer(scratch.command(&["--derive"]).env("AHV_PYTHON", &bare));
     assert_eq!(answer.code, 2);
     assert!(
         answer.stderr.contains("which has no casadi and no pint\n"),
@@ -369,7 +369,7 @@ fn a_full_disk_while_deriving_leaves_the_tree_as_it_was() {
     let scratch = Scratch::new();
     let before = scratch.snapshot();
     let mut command = Command::new("sh");
-    command.args(["-c", "trap '' XFSZ; ulimit -S -f 8; exec \"$0\" generate"]);
+    command.args(["-c", "trap '' XFSZ; ulimit -S -f 8; exec \"$0\" generate --derive"]);
     command
         .arg(env!("CARGO_BIN_EXE_xtask"))
         .current_dir(scratch.path(""));

@@ -43,6 +43,24 @@ fn a_changed_value_changes_one_line() {
             "{text}"
         );
     }
+    // The code comes first, what follows from it last, and of that only the beginning.
+    let text = scratch.disagreement(&[]);
+    let at = |what: &str| {
+        text.find(what)
+            .unwrap_or_else(|| panic!("no {what:?} in {text}"))
+    };
+    assert!(
+        at("error: generated/src/") < at("error: generated/manifest.json"),
+        "{text}"
+    );
+    assert!(
+        at("error: generated/manifest.json") < at("error: generated/docs/"),
+        "{text}"
+    );
+    assert!(
+        text.contains(" more lines\ncode: 1 file, +1 −1\nIR and manifest: 1 file, +8 −8\n"),
+        "{text}"
+    );
     let text = scratch.generate(&[]).expect("generated").text();
     assert!(text.contains(&format!("{NOMINAL}  +1 −1\n")), "{text}");
     assert!(
