@@ -7,6 +7,8 @@ import os
 import re
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import casadi as ca
@@ -60,6 +62,35 @@ def test_one_process_derives_the_same_as_many(tmp_path: Path, monkeypatch: pytes
     many = derive_module.derive(tables)
     monkeypatch.setattr(derive_module, "ProcessPoolExecutor", unavailable)
     assert derive_module.derive(tables) == many
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+def test_no_process_outlives_a_derivation_that_is_killed(tmp_path: Path) -> None:
+    tables = [str(TABLES / f"{name}.toml") for name in NAMES]
+    command = [sys.executable, "-m", "ahv_generator", "derive", "--out", str(tmp_path), *tables]
+    main_process = subprocess.Popen(command, cwd=GENERATOR, stderr=subprocess.DEVNULL)
+    children = Path(f"/proc/{main_process.pid}/task/{main_process.pid}/children")
+    workers: list[str] = []
+    while not workers and main_process.poll() is None:
+        workers = children.read_text(encoding="ascii").split()
+    main_process.kill()
+    main_process.wait()
+    # With one processor there are none.
+    wait_for(lambda: not any(is_running(worker) for worker in workers))
+
+
+def is_running(process: str) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def wait_for(done: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + 30
+    while not done():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
 
 
 def unavailable(*_: object, **__: object) -> None:
