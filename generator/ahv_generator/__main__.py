@@ -11,12 +11,13 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import traceback
 from pathlib import Path
 
-from . import audit, ir, reference
+from . import reference
+from .derive import derive as derive_all
+from .derive import escaped
 from .diagnostics import Diagnostic, TableError
-from .table import load
+from .table import Table, load
 
 
 def main() -> int:
@@ -25,6 +26,8 @@ def main() -> int:
     commands = parser.add_subparsers(dest="command", required=True)
     derive = commands.add_parser("derive", help="derive the models of tables and write their IR")
     derive.add_argument("--out", type=Path, required=True, help="folder for <table>.json, audit.json")
+    derive.add_argument("--known", action="append", default=[], help="a table whose IR is known, and not derived again")
+    derive.add_argument("--audit-known", action="store_true", help="leave audit.json empty where there is to be one")
     derive.add_argument("tables", type=Path, nargs="+")
     evaluate = commands.add_parser("evaluate", help="evaluate a model at the points of an oracle file")
     evaluate.add_argument("--table", type=Path, required=True)
@@ -34,7 +37,7 @@ def main() -> int:
     arguments = parser.parse_args()
     try:
         if arguments.command == "derive":
-            _derive(arguments.tables, arguments.out)
+            _derive(arguments.tables, arguments.out, arguments.known, arguments.audit_known)
         else:
             table = load(arguments.table)
             if arguments.model not in table.models:
@@ -50,44 +53,22 @@ def main() -> int:
         # The driver, which the same signal reaches, says so.
         return 1
     except Exception as error:
-        print(f"error: {_escaped(error)}", file=sys.stderr)
+        print(f"error: {escaped(error)}", file=sys.stderr)
         return 1
     return 0
 
 
-def _escaped(error: Exception) -> str:
-    """An exception that nobody expected, in one line with its place."""
-    place = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__}: {error} ({Path(place.filename).name}, line {place.lineno})"
-
-
-def _derive(tables: list[Path], out: Path) -> None:
-    texts: dict[str, str] = {}
-    audited = False
+def _derive(paths: list[Path], out: Path, known: list[str], audit_known: bool) -> None:
+    tables: list[Table] = []
     diagnostics: list[Diagnostic] = []
-    for path in tables:
+    for path in paths:
         try:
-            table = load(path)
+            tables.append(load(path))
         except TableError as error:
             diagnostics += error.diagnostics
-            continue
-        try:
-            models = table.build()
-            texts[table.name] = ir.render(table, models)
-            audited = audited or any(model.traits.audited for model in models)
-        except TableError as error:
-            diagnostics += error.diagnostics
-        except (MemoryError, OSError):
-            raise
-        except Exception as error:
-            # What the checks of a table let through is a fault of that table all the same.
-            message = f"the models cannot be derived from this table: {_escaped(error)}"
-            diagnostics.append(Diagnostic("derivation", path.name, ("table", "models"), "value", message))
     if diagnostics:
         raise TableError(diagnostics)
-    if audited:
-        texts["audit"] = audit.render()
-    for name, text in texts.items():
+    for name, text in derive_all(tables, known, audit_known=audit_known).items():
         (out / f"{name}.json").write_text(text, encoding="utf-8", newline="\n")
 
 

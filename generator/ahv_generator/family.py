@@ -55,6 +55,7 @@ class ModelSpec:
     bases: Mapping[str, tuple[Variable, ...]]
     build: Equations
     line: int
+    audited: bool = False
 
 
 @dataclass(frozen=True)
@@ -153,11 +154,13 @@ class Family:
         noise: Sequence[Variable] = (),
         arguments: Sequence[Variable] = (),
         modes: Sequence[Variable] = (),
+        audited: bool = False,
     ) -> Callable[[Equations], Equations]:
         """Add a model; the decorated function states its equations with the `Model` that it is given.
 
         `equations` are the numbers of the paper's equations, `noise` the Wiener increments, `arguments` are of further
-        functions (such as a time), `modes` index a vector by mode.
+        functions (such as a time), `modes` index a vector by mode. The audit of the paper's printed equations comes
+        with the models that are `audited`.
 
         Raises:
             FamilyError: when a name is taken, or a state or an input has no interval among `bounds`.
@@ -179,7 +182,7 @@ class Family:
         self._check_bounds(name, bases)
 
         def added(build: Equations) -> Equations:
-            self.models[name] = ModelSpec(name, title, equations, bases, build, build.__code__.co_firstlineno)
+            self.models[name] = ModelSpec(name, title, equations, bases, build, build.__code__.co_firstlineno, audited)
             return build
 
         return added

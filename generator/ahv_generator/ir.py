@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
+from dataclasses import dataclass
 from importlib.metadata import version
 
 from . import __version__, units
@@ -22,17 +24,46 @@ class _Line:
         self.value = value
 
 
+class _Text:
+    """JSON text, as it stands."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+
+@dataclass(frozen=True)
+class Part:
+    """The text of a model in the IR, and every unit in it: what a process can hand to another."""
+
+    text: str
+    units: frozenset[str]
+
+
 def casadi_version() -> str:
     """The version of CasADi that derives."""
     return version("casadi")
 
 
-def render(table: Table, models: list[Model]) -> str:
+def render(table: Table, models: Iterable[Model]) -> str:
     """The IR of a table and its models as JSON text."""
+    return assemble(table, map(part, models))
+
+
+def part(m: Model) -> Part:
+    """What the IR says of a model."""
+    used = {m.unit(v.name) for basis in m.bases.values() for v in basis}
+    used |= {q.unit for q in m.graph.quantities.values()}
+    used |= {o.unit for f in m.functions for o in f.outputs if o.unit is not None}
+    return Part(_dump(_model(m), 2), frozenset(used))
+
+
+def assemble(table: Table, parts: Iterable[Part]) -> str:
+    """The IR of a table as JSON text, from the parts of its models."""
+    parts = list(parts)
     document = {
         "schema_version": SCHEMA_VERSION,
         "provenance": {"table": table.name, "generator": __version__, "casadi": casadi_version()},
-        "units": _units(table, models),
+        "units": _units(table, parts),
         "choices": [_choice(c) for c in table.schema.choices],
         "sets": [{"name": s.name, "parameters": [_Line(_replacement(p)) for p in s.parameters]} for s in table.sets],
         "parameters": [
@@ -40,7 +71,7 @@ def render(table: Table, models: list[Model]) -> str:
         ],
         "validity": [_Line(_interval(v, table)) for v in table.schema.validity],
         "rules": [_Line(_rule(r)) for r in table.schema.rules()],
-        "models": [_model(m) for m in models],
+        "models": [_Text(p.text) for p in parts],
     }
     return _dump(document, 0) + "\n"
 
@@ -88,14 +119,11 @@ def _choice(choice: Choice) -> dict[str, object]:
     return {"name": choice.name, "type": choice.type_name, "doc": choice.doc, "options": options}
 
 
-def _units(table: Table, models: list[Model]) -> dict[str, object]:
+def _units(table: Table, parts: Iterable[Part]) -> dict[str, object]:
     """Every unit of the document, with what it is in the other system."""
     other = units.other(table.units)
     used = {p.unit for p in table.parameters} | {units.converted(v.unit, table.units) for v in table.schema.validity}
-    for m in models:
-        used |= {m.unit(v.name) for basis in m.bases.values() for v in basis}
-        used |= {q.unit for q in m.graph.quantities.values()}
-        used |= {o.unit for f in m.functions for o in f.outputs if o.unit is not None}
+    used = used.union(*(p.units for p in parts))
     factors = {unit: _Line([units.converted(unit, other), units.conversion(unit, other)]) for unit in sorted(used)}
     return {"system": table.units, "other": other, "factors": factors}
 
@@ -215,6 +243,8 @@ def _dump(value: object, depth: int) -> str:
     inner, outer = "  " * (depth + 1), "  " * depth
     if isinstance(value, _Line):
         return json.dumps(value.value, ensure_ascii=False, allow_nan=False)
+    if isinstance(value, _Text):
+        return value.text
     if isinstance(value, dict):
         if not value:
             return "{}"
@@ -223,7 +253,7 @@ def _dump(value: object, depth: int) -> str:
     if isinstance(value, list):
         if not value:
             return "[]"
-        if not isinstance(value[0], dict | list | _Line):
+        if not isinstance(value[0], dict | list | _Line | _Text):
             return json.dumps(value, ensure_ascii=False)
         return "[\n" + ",\n".join(inner + _dump(v, depth + 1) for v in value) + f"\n{outer}]"
     return json.dumps(value, ensure_ascii=False, allow_nan=False)

@@ -317,10 +317,10 @@ class Model:
         known = (*self.names("state"), *self.names("input"))
         self._refuse_unknown("deviations", self.traits.deviations, known)
 
-    def note(self, text: str, *, audited: bool = False) -> None:
-        """A warning that commands print before they use the model; `audited` if the paper's audit belongs to it."""
+    def note(self, text: str) -> None:
+        """A warning that commands print before they use the model."""
         check_texts(text)
-        self.traits.note, self.traits.audited = text, audited
+        self.traits.note = text
 
     def _refuse_unknown(self, what: str, stated: Iterable[str], known: Iterable[str]) -> None:
         stated, known = tuple(stated), tuple(known)

@@ -57,6 +57,7 @@ class Table:
     `schemas` are what a table of one of the models by itself holds.
     """
 
+    path: Path
     name: str
     models: tuple[str, ...]
     units: str
@@ -67,6 +68,11 @@ class Table:
     parameters: tuple[TableParameter, ...]
     polynomials: dict[str, Polynomial]
     sets: tuple[ParameterSet, ...]
+
+    @property
+    def audited(self) -> tuple[str, ...]:
+        """Those of its models with which the audit of the printed equations comes."""
+        return tuple(name for name in self.models if self.family.models[name].audited)
 
     def build(self) -> list[Model]:
         """The models that it lists."""
@@ -101,7 +107,7 @@ def load(path: Path) -> Table:
         faults.key("unreadable", (), f"cannot read the table: {error}")
         faults.raise_any()
         raise AssertionError("unreachable") from error
-    table = _Reader(document, faults, path.parent).read()
+    table = _Reader(document, faults, path).read()
     faults.raise_any()
     return table
 
@@ -130,9 +136,9 @@ class _Coefficient:
 
 
 class _Reader:
-    def __init__(self, document: Mapping[str, object], faults: Faults, folder: Path) -> None:
+    def __init__(self, document: Mapping[str, object], faults: Faults, path: Path) -> None:
         self.document = document
-        self.folder = folder
+        self.path = path
         self.faults = faults
         self.entries = Entries(document, faults)
         self.header = self.entries.section("table")
@@ -158,7 +164,7 @@ class _Reader:
         self._rules(schema.rules(), sets)
         schemas = {model: family.schema((model,)) for model in models}
         parameters = tuple(self.parameters.values())
-        return Table(name, models, system, file, family, schema, schemas, parameters, polynomials, sets)
+        return Table(self.path, name, models, system, file, family, schema, schemas, parameters, polynomials, sets)
 
     def add(self, parameter: TableParameter) -> None:
         """Takes up a parameter of the table."""
@@ -207,7 +213,7 @@ class _Reader:
         path, named = ("table", "family"), self.header.get("family")
         try:
             if named is not None:
-                file = family_file.find(named, self.folder)
+                file = family_file.find(named, self.path.parent)
                 return file, file.family(Outline(tuple(self.document)))
         except family_file.NotFoundError as error:
             self.faults.value("unknown-family", path, str(error), error.help)

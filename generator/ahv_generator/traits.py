@@ -109,4 +109,3 @@ class Traits:
     outputs: tuple[str, ...] = ()
     deviations: Mapping[str, float] = field(default_factory=dict)
     note: str | None = None  # printed before the model is used
-    audited: bool = False  # whether the audit of the paper's printed equations belongs to it

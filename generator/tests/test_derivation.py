@@ -7,6 +7,8 @@ import os
 import re
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import casadi as ca
@@ -15,6 +17,7 @@ import pytest
 from oracle_support import TABLE_OF
 
 from ahv_generator import audit, ir
+from ahv_generator import derive as derive_module
 from ahv_generator.__main__ import main
 from ahv_generator.diagnostics import TableError
 from ahv_generator.expression import ExpressionError
@@ -42,6 +45,57 @@ def test_ir_is_byte_identical_whatever_the_hash_seed(tmp_path: Path) -> None:
     assert runs[0] == runs[1] == runs[2]
 
 
+def test_what_is_known_is_not_derived_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tables = [str(TABLES / f"{name}.toml") for name in NAMES]
+    options = ["--out", str(tmp_path), "--known", "dcom", "--known", "com", "--audit-known"]
+    monkeypatch.setattr(sys, "argv", ["ahv_generator", "derive", *options, *tables])
+    assert main() == 0
+    found = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
+    table = load(TABLES / "flexible_mode.toml")
+    # That there is to be an audit is said for a table that is known, too.
+    assert found == {"flexible_mode.json": ir.render(table, table.build()), "audit.json": ""}
+
+
+def test_one_process_derives_the_same_as_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tables = [load(TABLES / f"{name}.toml") for name in NAMES]
+    many = derive_module.derive(tables)
+    monkeypatch.setattr(derive_module, "ProcessPoolExecutor", unavailable)
+    assert derive_module.derive(tables) == many
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+def test_no_process_outlives_a_derivation_that_is_killed(tmp_path: Path) -> None:
+    tables = [str(TABLES / f"{name}.toml") for name in NAMES]
+    command = [sys.executable, "-m", "ahv_generator", "derive", "--out", str(tmp_path), *tables]
+    main_process = subprocess.Popen(command, cwd=GENERATOR, stderr=subprocess.DEVNULL)
+    children = Path(f"/proc/{main_process.pid}/task/{main_process.pid}/children")
+    workers: list[str] = []
+    while not workers and main_process.poll() is None:
+        workers = children.read_text(encoding="ascii").split()
+    main_process.kill()
+    main_process.wait()
+    # With one processor there are none.
+    wait_for(lambda: not any(is_running(worker) for worker in workers))
+
+
+def is_running(process: str) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def wait_for(done: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + 30
+    while not done():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def unavailable(*_: object, **__: object) -> None:
+    raise NotImplementedError("this platform lacks a functioning sem_open implementation")
+
+
 def broken(*_: object) -> str:
     raise OverflowError("too large")
 
@@ -51,7 +105,7 @@ def test_a_derivation_that_breaks_down_is_a_fault_of_its_table(
 ) -> None:
     arguments = ["derive", "--out", str(tmp_path), str(TABLES / "com.toml")]
     monkeypatch.setattr(sys, "argv", ["ahv_generator", *arguments])
-    monkeypatch.setattr(ir, "render", broken)
+    monkeypatch.setattr(ir, "part", broken)
     assert main() == 2
     (fault,) = json.loads(capsys.readouterr().out)["diagnostics"]
     assert (fault["file"], fault["path"], fault["part"]) == ("com.toml", ["table", "models"], "value")
@@ -64,7 +118,7 @@ def test_no_exception_leaves_as_a_traceback(
     table = tmp_path / "dcom.toml"
     table.write_text((TABLES / "dcom.toml").read_text(encoding="utf-8"), encoding="utf-8")
     monkeypatch.setattr(sys, "argv", ["ahv_generator", "derive", "--out", str(tmp_path), str(table)])
-    monkeypatch.setattr(ir, "render", lambda *_: "")
+    monkeypatch.setattr(ir, "part", lambda _: ir.Part("", frozenset()))
     monkeypatch.setattr(audit, "render", broken)
     assert main() == 1
     assert re.fullmatch(r"error: OverflowError: too large \(.*\)\n", capsys.readouterr().err)

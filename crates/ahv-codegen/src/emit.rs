@@ -7,10 +7,10 @@ use crate::c;
 use crate::docs::{self, Page};
 use crate::graph::passes::Passes;
 use crate::ir::{Document, Model, SCHEMA_VERSION, UnitSystem};
-use crate::manifest::{Manifest, sha256};
+use crate::manifest::{Earlier, Manifest, sha256};
 use crate::parallel;
 use crate::rust::{self, format::format_rust};
-use crate::schedule::effect::{self, Effect};
+use crate::schedule::effect;
 use crate::schedule::program::Program;
 use crate::subject::Subject;
 use crate::template::render;
@@ -110,6 +110,17 @@ struct Module {
     doc: String,
 }
 
+/// What is known of tables and tree when a package is emitted again.
+#[derive(Debug, Default)]
+pub struct Known {
+    /// Hash of what derived the IRs, for the manifest.
+    pub generator: String,
+    /// Hash of the structure of each table, for the manifest.
+    pub structure: BTreeMap<String, String>,
+    /// The tree of an earlier emission.
+    pub earlier: Option<Earlier>,
+}
+
 /// The files of the generated package, by their path in it.
 ///
 /// `irs` holds the IR text of each table, by the table's name.
@@ -120,6 +131,20 @@ pub fn emit(
     tables: &[Table],
     irs: &BTreeMap<String, String>,
     options: &Options,
+) -> Result<Tree, EmitError> {
+    emit_again(tables, irs, options, &Known::default())
+}
+
+/// The same tree as that of [`emit()`], with the manifest of what is `known`. Files of an earlier tree whose inputs have not
+/// changed are taken from there: a changed value leaves the models' functions as they are.
+///
+/// # Errors
+/// As for [`emit()`].
+pub fn emit_again(
+    tables: &[Table],
+    irs: &BTreeMap<String, String>,
+    options: &Options,
+    known: &Known,
 ) -> Result<Tree, EmitError> {
     let mut tree = Tree::new();
     let mut read = Vec::new();
@@ -139,6 +164,13 @@ pub fn emit(
             "the tables are in different unit systems; choose one with --units".to_owned(),
         ));
     }
+    let mut manifest = manifest(tables, irs, options, known);
+    let system = read.first().map(|(_, document, _)| document.units.system);
+    manifest.units = system.map_or_else(String::new, |it| it.name().to_owned());
+    let earlier = known
+        .earlier
+        .as_ref()
+        .filter(|it| it.has_emitter_of(&manifest));
     let subjects: Vec<Subject<'_>> = read
         .iter()
         .map(|(table, document, values)| Subject {
@@ -149,10 +181,20 @@ pub fn emit(
         .collect();
     let units = units.first().copied().unwrap_or_default();
     match options.target {
-        Target::Rust => emit_rust(&subjects, irs, &modules, units, options, &mut tree)?,
+        Target::Rust => {
+            let package = Package {
+                subjects: &subjects,
+                irs,
+                modules: &modules,
+                units,
+                options,
+                earlier,
+                manifest: &manifest,
+            };
+            package.emit(&mut tree)?;
+        }
         Target::C => tree.extend(c::files(&subjects, units, &options.passes)?),
     }
-    let mut manifest = manifest(tables, irs, &options.passes);
     // The IRs are listed already.
     let files = tree
         .iter()
@@ -160,70 +202,88 @@ pub fn emit(
     manifest.files = files
         .map(|(path, text)| (path.clone(), sha256(text)))
         .collect();
-    tree.insert("manifest.json".to_owned(), manifest.render());
+    tree.insert("manifest.json".to_owned(), manifest.sealed().render());
     Ok(tree)
 }
 
-/// The files of the Rust package.
-fn emit_rust(
-    subjects: &[Subject<'_>],
-    irs: &BTreeMap<String, String>,
-    modules: &[Module],
+/// The Rust package.
+struct Package<'a> {
+    subjects: &'a [Subject<'a>],
+    irs: &'a BTreeMap<String, String>,
+    modules: &'a [Module],
     units: &'static str,
-    options: &Options,
-    tree: &mut Tree,
-) -> Result<(), EmitError> {
-    let mut sources = Vec::new();
-    let mut jobs = Vec::new();
-    for subject in subjects {
-        let home = emit_home(subject, &mut sources)?;
-        tree.extend(docs::emit_table(subject)?);
-        jobs.extend(subject.document.models.iter().map(|model| Job {
-            subject: *subject,
-            model,
-            home,
-        }));
+    options: &'a Options,
+    /// The tree of an earlier emission by the same emitter.
+    earlier: Option<&'a Earlier>,
+    manifest: &'a Manifest,
+}
+
+impl Package<'_> {
+    fn emit(&self, tree: &mut Tree) -> Result<(), EmitError> {
+        let Self {
+            subjects,
+            irs,
+            modules,
+            units,
+            options,
+            earlier,
+            manifest,
+        } = *self;
+        let mut sources = Vec::new();
+        let mut jobs = Vec::new();
+        for subject in subjects {
+            if let Some(files) = earlier.and_then(|it| all_of(subject, it, manifest)) {
+                tree.extend(files);
+                continue;
+            }
+            let home = emit_home(subject, &mut sources)?;
+            tree.extend(docs::emit_table(subject)?);
+            jobs.extend(subject.document.models.iter().map(|model| Job {
+                subject: *subject,
+                model,
+                home,
+                earlier: earlier.filter(|it| it.has_ir_of(manifest, &subject.table.name)),
+            }));
+        }
+        tree.extend(emit_passes(subjects, earlier, manifest)?);
+        for emitted in parallel::map(&jobs, |job| job.emit(&options.passes)) {
+            let emitted = emitted?;
+            sources.extend(emitted.sources);
+            tree.extend(emitted.pages);
+        }
+        tree.extend(emit_audit(irs)?);
+        let audit = tree.contains_key(AUDIT_PAGE).then(audit_page);
+        let further: Vec<Page> = audit.into_iter().chain([docs::passes_page()]).collect();
+        tree.extend(docs::emit_index(subjects, &further)?);
+        let about = about(subjects);
+        let lib = render(&LibTemplate {
+            about: &about,
+            modules,
+            units,
+        })?;
+        sources.push(Source {
+            path: "src/lib.rs".to_owned(),
+            origin: "the tables",
+            text: lib,
+            known: None,
+        });
+        for formatted in parallel::map(&sources, Source::formatted) {
+            let (path, text) = formatted?;
+            tree.insert(path, text);
+        }
+        let cargo = CargoTemplate {
+            options,
+            about: toml_edit::Value::from(about).to_string(),
+            version: env!("CARGO_PKG_VERSION"),
+        };
+        let cargo = render(&cargo)? + "\n";
+        check_package(&options.package, &cargo)?;
+        for subject in subjects {
+            check_sets(subject, tree)?;
+        }
+        tree.insert("Cargo.toml".to_owned(), cargo);
+        Ok(())
     }
-    let mut effects = Vec::new();
-    for emitted in parallel::map(&jobs, |job| job.emit(&options.passes)) {
-        let emitted = emitted?;
-        sources.extend(emitted.sources);
-        tree.extend(emitted.pages);
-        effects.push(emitted.effects);
-    }
-    let models = jobs.iter().map(|job| job.model);
-    tree.extend(docs::emit_passes(models.zip(&effects))?);
-    tree.extend(emit_audit(irs)?);
-    let audit = tree.contains_key(AUDIT_PAGE).then(audit_page);
-    let further: Vec<Page> = audit.into_iter().chain([docs::passes_page()]).collect();
-    tree.extend(docs::emit_index(subjects, &further)?);
-    let about = about(subjects);
-    let lib = render(&LibTemplate {
-        about: &about,
-        modules,
-        units,
-    })?;
-    sources.push(Source {
-        path: "src/lib.rs".to_owned(),
-        origin: "the tables",
-        text: lib,
-    });
-    for formatted in parallel::map(&sources, Source::formatted) {
-        let (path, text) = formatted?;
-        tree.insert(path, text);
-    }
-    let cargo = CargoTemplate {
-        options,
-        about: toml_edit::Value::from(about).to_string(),
-        version: env!("CARGO_PKG_VERSION"),
-    };
-    let cargo = render(&cargo)? + "\n";
-    check_package(&options.package, &cargo)?;
-    for subject in subjects {
-        check_sets(subject, tree)?;
-    }
-    tree.insert("Cargo.toml".to_owned(), cargo);
-    Ok(())
 }
 
 /// What the package is, in a sentence.
@@ -286,10 +346,15 @@ struct Source<'a> {
     /// What it is made from.
     origin: &'a str,
     text: String,
+    /// What became of the same text before.
+    known: Option<&'a str>,
 }
 
 impl Source<'_> {
     fn formatted(&self) -> Result<(String, String), EmitError> {
+        if let Some(text) = self.known {
+            return Ok((self.path.clone(), text.to_owned()));
+        }
         let header = format!(
             "Generated by `{COMMAND}` from {}. Do not edit.",
             visible(self.origin)
@@ -320,6 +385,7 @@ fn emit_home<'a>(
             path: format!("src/{}/{file}.rs", home.name),
             origin: &table.file_name,
             text,
+            known: None,
         });
     }
     Ok(&home.name)
@@ -330,13 +396,14 @@ struct Job<'a> {
     subject: Subject<'a>,
     model: &'a Model,
     home: &'a str,
+    /// The tree of an earlier emission with the same IR.
+    earlier: Option<&'a Earlier>,
 }
 
 /// What a model gives.
 struct Emitted<'a> {
     sources: Vec<Source<'a>>,
     pages: Tree,
-    effects: Vec<Effect>,
 }
 
 impl<'a> Job<'a> {
@@ -344,17 +411,60 @@ impl<'a> Job<'a> {
         self.model.check_names()?;
         let program = Program::new(self.model, self.home, self.subject.document, passes)?;
         let files = rust::files(&program)?.into_iter();
-        let source = |(file, text): (String, String)| Source {
-            path: format!("src/{}/{file}.rs", self.model.name),
-            origin: &self.subject.table.file_name,
-            text,
+        let source = |(file, text): (String, String)| {
+            let path = format!("src/{}/{file}.rs", self.model.name);
+            Source {
+                known: self.earlier.and_then(|it| it.text(&path)),
+                path,
+                origin: &self.subject.table.file_name,
+                text,
+            }
         };
         Ok(Emitted {
             sources: files.map(source).collect(),
             pages: docs::emit_model(&self.subject, self.model, &program.costs())?,
-            effects: effect::of(self.model)?,
         })
     }
+}
+
+/// All files of a table and its models, where neither IR nor values have changed.
+fn all_of(subject: &Subject<'_>, earlier: &Earlier, now: &Manifest) -> Option<Tree> {
+    let (table, models) = (&subject.table.name, &subject.document.models);
+    if !earlier.has_table_of(now, table) {
+        return None;
+    }
+    let page = format!("docs/{table}-table.md");
+    let of_model = |name: &str, path: &str| {
+        let path = path
+            .strip_prefix("src/")
+            .or_else(|| path.strip_prefix("docs/images/"));
+        path.and_then(|it| it.strip_prefix(name))
+            .is_some_and(|it| it.starts_with(['/', '-']))
+    };
+    earlier.all(|path| {
+        let mut names = models.iter().map(|model| model.name.as_str());
+        path == page || names.any(|name| path == format!("docs/{name}.md") || of_model(name, path))
+    })
+}
+
+/// The page of the passes, which depends on the models alone.
+fn emit_passes(
+    subjects: &[Subject<'_>],
+    earlier: Option<&Earlier>,
+    now: &Manifest,
+) -> Result<Tree, EmitError> {
+    let page = format!("docs/{}", docs::passes_page().path);
+    if let Some(earlier) = earlier
+        && earlier.manifest.tables.keys().eq(now.tables.keys())
+        && now.tables.keys().all(|table| earlier.has_ir_of(now, table))
+        && let Some(text) = earlier.text(&page)
+    {
+        return Ok(Tree::from([(page, text.to_owned())]));
+    }
+    let models: Vec<&Model> = subjects.iter().flat_map(|it| &it.document.models).collect();
+    let effects = parallel::map(&models, |model| effect::of(model));
+    let effects = effects.into_iter().collect::<Result<Vec<_>, EmitError>>()?;
+    docs::emit_passes(models.into_iter().zip(&effects))
 }
 
 /// Crates that every Rust program has.
@@ -414,7 +524,12 @@ fn check_sets(subject: &Subject<'_>, tree: &Tree) -> Result<(), EmitError> {
     Ok(())
 }
 
-fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -> Manifest {
+fn manifest(
+    tables: &[Table],
+    irs: &BTreeMap<String, String>,
+    options: &Options,
+    known: &Known,
+) -> Manifest {
     let templates: Vec<&str> = [
         include_str!("../templates/manifest.toml"),
         include_str!("../templates/choices.rs"),
@@ -436,6 +551,10 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -
     Manifest {
         schema_version: SCHEMA_VERSION,
         emitter: env!("CARGO_PKG_VERSION").to_owned(),
+        emitter_sources: include_str!(concat!(env!("OUT_DIR"), "/emitter.txt")).to_owned(),
+        generator: known.generator.clone(),
+        units: String::new(),
+        structure: known.structure.clone(),
         tables: tables
             .iter()
             .map(|t| (t.name.clone(), t.sha256()))
@@ -445,7 +564,12 @@ fn manifest(tables: &[Table], irs: &BTreeMap<String, String>, passes: &Passes) -
             .map(|(name, text)| (name.clone(), sha256(text)))
             .collect(),
         templates: sha256(&templates.concat()),
-        without_passes: passes.left_out().map(|p| p.name().to_owned()).collect(),
+        without_passes: options
+            .passes
+            .left_out()
+            .map(|p| p.name().to_owned())
+            .collect(),
         files: BTreeMap::new(),
+        seal: String::new(),
     }
 }

@@ -70,22 +70,23 @@ impl Tape {
 
     /// The values of the outputs where the leaves have the given values, in the order of [`Tape::leaves`].
     ///
-    /// `scratch` holds intermediate values; one vector serves many calls.
-    pub(crate) fn run(&self, values: &[f64], scratch: &mut Vec<f64>, outputs: &mut Vec<f64>) {
+    /// `scratch` holds intermediate values; one vector serves many calls. With [`Lanes`](ahv_core::Lanes) many points
+    /// are evaluated at once, each with the same bits as alone.
+    pub(crate) fn run<T: Real>(&self, values: &[T], scratch: &mut Vec<T>, outputs: &mut Vec<T>) {
         scratch.clear();
         for &operation in &self.operations {
             let value = match operation {
                 Operation::Leaf(position) => values[position],
-                Operation::Number(bits) => f64::from_bits(bits),
+                Operation::Number(bits) => T::from_f64(f64::from_bits(bits)),
                 Operation::Add(a, b) => scratch[a] + scratch[b],
                 Operation::Subtract(a, b) => scratch[a] - scratch[b],
                 Operation::Multiply(a, b) => scratch[a] * scratch[b],
                 Operation::Divide(a, b) => scratch[a] / scratch[b],
                 Operation::Negate(a) => -scratch[a],
-                Operation::Sine(a) => Real::sin(scratch[a]),
-                Operation::Cosine(a) => Real::cos(scratch[a]),
-                Operation::Exponential(a) => Real::exp(scratch[a]),
-                Operation::Root(a) => Real::sqrt(scratch[a]),
+                Operation::Sine(a) => scratch[a].sin(),
+                Operation::Cosine(a) => scratch[a].cos(),
+                Operation::Exponential(a) => scratch[a].exp(),
+                Operation::Root(a) => scratch[a].sqrt(),
             };
             scratch.push(value);
         }
@@ -162,7 +163,7 @@ impl Tape {
                 .collect(),
             outputs: Vec::new(),
         };
-        let mut scratch = Vec::new();
+        let mut scratch = Vec::<f64>::new();
         alone.run(&[], &mut scratch, &mut Vec::new());
         let value = scratch.last().copied().unwrap_or(f64::NAN);
         Operation::Number(value.to_bits())

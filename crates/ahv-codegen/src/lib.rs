@@ -42,9 +42,9 @@ mod wording;
 use std::collections::BTreeMap;
 
 pub use ahv_table::{Part, Unreadable};
-pub use emit::{AUDIT, Core, Options, Target, emit};
+pub use emit::{AUDIT, Core, Known, Options, Target, emit, emit_again};
 pub use graph::passes::{Pass, Passes, UnknownPass};
-pub use manifest::{Manifest, sha256};
+pub use manifest::{Earlier, Manifest, sha256};
 pub use numbered::{Numbered, numbered};
 pub use table::Table;
 

@@ -23,6 +23,14 @@ pub struct Args {
     #[arg(long, requires = "check")]
     pub from_ir: bool,
 
+    /// Derive and emit everything again, also what the hashes in the manifest vouch for
+    #[arg(long, conflicts_with = "check")]
+    pub derive: bool,
+
+    /// Generate whenever a table is saved, until Ctrl-C
+    #[arg(long, conflicts_with_all = ["check", "json"])]
+    pub watch: bool,
+
     /// Folder of the tables [default: generator/tables in the project]
     #[arg(long, value_name = "DIR")]
     pub tables: Option<PathBuf>,
@@ -183,6 +191,17 @@ mod tests {
     fn a_check_is_always_one_of_all_passes() {
         let message = parse(&["--check", "--without-pass", "estrin"]).unwrap_err();
         assert!(message.contains("cannot be used with"), "{message}");
+    }
+
+    #[test]
+    fn watching_goes_with_no_check_and_no_json() {
+        for other in ["--check", "--json"] {
+            let message = parse(&["--watch", other]).unwrap_err();
+            assert!(
+                message.contains("'--watch' cannot be used with"),
+                "{message}"
+            );
+        }
     }
 
     #[test]

@@ -13,6 +13,8 @@ use crate::failure::Failure;
 use crate::files;
 use crate::manifest::{self, MANIFEST};
 use crate::project::slashed;
+use crate::structure;
+use crate::tables::Tables;
 
 /// Folders that hold nothing but generated files. Elsewhere a file that the tables do not give is
 /// somebody's own.
@@ -65,6 +67,8 @@ pub struct Difference {
     pub status: Status,
     /// Why generating leaves a stray file where it is; `None` where it does not.
     pub kept: Option<Kept>,
+    /// What is known of a difference whose text only a derivation can find out.
+    pub(crate) reason: Option<&'static str>,
     /// What is on disk.
     pub(crate) old: String,
     /// What the tables give.
@@ -77,14 +81,18 @@ impl Difference {
             path,
             status,
             kept: None,
+            reason: None,
             old: String::new(),
             new: String::new(),
         }
     }
 
     /// An IR that is not what the table gives. What that is, only a derivation can find out.
-    fn unknown_ir(table: &str) -> Self {
-        Self::without_text(ir_path(table), Status::Differs)
+    fn unknown_ir(table: &str, reason: &'static str) -> Self {
+        Self {
+            reason: Some(reason),
+            ..Self::without_text(ir_path(table), Status::Differs)
+        }
     }
 
     /// The text that the file is to have; none for one that is to go.
@@ -129,6 +137,7 @@ pub(crate) fn differences(out: &Path, tree: &Tree) -> Result<Vec<Difference>, Fa
             path: path.clone(),
             status,
             kept: None,
+            reason: None,
             old,
             new: new.clone(),
         });
@@ -193,14 +202,20 @@ pub(crate) fn checked_in_irs(
     Ok((irs, missing))
 }
 
-/// The IRs that were derived from other tables than there are now.
-pub(crate) fn stale_irs(manifest: Option<&Manifest>, tables: &[Table]) -> Vec<Difference> {
-    let recorded = |table: &Table| manifest.and_then(|it| it.tables.get(&table.name));
-    tables
-        .iter()
-        .filter(|table| recorded(table) != Some(&table.sha256()))
-        .map(|table| Difference::unknown_ir(&table.name))
-        .collect()
+/// The IRs that were derived from tables of another structure than there are now, or by another generator.
+pub(crate) fn stale_irs(manifest: Option<&Manifest>, tables: &Tables) -> Vec<Difference> {
+    let recorded = |table: &str| manifest.and_then(|it| it.structure.get(table));
+    let generator = manifest.map(|it| it.generator.as_str());
+    let reason = |(table, structure): (&String, &String)| match recorded(table) {
+        None => Some("the manifest does not say from what it was derived"),
+        Some(old) if old != structure => Some("the structure of the table has changed"),
+        Some(_) if generator != Some(&*structure::of_generator()) => {
+            Some("another version of the generator derived it")
+        }
+        Some(_) => None,
+    };
+    let stale = |known: (&String, &String)| Some(Difference::unknown_ir(known.0, reason(known)?));
+    tables.structure.iter().filter_map(stale).collect()
 }
 
 /// The IRs that are not those that were derived: `tree`, emitted from them, records other hashes.
@@ -216,11 +231,19 @@ pub(crate) fn edited_irs(manifest: Option<&Manifest>, tree: &Tree) -> Vec<Differ
         .ir
         .keys()
         .filter(edited)
-        .map(|table| Difference::unknown_ir(table))
+        .map(|table| Difference::unknown_ir(table, "it was edited"))
         .collect()
 }
 
-fn ir_path(table: &str) -> String {
+/// The text of a file, with LF line ends; none of what is no text file.
+pub(crate) fn text_of(path: &Path) -> Option<String> {
+    match read(path) {
+        Ok(OnDisk::Text(text)) => Some(text),
+        _ => None,
+    }
+}
+
+pub(crate) fn ir_path(table: &str) -> String {
     format!("ir/{table}.json")
 }
 

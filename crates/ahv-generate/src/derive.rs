@@ -23,10 +23,12 @@ struct Diagnostics {
     diagnostics: Vec<Diagnostic>,
 }
 
-/// The IR of each table, by the table's name; and the audit, where a table has the printed form.
+/// The IR of each table, by the table's name; and the audit, where a table has the printed form. Those that are `known` are
+/// not derived again.
 pub(crate) fn derive(
     python: &Generator,
     tables: &Tables,
+    known: &BTreeMap<String, String>,
 ) -> Result<BTreeMap<String, String>, Failure> {
     let folder = tempfile::tempdir()
         .map_err(|error| Failure::new(format!("cannot make a temporary folder: {error}")))?;
@@ -34,6 +36,10 @@ pub(crate) fn derive(
         let _progress = Progress::quiet("deriving the models");
         let mut command = python.command();
         command.args(["derive", "--out"]).arg(folder.path());
+        for table in known.keys().filter(|it| *it != AUDIT) {
+            command.args(["--known", table]);
+        }
+        command.args(known.contains_key(AUDIT).then_some("--audit-known"));
         command.args(tables.sources.iter().map(|source| &source.path));
         interrupt::output(&mut command, |error| {
             Failure::new(format!("cannot run Python: {error}"))
@@ -44,6 +50,10 @@ pub(crate) fn derive(
     }
     let mut irs = BTreeMap::new();
     for table in &tables.parsed {
+        if let Some(text) = known.get(&table.name) {
+            irs.insert(table.name.clone(), text.clone());
+            continue;
+        }
         let path = folder.path().join(format!("{}.json", table.name));
         let text = fs::read_to_string(&path).map_err(|error| {
             let message = format!(
@@ -57,7 +67,8 @@ pub(crate) fn derive(
     let audit = folder.path().join(format!("{AUDIT}.json"));
     match fs::read_to_string(&audit) {
         Ok(text) => {
-            irs.insert(AUDIT.to_owned(), text.replace("\r\n", "\n"));
+            let text = known.get(AUDIT).unwrap_or(&text).replace("\r\n", "\n");
+            irs.insert(AUDIT.to_owned(), text);
         }
         Err(error) if error.kind() == ErrorKind::NotFound => {}
         Err(error) => return Err(Failure::file("read", &audit)(error)),

@@ -30,9 +30,13 @@ mod progress;
 mod project;
 mod python;
 mod report;
+mod rules;
+mod structure;
 mod surroundings;
 mod tables;
 mod transaction;
+mod trust;
+mod watch;
 mod write;
 
 use std::collections::BTreeMap;
@@ -51,6 +55,7 @@ pub use surroundings::Surroundings;
 
 use report::{Owners, Seconds};
 use tables::Tables;
+use trust::Trusted;
 
 /// Exit code: done, or tree and tables agree.
 pub const AGREES: u8 = 0;
@@ -76,7 +81,9 @@ fn answer(args: &Args) -> Result<u8, Failure> {
     interrupt::listen()
         .map_err(|error| Failure::new(format!("cannot listen to signals: {error}")))?;
     let surroundings = Surroundings::of_process()?;
-    if args.check {
+    if args.watch {
+        watch::watch(args, &surroundings)
+    } else if args.check {
         let checked = check(args, &surroundings)?;
         if args.json {
             print(&checked.json())?;
@@ -113,17 +120,28 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Derives, emits, and brings the tree on disk up to date.
+/// Derives and emits what has changed, and brings the tree on disk up to date.
 ///
 /// # Errors
 /// Bad tables, no usable Python, a signal, or a tree that cannot be written; the tree is then as it was, or the
 /// message names the files that are new.
 pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, Failure> {
     let project = Project::locate(args, surroundings);
-    let (tree, _, seconds) = derive_and_emit(args, surroundings, &project)?;
-    let differences = compare::differences(&project.out, &tree)?;
+    let tables = Tables::load(&project)?;
+    let trusted = if args.derive {
+        Trusted::default()
+    } else {
+        Trusted::of(&project.out, &tables)
+    };
+    let made = derive_and_emit(args, surroundings, &tables, trusted)?;
+    let differences = compare::differences(&project.out, &made.tree)?;
     write::apply(&project, &differences)?;
-    Ok(Generated::new(&project, differences, seconds))
+    Ok(Generated::new(
+        &project,
+        differences,
+        made.derived,
+        made.seconds,
+    ))
 }
 
 /// Compares the tree on disk with what the tables give, and writes nothing.
@@ -132,36 +150,91 @@ pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, F
 /// Bad tables, no usable Python, an IR of an unknown schema version, or an unreadable tree.
 pub fn check(args: &Args, surroundings: &Surroundings) -> Result<Checked, Failure> {
     let project = Project::locate(args, surroundings);
-    let (differences, owners) = if args.from_ir {
-        check_from_ir(args, &project)?
+    let tables = Tables::load(&project)?;
+    let start = Instant::now();
+    let (differences, owners, seconds, command) = if args.from_ir {
+        let (differences, owners) = check_from_ir(args, &project, &tables)?;
+        let seconds = Seconds {
+            derive: 0.0,
+            emit: start.elapsed().as_secs_f64(),
+        };
+        (differences, owners, seconds, args.mending_command(&project))
     } else {
-        let (tree, owners, _) = derive_and_emit(args, surroundings, &project)?;
-        (compare::differences(&project.out, &tree)?, owners)
+        let made = derive_and_emit(args, surroundings, &tables, Trusted::default())?;
+        let differences = compare::differences(&project.out, &made.tree)?;
+        let mut command = args.mending_command(&project);
+        if !differences.is_empty() && !is_made_by_generate(args, &project, &tables, &made) {
+            command.push_str(" --derive");
+        }
+        let owners = Owners::new(&tables, &made.irs);
+        (differences, owners, made.seconds, command)
     };
     // A command that would refuse is no advice.
-    let mending = write::check(&project, &differences).map(|()| args.mending_command(&project));
-    Ok(Checked::new(&project, differences, &owners, mending))
+    let mending = write::check(&project, &differences).map(|()| command);
+    Ok(Checked::new(
+        &project,
+        differences,
+        &owners,
+        mending,
+        seconds,
+    ))
+}
+
+/// What one run derived and emitted.
+struct Made {
+    irs: BTreeMap<String, String>,
+    tree: Tree,
+    /// The tables that were derived.
+    derived: Vec<String>,
+    seconds: Seconds,
 }
 
 fn derive_and_emit(
     args: &Args,
     surroundings: &Surroundings,
-    project: &Project,
-) -> Result<(Tree, Owners, Seconds), Failure> {
-    let tables = Tables::load(project)?;
-    let python = python::for_generation(surroundings)?;
+    tables: &Tables,
+    mut trusted: Trusted,
+) -> Result<Made, Failure> {
     let start = Instant::now();
-    let irs = derive::derive(&python, &tables)?;
-    let derived = Instant::now();
-    let tree = emit(args, &tables, &irs)?;
-    let seconds = Seconds {
-        derive: (derived - start).as_secs_f64(),
-        emit: derived.elapsed().as_secs_f64(),
+    let known = std::mem::take(&mut trusted.irs);
+    let derived = tables.parsed.iter().map(|table| table.name.clone());
+    let derived = derived.filter(|name| !known.contains_key(name)).collect();
+    let irs = if trusted.is_whole {
+        rules::check(tables, &known)?;
+        known
+    } else {
+        let python = python::for_generation(surroundings)?;
+        derive::derive(&python, tables, &known)?
     };
-    Ok((tree, Owners::new(&tables, &irs), seconds))
+    let after = Instant::now();
+    let tree = emit(args, tables, &irs, trusted)?;
+    let seconds = Seconds {
+        derive: (after - start).as_secs_f64(),
+        emit: after.elapsed().as_secs_f64(),
+    };
+    Ok(Made {
+        irs,
+        tree,
+        derived,
+        seconds,
+    })
 }
 
-fn emit(args: &Args, tables: &Tables, irs: &BTreeMap<String, String>) -> Result<Tree, Failure> {
+/// Whether `generate` makes the same of the tree on disk as a derivation from nothing does. It does not where IR or files
+/// were edited together with their hashes, or another interpreter or build wrote them.
+fn is_made_by_generate(args: &Args, project: &Project, tables: &Tables, whole: &Made) -> bool {
+    let mut trusted = Trusted::of(&project.out, tables);
+    let mut irs = whole.irs.clone();
+    irs.extend(std::mem::take(&mut trusted.irs));
+    emit(args, tables, &irs, trusted).is_ok_and(|tree| tree == whole.tree)
+}
+
+fn emit(
+    args: &Args,
+    tables: &Tables,
+    irs: &BTreeMap<String, String>,
+    trusted: Trusted,
+) -> Result<Tree, Failure> {
     let options = Options {
         package: args.package.clone(),
         core: args.core(),
@@ -169,34 +242,35 @@ fn emit(args: &Args, tables: &Tables, irs: &BTreeMap<String, String>) -> Result<
         passes: Passes::without(&args.without_pass),
         target: args.target(),
     };
-    ahv_codegen::emit(&tables.parsed, irs, &options)
+    ahv_codegen::emit_again(&tables.parsed, irs, &options, &trusted.known(tables))
         .map_err(|error| Failure::new(error.to_string()))
 }
 
 /// The check without Python: the checked-in IR stands in for the derivation, and the manifest
 /// says whether it was derived from the tables as they are now.
-fn check_from_ir(args: &Args, project: &Project) -> Result<(Vec<Difference>, Owners), Failure> {
-    let tables = Tables::load(project)?;
+fn check_from_ir(
+    args: &Args,
+    project: &Project,
+    tables: &Tables,
+) -> Result<(Vec<Difference>, Owners), Failure> {
     let (irs, missing) = compare::checked_in_irs(&project.out, &tables.parsed)?;
-    let owners = Owners::new(&tables, &irs);
+    let owners = Owners::new(tables, &irs);
     if !missing.is_empty() {
         return Ok((missing, owners));
     }
     let manifest = manifest::whole(&project.out);
-    match emit(args, &tables, &irs) {
+    let stale = compare::stale_irs(manifest.as_ref(), tables);
+    match emit(args, tables, &irs, Trusted::default()) {
         Ok(tree) => {
             let mut found = compare::differences(&project.out, &tree)?;
-            found.extend(compare::edited_irs(manifest.as_ref(), &tree));
+            let edited = compare::edited_irs(manifest.as_ref(), &tree);
+            let is_stale = |it: &Difference| stale.iter().any(|known| known.path == it.path);
+            found.extend(edited.into_iter().filter(|it| !is_stale(it)));
+            found.extend(stale);
             Ok((found, owners))
         }
-        Err(failure) => {
-            // A table of another structure than its IR may not be emittable: that is a difference.
-            let stale = compare::stale_irs(manifest.as_ref(), &tables.parsed);
-            if stale.is_empty() {
-                Err(failure)
-            } else {
-                Ok((stale, owners))
-            }
-        }
+        // A table of another structure than its IR may not be emittable: that is a difference.
+        Err(_) if !stale.is_empty() => Ok((stale, owners)),
+        Err(failure) => Err(failure),
     }
 }

@@ -1,7 +1,7 @@
 //! What was done or found, as text for people and as JSON.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use std::fmt::{self, Display, Formatter, Write as _};
 use std::path::Path;
 
 use serde::Serialize;
@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use crate::compare::{Difference, Status};
 use crate::failure::Failure;
+use crate::manifest::MANIFEST;
 use crate::project::Project;
 use crate::tables::Tables;
 
@@ -20,6 +21,67 @@ const KEPT_BY_HAND: &str = "ahv removes only what it wrote";
 pub(crate) struct Seconds {
     pub(crate) derive: f64,
     pub(crate) emit: f64,
+}
+
+impl Display for Seconds {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        let Self { derive, emit } = self;
+        write!(formatter, "(derive {derive:.2} s, emit {emit:.2} s)")
+    }
+}
+
+/// Lines that are printed of a difference which follows from others: in the documentation, or in the hashes of the manifest.
+const FOLDED_LINES: usize = 12;
+
+/// What a file is, in the order in which a reader wants to see differences.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Code,
+    Ir,
+    Documentation,
+}
+
+impl Kind {
+    const ALL: [Self; 3] = [Self::Code, Self::Ir, Self::Documentation];
+
+    fn of(path: &str) -> Self {
+        match path.split_once('/') {
+            Some(("docs", _)) => Self::Documentation,
+            Some(("ir", _)) => Self::Ir,
+            None if path == MANIFEST => Self::Ir,
+            _ => Self::Code,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Code => "code",
+            Self::Ir => "IR and manifest",
+            Self::Documentation => "documentation",
+        }
+    }
+}
+
+/// A line a kind of file: how many differ, in how many lines.
+fn summary(differences: &[(String, Difference)]) -> String {
+    let mut text = String::new();
+    for kind in Kind::ALL {
+        let of_kind = differences
+            .iter()
+            .filter(|(_, it)| Kind::of(&it.path) == kind);
+        let counts: Vec<(usize, usize)> = of_kind.map(|(_, it)| it.counts()).collect();
+        let (added, removed): (usize, usize) = (
+            counts.iter().map(|it| it.0).sum(),
+            counts.iter().map(|it| it.1).sum(),
+        );
+        let files = match counts.len() {
+            0 => continue,
+            1 => "1 file".to_owned(),
+            many => format!("{many} files"),
+        };
+        let _ = writeln!(text, "{}: {files}, +{added} −{removed}", kind.name());
+    }
+    text
 }
 
 /// Which table gives the modules of which name.
@@ -57,13 +119,21 @@ impl Owners {
 /// What `generate` did.
 pub struct Generated {
     differences: Vec<(String, Difference)>,
+    /// The tables that were derived; of the others only values have changed, or nothing.
+    derived: Vec<String>,
     seconds: Seconds,
 }
 
 impl Generated {
-    pub(crate) fn new(project: &Project, differences: Vec<Difference>, seconds: Seconds) -> Self {
+    pub(crate) fn new(
+        project: &Project,
+        differences: Vec<Difference>,
+        derived: Vec<String>,
+        seconds: Seconds,
+    ) -> Self {
         Self {
             differences: shown(project, differences),
+            derived,
             seconds,
         }
     }
@@ -98,6 +168,7 @@ impl Generated {
                 },
             };
         }
+        text.push_str(&summary(&self.differences));
         let count = |status| self.of(status).count();
         let (changed, created, removed, kept) = (
             count(Status::Differs),
@@ -117,8 +188,7 @@ impl Generated {
         if kept > 0 {
             let _ = write!(text, ", {kept} stray kept");
         }
-        let Seconds { derive, emit } = self.seconds;
-        let _ = writeln!(text, " (derive {derive:.2} s, emit {emit:.2} s)");
+        let _ = writeln!(text, " {}", self.seconds);
         text
     }
 
@@ -139,6 +209,7 @@ impl Generated {
             "removed": paths(Status::Stray),
             "kept": kept.collect::<Vec<_>>(),
             "up_to_date": self.differences.is_empty(),
+            "derived": self.derived,
             "seconds": self.seconds,
         });
         format!("{value:#}\n")
@@ -153,6 +224,7 @@ pub struct Checked {
     places: (String, String),
     /// The command that brings the tree up to date, or why none does.
     mending: Result<String, Failure>,
+    seconds: Seconds,
 }
 
 impl Checked {
@@ -161,20 +233,23 @@ impl Checked {
         differences: Vec<Difference>,
         owners: &Owners,
         mending: Result<String, Failure>,
+        seconds: Seconds,
     ) -> Self {
+        let differences = shown(project, differences);
         let places = (project.shown(&project.out), project.shown(&project.tables));
         let all = format!("a table in {}", places.1);
-        let table = |it: &Difference| {
+        let table = |(_, it): &(String, Difference)| {
             owners
                 .of(&it.path)
                 .map_or_else(|| all.clone(), str::to_owned)
         };
         let tables = differences.iter().map(table).collect();
         Self {
-            differences: shown(project, differences),
+            differences,
             tables,
             places,
             mending,
+            seconds,
         }
     }
 
@@ -188,12 +263,17 @@ impl Checked {
     #[must_use]
     pub fn text(&self) -> String {
         if self.agrees() {
-            return format!("{} agrees with {}\n", self.places.0, self.places.1);
+            let (out, tables) = &self.places;
+            return format!("{out} agrees with {tables} {}\n", self.seconds);
         }
         let mut text = String::new();
         for ((path, difference), table) in self.differences.iter().zip(&self.tables) {
             let _ = match difference.status {
-                Status::Differs => writeln!(text, "error: {path} does not match {table}"),
+                Status::Differs => {
+                    let reason = difference.reason.map(|it| format!(": {it}"));
+                    let reason = reason.unwrap_or_default();
+                    writeln!(text, "error: {path} does not match {table}{reason}")
+                }
                 Status::Missing => writeln!(text, "error: {path} is missing: {table} gives it"),
                 Status::Stray => match difference.kept {
                     None => writeln!(text, "error: {path} is stray: no table gives it"),
@@ -204,8 +284,10 @@ impl Checked {
                     ),
                 },
             };
-            text.push_str(&difference.diff(path));
+            text.push_str(&folded(&difference.diff(path), &difference.path));
         }
+        text.push_str(&summary(&self.differences));
+        let _ = writeln!(text, "{}", self.seconds);
         let total = self.differences.len();
         let kept = self.differences.iter().filter(|(_, it)| it.kept.is_some());
         let kept = kept.count();
@@ -243,10 +325,12 @@ impl Checked {
                 "status": difference.status,
                 "diff": difference.diff(path),
                 "kept": difference.kept,
+                "reason": difference.reason,
             })
         });
         let value = json!({
             "agree": self.agrees(),
+            "seconds": self.seconds,
             "differing": differing.collect::<Vec<_>>(),
             "command": self.mending.as_ref().ok(),
             "obstacle": self.mending.as_ref().err().map(Failure::to_string),
@@ -255,9 +339,30 @@ impl Checked {
     }
 }
 
-fn shown(project: &Project, differences: Vec<Difference>) -> Vec<(String, Difference)> {
-    differences
-        .into_iter()
-        .map(|it| (project.shown_out(&it.path), it))
+/// A difference without its last lines, where it is long and follows from others.
+fn folded(diff: &str, path: &str) -> String {
+    let follows = path == MANIFEST || Kind::of(path) == Kind::Documentation;
+    let lines = diff.lines().count();
+    if !follows || lines <= FOLDED_LINES + 1 {
+        return diff.to_owned();
+    }
+    let first = diff.split_inclusive('\n').take(FOLDED_LINES);
+    let more = lines - FOLDED_LINES;
+    first
+        .chain([&*format!("... {more} more lines\n")])
         .collect()
+}
+
+/// Differences with their paths as messages name them: the numbers first, then other code, and what follows from both last.
+fn shown(project: &Project, mut differences: Vec<Difference>) -> Vec<(String, Difference)> {
+    let rank = |it: &Difference| {
+        (
+            Kind::of(&it.path),
+            !it.path.ends_with("/nominal.rs"),
+            it.path.clone(),
+        )
+    };
+    differences.sort_by_cached_key(rank);
+    let named = |it: Difference| (project.shown_out(&it.path), it);
+    differences.into_iter().map(named).collect()
 }

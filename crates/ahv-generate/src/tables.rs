@@ -1,15 +1,17 @@
 //! Reading the tables, and finding where in their text a fault lies.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ahv_codegen::{Part, Table};
+use ahv_codegen::{Part, Table, Unreadable};
 use serde::Deserialize;
 
 use crate::failure::{Failure, TableFault};
 use crate::files;
 use crate::project::Project;
+use crate::structure;
 
 /// A table's file.
 pub(crate) struct Source {
@@ -24,6 +26,8 @@ pub(crate) struct Tables {
     pub(crate) sources: Vec<Source>,
     /// One a source, in the same order.
     pub(crate) parsed: Vec<Table>,
+    /// Hash of the structure of each, by its name.
+    pub(crate) structure: BTreeMap<String, String>,
 }
 
 /// What the derivation finds wrong with a table, at a key path, whose position only the text knows; or with the file of
@@ -46,6 +50,21 @@ enum DiagnosticPart {
     Value,
 }
 
+impl Diagnostic {
+    /// A fault of the value at a path.
+    pub(crate) fn of_value(rule: &str, table: &Table, path: &[&str], message: &str) -> Self {
+        Self {
+            rule: rule.to_owned(),
+            file: table.file_name.clone(),
+            path: path.iter().map(|&key| key.to_owned()).collect(),
+            part: DiagnosticPart::Value,
+            message: message.to_owned(),
+            help: None,
+            line: None,
+        }
+    }
+}
+
 impl Tables {
     /// Reads every `*.toml` in the folder of tables, hidden ones excepted.
     pub(crate) fn load(project: &Project) -> Result<Self, Failure> {
@@ -60,19 +79,25 @@ impl Tables {
         }
         let paths = table_files(project)?;
         let (mut sources, mut parsed, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+        let mut structure = BTreeMap::new();
         for path in paths {
             let shown = project.shown(&path);
             let bytes = files::read(&path)
                 .map_err(|error| Failure::new(format!("cannot read {shown}: {error}")))?;
             match parse(&path, &shown, bytes) {
-                Ok((text, table)) => {
+                Ok((text, table, hash)) => {
+                    structure.insert(table.name.clone(), hash);
                     sources.push(Source { path, shown, text });
                     parsed.push(table);
                 }
                 Err(fault) => faults.push(*fault),
             }
         }
-        let tables = Self { sources, parsed };
+        let tables = Self {
+            sources,
+            parsed,
+            structure,
+        };
         faults.extend(tables.name_faults());
         if faults.is_empty() {
             Ok(tables)
@@ -168,7 +193,8 @@ fn with_rule(message: &str, rule: &str) -> String {
     format!("{message} [{rule}]")
 }
 
-fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
+/// The files of tables, in the order of their names.
+pub(crate) fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
     let folder = project.shown(&project.tables);
     let entries = fs::read_dir(&project.tables).map_err(|error| {
         Failure::new(format!(
@@ -195,7 +221,20 @@ fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
     Ok(paths)
 }
 
-fn parse(path: &Path, shown: &str, bytes: Vec<u8>) -> Result<(String, Table), Box<TableFault>> {
+/// The file of a family beside a table; empty for one that comes along, which is hashed with the generator. What cannot be
+/// read is the derivation's to refuse.
+fn family_beside(table: &Path, family: &str) -> Vec<u8> {
+    let file = table.parent().filter(|_| family.ends_with(".py"));
+    file.and_then(|folder| fs::read(folder.join(family)).ok())
+        .unwrap_or_default()
+}
+
+/// The text of a table, the table, and the hash of its structure.
+fn parse(
+    path: &Path,
+    shown: &str,
+    bytes: Vec<u8>,
+) -> Result<(String, Table, String), Box<TableFault>> {
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
@@ -209,9 +248,15 @@ fn parse(path: &Path, shown: &str, bytes: Vec<u8>) -> Result<(String, Table), Bo
         ))
     })?;
     let file_name = path.file_name().unwrap_or_default().to_string_lossy();
-    match Table::parse(&file_name, &text) {
-        Ok(table) => Ok((text, table)),
-        Err(error) => {
+    let read = || {
+        let table = Table::parse(&file_name, &text)?;
+        let family = table.text(&["table", "family"]).unwrap_or_default();
+        let structure = structure::of_table(&file_name, &text, &family_beside(path, family))?;
+        Ok((table, structure))
+    };
+    match read() {
+        Ok((table, structure)) => Ok((text, table, structure)),
+        Err(error @ Unreadable { .. }) => {
             let span = error.span.unwrap_or(0..0);
             Err(Box::new(TableFault::new(
                 with_rule(&error.message, "unreadable"),

@@ -92,6 +92,7 @@ def family(table: Outline) -> Family:
         inputs=INPUT,
         noise=increments,
         modes=by_mode,
+        audited=True,
     )(sdcom_printed)
     made.model(
         "sdcom_gust",
@@ -183,7 +184,7 @@ def sdcom_printed(model: Model) -> None:
     add_lie_derivatives(model, "(27)")
     steady_flight(model, coloured_modes(modes_of(model.table)))
     note = "sdcom_printed leaves out Delta f, which can exceed the exact rate itself; exact is --model sdcom"
-    model.note(note, audited=True)
+    model.note(note)
 
 
 def sdcom_gust(model: Model) -> None:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ..audit.corrected import corrected_expressions
 from ..modelling import Model
 from .flexible import modes_of
 from .sdcom import coloured_gains, define_exact_rates
@@ -91,6 +90,9 @@ def _evaluated(text: str, names: _Names) -> ca.SX:
 
 
 def _parts(model: Model, row: Row) -> Parts:
+    # Here, because SymPy takes long to import and most models need none of it.
+    from ..audit.corrected import corrected_expressions
+
     texts = corrected_expressions()
     names, unit = _names(model, row), row.rate_unit(model)
     slopes, flexible = [], ca.SX(0)

@@ -34,6 +34,8 @@ fn the_whole_way_there_and_back() {
         "{}",
         done.stdout
     );
+    // Nothing was derived for it, and a derivation gives the same.
+    assert_eq!(scratch.generate(&["--check"]).code, 0);
 
     scratch.edit(DCOM, "value = 4.7773,", "value = 4.6773,");
     assert_eq!(scratch.generate(&[]).code, 0);
@@ -264,7 +266,7 @@ fn a_package_in_si() {
 fn no_python() {
     let scratch = Scratch::new();
     let before = scratch.snapshot();
-    let mut command = scratch.command(&[]);
+    let mut command = scratch.command(&["--derive"]);
     command
         .env("PATH", "")
         .env("AHV_CACHE_DIR", scratch.path("empty-cache"));
@@ -273,7 +275,11 @@ fn no_python() {
     let expected = "error: found no Python 3.11 or newer, which deriving needs\n  help: ";
     assert!(answer.stderr.starts_with(expected), "{}", answer.stderr);
     assert!(before == scratch.snapshot());
-    // The check from the IR needs none.
+    // Where nothing is derived, none is needed, and none by the check from the IR.
+    assert_eq!(
+        crate::common::answer(scratch.command(&[]).env("PATH", "")).code,
+        0
+    );
     let mut command = scratch.command(&["--check", "--from-ir"]);
     assert_eq!(crate::common::answer(command.env("PATH", "")).code, 0);
 }
@@ -315,7 +321,7 @@ fn no_casadi() {
     let bare = scratch.path("bare-python");
     // -S: without the packages that are installed.
     executable(&bare, "#!/bin/sh\nexec python3 -S \"$@\"\n");
-    let answer = crate::common::answer(scratch.command(&[]).env("AHV_PYTHON", &bare));
+    let answer = crate::common::answer(scratch.command(&["--derive"]).env("AHV_PYTHON", &bare));
     assert_eq!(answer.code, 2);
     assert!(
         answer.stderr.contains("which has no casadi and no pint\n"),
@@ -369,7 +375,10 @@ fn a_full_disk_while_deriving_leaves_the_tree_as_it_was() {
     let scratch = Scratch::new();
     let before = scratch.snapshot();
     let mut command = Command::new("sh");
-    command.args(["-c", "trap '' XFSZ; ulimit -S -f 8; exec \"$0\" generate"]);
+    command.args([
+        "-c",
+        "trap '' XFSZ; ulimit -S -f 8; exec \"$0\" generate --derive",
+    ]);
     command
         .arg(env!("CARGO_BIN_EXE_xtask"))
         .current_dir(scratch.path(""));

@@ -52,7 +52,7 @@ pub(super) fn drift(printer: &Printer<'_>) -> Vec<Vec<String>> {
                 } else {
                     left
                 };
-                displays.push(equation(&left, &right, &self::tag(tag)));
+                displays.push(equation(&left, &right, &super::subject::tag(tag)));
             }
         }
     }

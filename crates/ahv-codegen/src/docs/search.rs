@@ -2,7 +2,7 @@
 //!
 //! Nothing here is random and nothing depends on the platform: a page of the documentation has the same bits everywhere.
 
-use ahv_core::Real;
+use ahv_core::{Lanes, Real};
 
 use crate::evaluate::Tape;
 
@@ -17,6 +17,8 @@ const CORNER_VARIABLES: usize = 12;
 const STARTS: usize = 3;
 /// Rounds of the refinement, each through all variables.
 const ROUNDS: usize = 4;
+/// Points that are evaluated at once.
+const LANES: usize = 8;
 /// Values of a variable that a round tries before it looks closer.
 const GRID: u32 = 16;
 
@@ -29,16 +31,17 @@ pub(super) struct Largest {
 
 /// The largest magnitudes of each output of a tape over a box, whose bounds are in the order of the tape's leaves.
 pub(super) fn largest(tape: &Tape, outputs: usize, bounds: &Bounds) -> Vec<Largest> {
-    let mut best: Vec<Vec<Largest>> = vec![Vec::new(); outputs];
-    let (mut scratch, mut values) = (Vec::new(), Vec::new());
-    let mut visit = |point: &[f64]| {
-        tape.run(point, &mut scratch, &mut values);
-        for (found, &value) in best.iter_mut().zip(&values) {
-            keep(found, value, point);
-        }
+    let mut survey = Survey {
+        tape,
+        best: vec![Vec::new(); outputs],
+        points: vec![Lanes::ZERO; bounds.len()],
+        waiting: 0,
+        scratch: Vec::new(),
+        values: Vec::new(),
     };
-    spread(bounds, &mut visit);
-    corners(bounds, &mut visit);
+    spread(bounds, &mut |point| survey.visit(point));
+    corners(bounds, &mut |point| survey.visit(point));
+    survey.evaluate();
     let refined = |(output, starts): (usize, Vec<Largest>)| {
         let alone = tape.only(output);
         let refined = starts
@@ -50,11 +53,47 @@ pub(super) fn largest(tape: &Tape, outputs: usize, bounds: &Bounds) -> Vec<Large
             point: bounds.iter().map(|&range| between(range, 0.5)).collect(),
         })
     };
-    best.into_iter().enumerate().map(refined).collect()
+    survey.best.into_iter().enumerate().map(refined).collect()
+}
+
+/// The largest few magnitudes of each output among points, which are evaluated as soon as they fill the lanes.
+struct Survey<'a> {
+    tape: &'a Tape,
+    best: Vec<Vec<Largest>>,
+    /// A point a lane, a variable an element.
+    points: Vec<Lanes<f64, LANES>>,
+    /// Lanes that hold points.
+    waiting: usize,
+    scratch: Vec<Lanes<f64, LANES>>,
+    values: Vec<Lanes<f64, LANES>>,
+}
+
+impl Survey<'_> {
+    fn visit(&mut self, point: &[f64]) {
+        for (lanes, &coordinate) in self.points.iter_mut().zip(point) {
+            lanes.0[self.waiting] = coordinate;
+        }
+        self.waiting += 1;
+        if self.waiting == LANES {
+            self.evaluate();
+        }
+    }
+
+    fn evaluate(&mut self) {
+        self.tape
+            .run(&self.points, &mut self.scratch, &mut self.values);
+        for lane in 0..self.waiting {
+            let point = || self.points.iter().map(|lanes| lanes.0[lane]).collect();
+            for (found, values) in self.best.iter_mut().zip(&self.values) {
+                keep(found, values.0[lane], point);
+            }
+        }
+        self.waiting = 0;
+    }
 }
 
 /// Keeps the largest few.
-fn keep(found: &mut Vec<Largest>, value: f64, point: &[f64]) {
+fn keep(found: &mut Vec<Largest>, value: f64, point: impl Fn() -> Vec<f64>) {
     let size = value.abs();
     if !size.is_finite() || (found.len() == STARTS && size <= found[STARTS - 1].value.abs()) {
         return;
@@ -65,7 +104,7 @@ fn keep(found: &mut Vec<Largest>, value: f64, point: &[f64]) {
         position,
         Largest {
             value,
-            point: point.to_vec(),
+            point: point(),
         },
     );
 }

@@ -20,6 +20,17 @@ const MODULES: [&str; 2] = ["casadi", "pint"];
 const TRACEBACK: &str = "Traceback (most recent call last)";
 const REQUIREMENTS: &str = include_str!("../../python/requirements.txt");
 
+/// What decides about the IR of a table: the generator with the packages that it runs with.
+pub(crate) fn sources() -> impl Iterator<Item = &'static str> {
+    package::sources().chain([REQUIREMENTS])
+}
+
+/// The version of CasADi that is locked. An interpreter that `AHV_PYTHON` names may have another.
+pub(crate) fn casadi_version() -> Option<&'static str> {
+    let mut lines = REQUIREMENTS.lines();
+    lines.find_map(|line| line.strip_prefix("casadi==")?.split([' ', '\\']).next())
+}
+
 /// An interpreter that can run the generator, and the folder of the generator.
 pub(crate) struct Generator {
     interpreter: PathBuf,

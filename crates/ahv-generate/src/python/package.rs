@@ -21,14 +21,17 @@ from ahv_generator.__main__ import main
 sys.exit(main())
 ";
 
+/// All that is unpacked: names and texts.
+pub(super) fn sources() -> impl Iterator<Item = &'static str> {
+    let modules = PACKAGE.iter().flat_map(|(name, text)| [*name, *text]);
+    modules.chain([LAUNCHER])
+}
+
 /// The folder that holds `ahv_generator/`, named after the content, so that two versions of this
 /// program never meet in it.
 pub(super) fn unpack(cache: &Path) -> Result<PathBuf, Failure> {
     let parent = cache.join("generator");
-    let folder = parent.join(key(PACKAGE
-        .iter()
-        .flat_map(|(name, text)| [*name, *text])
-        .chain([LAUNCHER])));
+    let folder = parent.join(key(sources()));
     if folder.is_dir() {
         return Ok(folder);
     }

@@ -41,7 +41,10 @@ fn a_signal_ends_the_work_and_what_is_temporary() {
         );
         scratch.use_python(scratch.interpreter("3 11", "", &derive));
         let before = scratch.snapshot("generated");
-        let child = scratch.process(&[]).stderr(Stdio::piped()).spawn();
+        let child = scratch
+            .process(&["--derive"])
+            .stderr(Stdio::piped())
+            .spawn();
         let child = child.expect("it runs");
         eventually("no derivation", || started.exists());
         let python = fs::read_to_string(&started).expect("a number");
@@ -66,6 +69,63 @@ fn a_signal_ends_the_work_and_what_is_temporary() {
 
 fn is_empty(folder: &Path) -> bool {
     fs::read_dir(folder).expect("a folder").next().is_none()
+}
+
+/// Watching generates on save, however an editor saves, shows what is wrong, and ends with Ctrl-C.
+#[test]
+fn watching_generates_on_save() {
+    let scratch = Scratch::small();
+    let table = "generator/tables/flexible_mode.toml";
+    let [out, err] = ["out", "err"].map(|name| scratch.path(name));
+    let file = |path: &Path| fs::File::create(path).expect("made");
+    let mut command = scratch.process(&["--watch"]);
+    command
+        .env("AHV_PYTHON", "/nowhere/python")
+        .stdout(file(&out))
+        .stderr(file(&err));
+    let mut child = command.spawn().expect("it runs");
+    let said = |path: &Path, what: &str, times: usize| {
+        let text = || fs::read_to_string(path).unwrap_or_default();
+        eventually(&format!("{what:?} {times} times"), || {
+            text().matches(what).count() == times
+        });
+    };
+    said(&err, "watching generator/tables; Ctrl-C ends\n", 1);
+    said(&out, "nothing changed (derive ", 1);
+
+    // In place, by a file that is renamed, and by one that goes first.
+    scratch.edit(table, "value = 0.7,", "value = 0.71,");
+    said(&out, "code: 1 file, +1 −1\n", 1);
+    scratch.write(
+        "generator/tables/.saved",
+        scratch
+            .read(table)
+            .replace("value = 0.71,", "value = 0.72,"),
+    );
+    fs::rename(scratch.path("generator/tables/.saved"), scratch.path(table)).expect("renamed");
+    said(&out, "code: 1 file, +1 −1\n", 2);
+    let text = scratch.read(table);
+    fs::remove_file(scratch.path(table)).expect("removed");
+    thread::sleep(Duration::from_millis(200));
+    scratch.write(table, text.replace("value = 0.72,", "value = 0.73,"));
+    said(&out, "code: 1 file, +1 −1\n", 3);
+    assert!(
+        scratch
+            .read("generated/src/flexible_mode/nominal.rs")
+            .contains("zeta: 0.73")
+    );
+
+    scratch.write(table, text.replace("value = 0.72,", "value = -1.0,"));
+    said(&err, "flexible_mode.toml:29:18]", 1);
+    scratch.write(table, text.replace("value = 0.72,", "value = 0.74,"));
+    said(&out, "code: 1 file, +1 −1\n", 4);
+    said(&err, "watching generator/tables", 6);
+
+    let pid = child.id().to_string();
+    let kill = Command::new("kill").args(["-INT", &pid]).status();
+    assert!(kill.expect("kill runs").success());
+    assert_eq!(child.wait().expect("it ends").code(), Some(130));
+    assert!(is_empty(&scratch.path("temporary")));
 }
 
 /// Without any place for a cache, for nothing is kept.

@@ -78,6 +78,10 @@ impl Scratch {
         self.python = python.into();
     }
 
+    pub(crate) fn python(&self) -> OsString {
+        self.python.clone()
+    }
+
     pub(crate) fn path(&self, relative: &str) -> PathBuf {
         self.folder.path().join("project").join(relative)
     }
@@ -150,12 +154,17 @@ impl Scratch {
         files
     }
 
-    /// What `generate` fails with. The tree must be as it was.
+    /// What `generate` fails with where it derives. The tree must be as it was.
     #[track_caller]
     pub(crate) fn refusal(&self) -> String {
+        self.refusal_of(&["--derive"])
+    }
+
+    #[track_caller]
+    pub(crate) fn refusal_of(&self, line: &[&str]) -> String {
         let before = self.snapshot("generated");
         let failure = self
-            .generate(&[])
+            .generate(line)
             .err()
             .expect("generate must fail")
             .to_string();

@@ -43,6 +43,24 @@ fn a_changed_value_changes_one_line() {
             "{text}"
         );
     }
+    // The code comes first, what follows from it last, and of that only the beginning.
+    let text = scratch.disagreement(&[]);
+    let at = |what: &str| {
+        text.find(what)
+            .unwrap_or_else(|| panic!("no {what:?} in {text}"))
+    };
+    assert!(
+        at("error: generated/src/") < at("error: generated/manifest.json"),
+        "{text}"
+    );
+    assert!(
+        at("error: generated/manifest.json") < at("error: generated/docs/"),
+        "{text}"
+    );
+    assert!(
+        text.contains(" more lines\ncode: 1 file, +1 −1\nIR and manifest: 1 file, +8 −8\n"),
+        "{text}"
+    );
     let text = scratch.generate(&[]).expect("generated").text();
     assert!(text.contains(&format!("{NOMINAL}  +1 −1\n")), "{text}");
     assert!(
@@ -50,10 +68,18 @@ fn a_changed_value_changes_one_line() {
         "{text}"
     );
     assert_eq!(text.matches("generated/src/").count(), 1, "{text}");
-    // The manifest: the hash of the table, and of each file that shows the value.
-    let files = text.lines().count() - 2;
-    let manifest = format!("generated/manifest.json  +{0} −{0}\n", 1 + files);
-    assert!(text.contains(&manifest), "{text}");
+    // The code comes first. The manifest: the hash of the table, of each file that shows the value, and its own.
+    let files = text
+        .lines()
+        .filter(|it| it.starts_with("generated/"))
+        .count()
+        - 1;
+    let count = format!("+{0} −{0}\n", 2 + files);
+    let first = format!("{NOMINAL}  +1 −1\ngenerated/manifest.json  {count}generated/docs/");
+    assert!(text.starts_with(&first), "{text}");
+    let summary =
+        format!("code: 1 file, +1 −1\nIR and manifest: 1 file, {count}documentation: 5 files, +");
+    assert!(text.contains(&summary), "{text}");
     assert!(scratch.check(&[]).expect("checked").agrees());
 }
 
@@ -350,7 +376,7 @@ fn tables_in_two_unit_systems_need_a_choice() {
         message,
         "error: the tables are in different unit systems; choose one with --units"
     );
-    assert!(scratch.generate(&["--units", "si"]).is_ok());
+    assert!(scratch.generate(&["--units", "si", "--derive"]).is_ok());
 }
 
 #[test]
