@@ -40,8 +40,8 @@ class _Done:
     faults: tuple[Diagnostic, ...] = ()
 
 
-# The tables of the jobs by their paths: a process that is forked has them, another reads them again. A family's functions
-# cannot be sent.
+# The tables of the jobs by their paths: a process that is forked has them, another reads them again, for the functions of
+# a family cannot be sent.
 _tables: dict[Path, Table] = {}
 
 
@@ -61,7 +61,9 @@ def derive(tables: Iterable[Table], known: Iterable[str] = (), *, audit_known: b
     _tables.update((table.path, table) for table in tables)
     jobs = [_Job(table.path, model, (table.name, model) in with_audit) for table, model in models]
     done = dict(zip(((table.name, model) for table, model in models), _all(jobs), strict=True))
-    diagnostics = [fault for it in done.values() for fault in it.faults]
+    # Models of one table have most faults in common.
+    faults = [next((it for m in table.models if (it := done[table.name, m].faults)), ()) for table in sought]
+    diagnostics = [fault for of_table in faults for fault in of_table]
     if diagnostics:
         raise TableError(diagnostics)
     texts = {table.name: ir.assemble(table, (done[table.name, m].part for m in table.models)) for table in sought}
