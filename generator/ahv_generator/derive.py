@@ -40,8 +40,8 @@ class _Done:
     faults: tuple[Diagnostic, ...] = ()
 
 
-# The tables of the jobs by their paths: a process that is forked has them, another reads them again, for the functions of
-# a family cannot be sent.
+# The tables of the jobs by their paths: a process that is forked has them, another reads them again, for the functions
+# of a family cannot be sent.
 _tables: dict[Path, Table] = {}
 
 

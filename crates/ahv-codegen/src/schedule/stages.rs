@@ -107,6 +107,9 @@ impl Stage {
     }
 }
 
+/// Names, each of something or with a reason.
+type Named<T> = Vec<(T, String)>;
+
 /// What fills these fields; names there that are numbered, with reasons; what is bound there by a name that describes it.
 fn parts(
     dag: &mut Dag,
@@ -114,7 +117,7 @@ fn parts(
     given: Given<'_>,
     kind: &'static StageKind,
     fields: &[(Id, String)],
-) -> (Vec<Body>, Vec<(String, String)>, Vec<(Id, String)>) {
+) -> (Vec<Body>, Named<String>, Named<Id>) {
     // What is handed on unchanged comes first.
     let is_leaf = |id: &Id| matches!(dag.node(*id), Node::Leaf(..));
     let ids = fields.iter().map(|(id, _)| *id);
