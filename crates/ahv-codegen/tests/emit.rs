@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{
-    Earlier, Known, Manifest, Options, Part, Pass, Passes, Table, Tree, emit, emit_again, numbered,
-    sha256,
+    Earlier, Known, Manifest, Options, Part, Pass, Passes, Table, Target, Tree, emit, emit_again,
+    numbered, sha256,
 };
 use serde_json::Value;
 
@@ -665,4 +665,37 @@ fn few_values_are_numbered_and_each_has_a_reason() {
     };
     assert!(emitted.iter().all(known), "{emitted:?}");
     assert!(emitted.len() < 20, "{emitted:?}");
+}
+
+/// Coding standards of flight software ask for functions that a reviewer can hold.
+#[test]
+fn no_function_is_longer_than_a_reviewer_can_hold() {
+    const LONGEST: usize = 150;
+    for target in [Target::Rust, Target::C] {
+        let options = Options {
+            target,
+            ..Options::default()
+        };
+        let tree = emit(&TABLES.map(table), &irs(), &options).unwrap();
+        let mut functions = 0;
+        let is_code = |path: &str| path.ends_with(".rs") || path.ends_with(".c");
+        for (path, text) in tree.iter().filter(|(path, _)| is_code(path)) {
+            let mut open: Option<(usize, &str)> = None;
+            for (number, line) in text.lines().enumerate() {
+                let is_rust = line.starts_with("pub fn ") || line.starts_with("fn ");
+                let is_c = !line.starts_with([' ', '/', '#', '}', '{']) && line.contains('(');
+                if open.is_none() && (is_rust || (is_c && target == Target::C)) {
+                    open = Some((number, line));
+                }
+                if line == "}"
+                    && let Some((start, head)) = open.take()
+                {
+                    let length = number + 1 - start;
+                    assert!(length <= LONGEST, "{path}: {length} lines of {head}");
+                    functions += 1;
+                }
+            }
+        }
+        assert!(functions > 300, "{target:?}: {functions}");
+    }
 }
