@@ -1,5 +1,6 @@
 //! `--table`: a table whose values take the place of those that the models were generated with.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::{fs, io};
 
@@ -10,10 +11,20 @@ use ahv_table::{Checked, Family, Fault, Set, Text};
 use crate::failure::Failure;
 use crate::names;
 use crate::registry::{family, models};
-use crate::vehicle::Values;
 
 /// More faults than these are counted, not listed.
 const MOST_LISTED: usize = 20;
+
+/// What a table says of a model, in the units that the model was generated with.
+pub(crate) struct Values {
+    /// Set of parameters.
+    pub(crate) set: Cow<'static, str>,
+    pub(crate) parameters: Vec<f64>,
+    /// Relative uncertainties of the parameters.
+    pub(crate) uncertainty: Vec<f64>,
+    pub(crate) state_bounds: Vec<Bounds>,
+    pub(crate) input_bounds: Vec<Bounds>,
+}
 
 /// The values of the table at `path` for a model, and for the set called `set` or the table's own.
 ///

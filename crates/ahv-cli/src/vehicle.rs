@@ -15,7 +15,7 @@ use crate::labels::Labels;
 use crate::names;
 use crate::output::Pairs;
 use crate::registry::{heeded, models};
-use crate::table;
+use crate::table::{self, Values};
 use crate::units::Units;
 
 /// Model, parameters, choices and units. What is not given is as the table has it.
@@ -163,17 +163,6 @@ pub(crate) struct PointJson {
     pub(crate) input: Pairs<f64>,
     pub(crate) outputs: Pairs<f64>,
     pub(crate) units: Pairs<&'static str>,
-}
-
-/// What a table says of a model, in the units that the model was generated with.
-pub(crate) struct Values {
-    /// Set of parameters.
-    pub(crate) set: Cow<'static, str>,
-    pub(crate) parameters: Vec<f64>,
-    /// Relative uncertainties of the parameters.
-    pub(crate) uncertainty: Vec<f64>,
-    pub(crate) state_bounds: Vec<Bounds>,
-    pub(crate) input_bounds: Vec<Bounds>,
 }
 
 impl VehicleArgs {

@@ -5,8 +5,6 @@ use std::path::PathBuf;
 use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{Core, Pass, Target};
 
-use crate::project::Project;
-
 const PACKAGE: &str = "ahv-models";
 const CORE_PATH: &str = "../crates/ahv-core";
 
@@ -106,10 +104,10 @@ impl Args {
     }
 
     /// The command that brings the tree up to date, with the flags that this one was given.
-    pub(crate) fn mending_command(&self, project: &Project) -> String {
-        // The generator of a repository that holds its own does not need the models to compile.
-        let xtask = project.root.join("generator/ahv_generator").is_dir();
-        let mut command = String::from(if xtask {
+    ///
+    /// The generator of a repository that holds it does not need the models to compile.
+    pub(crate) fn mending_command(&self, holds_generator: bool) -> String {
+        let mut command = String::from(if holds_generator {
             "cargo xtask generate"
         } else {
             "ahv generate"

@@ -158,11 +158,16 @@ pub fn check(args: &Args, surroundings: &Surroundings) -> Result<Checked, Failur
             derive: 0.0,
             emit: start.elapsed().as_secs_f64(),
         };
-        (differences, owners, seconds, args.mending_command(&project))
+        (
+            differences,
+            owners,
+            seconds,
+            args.mending_command(project.holds_generator()),
+        )
     } else {
         let made = derive_and_emit(args, surroundings, &tables, Trusted::default())?;
         let differences = compare::differences(&project.out, &made.tree)?;
-        let mut command = args.mending_command(&project);
+        let mut command = args.mending_command(project.holds_generator());
         if !differences.is_empty() && !is_made_by_generate(args, &project, &tables, &made) {
             command.push_str(" --derive");
         }

@@ -36,6 +36,11 @@ impl Project {
         }
     }
 
+    /// Whether it is the repository of the generator.
+    pub(crate) fn holds_generator(&self) -> bool {
+        self.root.join("generator/ahv_generator").is_dir()
+    }
+
     /// A path as messages and JSON name it: from the project's root, with `/`.
     #[must_use]
     pub fn shown(&self, path: &Path) -> String {
