@@ -39,6 +39,7 @@ mod wording;
 use std::collections::BTreeMap;
 
 pub use ahv_table::{Part, Unreadable};
+pub use c::identifier as c_identifier;
 pub use emit::{AUDIT, Core, Options, Target, emit};
 pub use graph::passes::{Pass, Passes, UnknownPass};
 pub use manifest::{Manifest, sha256};

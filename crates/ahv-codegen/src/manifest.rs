@@ -19,6 +19,9 @@ pub struct Manifest {
     pub ir: BTreeMap<String, String>,
     /// Hash of the templates.
     pub templates: String,
+    /// The language of the models; none for Rust.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub language: Option<String>,
     /// Passes of the emitter that were left out; a tree to keep has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub without_passes: Vec<String>,

@@ -272,8 +272,9 @@ pub(crate) fn readme(subjects: &[Subject<'_>], units: &'static str) -> Result<St
     })? + "\n")
 }
 
-/// A name of a set or table as a part of a C name.
-fn identifier(name: &str) -> String {
+/// The name of a set or table as a part of a C name: in lower case, with `_` for what a C name cannot hold.
+#[must_use]
+pub fn identifier(name: &str) -> String {
     let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     name.to_lowercase().chars().map(letter).collect()
 }
