@@ -60,6 +60,7 @@ struct Code<'a> {
     origin: &'a str,
     heading: String,
     model: &'a str,
+    table: &'a str,
     functions: &'a [Text],
     own: &'a str,
     prefix: &'a str,
@@ -202,12 +203,13 @@ pub(crate) fn model(
     let needs_string = texts
         .iter()
         .any(|text| text.lines.iter().any(|line| line.contains("memset(")));
+    let table = identifier(&program.document.provenance.table);
     let header = Header {
         origin,
         heading: program.model.heading(),
         units: program.document.units.in_words(),
         guard: format!("AHV_{}_H", name.to_uppercase()),
-        table: identifier(&program.document.provenance.table),
+        table: table.clone(),
         structs,
         functions: &texts,
         own: &own,
@@ -218,6 +220,7 @@ pub(crate) fn model(
         origin,
         heading: program.model.heading(),
         model: name,
+        table: &table,
         functions: &texts,
         own: &own,
         prefix: &prefix,

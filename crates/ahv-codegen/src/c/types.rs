@@ -67,7 +67,7 @@ impl Types {
                 let rows = axes[0].names.iter();
                 found.push(Struct {
                     name,
-                    doc: format!("By {}, then by {}.", axes[0].basis, bases(&axes[1..])),
+                    doc: described(axes),
                     fields: rows
                         .map(|row| (inner.clone(), (*row).to_owned(), String::new()))
                         .collect(),
@@ -97,7 +97,7 @@ impl Types {
                 "Noise",
                 "One value for each independent Wiener process",
             ),
-            vector(Basis::Output, "Outputs", "Quantities that people look at"),
+            vector(Basis::Output, "Outputs", "Quantities that are not states"),
         ];
         let stages = [&program.prepared].into_iter().chain(&program.stages);
         let vectors = vectors.into_iter().filter(|it| !it.fields.is_empty());
@@ -125,9 +125,13 @@ fn double() -> String {
     "double".to_owned()
 }
 
-fn bases(axes: &[Axis<'_>]) -> String {
+/// What an array over several axes is.
+fn described(axes: &[Axis<'_>]) -> String {
     let bases: Vec<String> = axes.iter().map(|axis| axis.basis.to_string()).collect();
-    bases.join(", then by ")
+    match bases.as_slice() {
+        [row, column] => format!("A matrix: a row for each {row}, a column for each {column}."),
+        bases => format!("An array: by {}.", bases.join(", then by ")),
+    }
 }
 
 /// The name of a type over several axes.
