@@ -9,45 +9,17 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
-use ahv_codegen::{Options, Table, Target, Tree, emit};
 use ahv_core::{GeneratedModel, ModelList as _, ModelVisitor, Vector};
 use ahv_integrate::{ItoEulerMaruyama, Rk4, StepError};
+use ahv_tests::c::{compile, write_library};
 use ahv_tests::evaluate::{MODELS, evaluate, vector};
 use ahv_tests::vectors::read_oracle;
 use serde_json::Value;
 
-const STRICT: [&str; 8] = [
-    "-std=c99",
-    "-Wall",
-    "-Wextra",
-    "-Wpedantic",
-    "-Wconversion",
-    "-Wshadow",
-    "-Werror",
-    "-ffp-contract=off",
-];
-
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// The C tree of the project's tables.
-fn tree() -> Tree {
-    let read = |path: String| fs::read_to_string(root().join(path)).expect("a file");
-    let names = ["com", "dcom", "flexible_mode"];
-    let tables = names.map(|name| {
-        let file = format!("{name}.toml");
-        let text = read(format!("generator/tables/{file}"));
-        Table::parse(&file, &text).expect("a table")
-    });
-    let irs = names.map(|name| (name.to_owned(), read(format!("generated/ir/{name}.json"))));
-    let options = Options {
-        target: Target::C,
-        ..Options::default()
-    };
-    emit(&tables, &irs.into(), &options).expect("a tree")
 }
 
 fn list(value: &Value) -> &[Value] {
@@ -280,20 +252,6 @@ impl Described {
     }
 }
 
-fn compiler() -> String {
-    std::env::var("CC").unwrap_or_else(|_| "cc".to_owned())
-}
-
-fn run(command: &mut Command, what: &str) -> Vec<u8> {
-    let output = command.output();
-    let output = output.unwrap_or_else(|error| {
-        panic!("{what} does not run ({error}): this test needs a C99 compiler; install gcc or clang, or set CC")
-    });
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{what}: {errors}");
-    output.stdout
-}
-
 /// Compiles a driver with the library and feeds it.
 fn driven(folder: &Path, name: &str, table: &str, program: &str, input: &str) -> Vec<f64> {
     fs::write(folder.join(format!("drive_{name}.c")), program).expect("a file");
@@ -304,16 +262,8 @@ fn driven(folder: &Path, name: &str, table: &str, program: &str, input: &str) ->
         format!("src/{table}_parameters.c"),
         "src/ahv_elementary.c".to_owned(),
     ];
-    let mut command = Command::new(compiler());
-    command
-        .current_dir(folder)
-        .args(STRICT)
-        .args(["-O2", "-Isrc", "-o"]);
-    run(
-        command.arg(&binary).args(sources).arg("-lm"),
-        "the C compiler",
-    );
-    let mut child = Command::new(&binary)
+    compile(folder, &sources, &binary);
+    let mut child = std::process::Command::new(&binary)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
@@ -381,11 +331,7 @@ const DT: f64 = 0.0037;
 #[test]
 fn every_function_and_step_has_the_bits_of_rust() {
     let folder = tempfile::tempdir().expect("a folder");
-    for (path, text) in tree() {
-        let path = folder.path().join(path);
-        fs::create_dir_all(path.parent().expect("a parent")).expect("a folder");
-        fs::write(path, text).expect("a file");
-    }
+    write_library(folder.path());
     for (model, table) in MODELS {
         let described = Described::of(model, table);
         let (program, labels) = described.driver();

@@ -78,7 +78,7 @@ static void flies(const mxArray *state, real_T chosen, const real_T *inputs)
         expect(memcmp(block.outputs[0], &x, sizeof x) == 0, "states");
         expect(memcmp(block.outputs[1], &outputs, sizeof outputs) == 0, "outputs");
         expect(memcmp(block.rates, &rate, sizeof rate) == 0, "derivatives");
-        for (i = 0; i < block.cont_states; i++) {
+        for (i = 0; i < COUNT(DcomState); i++) {
             block.states[i] += 0.001 * block.rates[i];
             now[i] = block.states[i];
         }

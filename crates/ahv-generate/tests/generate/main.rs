@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 mod bad_tables;
+mod c;
 mod owned;
 mod passes;
 mod process;
