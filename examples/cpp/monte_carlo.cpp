@@ -37,23 +37,26 @@ constexpr SdcomInput input = {
 };
 
 // Mean and sum of squared deviations, one number at a time (Welford).
-struct Moments {
-    int count = 0;
-    double mean = 0.0;
-    double squares = 0.0;
-
+class Moments {
+public:
     void add(double value)
     {
         count += 1;
-        const double deviation = value - mean;
-        mean += deviation / count;
-        squares += deviation * (value - mean);
+        const double difference = value - average;
+        average += difference / count;
+        squares += difference * (value - average);
     }
 
+    double mean() const { return average; }
     double deviation() const { return std::sqrt(squares / (count - 1)); }
     double error_of_mean() const { return deviation() / std::sqrt(count); }
     // Of a nearly normal quantity.
     double error_of_deviation() const { return deviation() / std::sqrt(2.0 * (count - 1)); }
+
+private:
+    int count = 0;
+    double average = 0.0;
+    double squares = 0.0;
 };
 
 }  // namespace
@@ -65,7 +68,8 @@ int main()
     SdcomPrepared prepared;
     sdcom_prepare(&parameters, &prepared);
 
-    std::mt19937_64 source(seed);
+    // A seed that stands here makes the run repeatable.
+    std::mt19937_64 source(seed);  // NOLINT(bugprone-random-generator-seed,cert-msc32-c,cert-msc51-cpp)
     std::normal_distribution<double> increment(0.0, std::sqrt(step_s));
     std::array<Moments, rows> moments;
     int lost = 0;
@@ -92,7 +96,7 @@ int main()
     double t = 0.0;
     for (const Moments &row : moments) {
         t += step_s * steps_per_row;
-        std::printf("%7.2f %10.5f %10.5f %10.5f %10.5f\n", t, row.mean, row.error_of_mean(), row.deviation(),
+        std::printf("%7.2f %10.5f %10.5f %10.5f %10.5f\n", t, row.mean(), row.error_of_mean(), row.deviation(),
                     row.error_of_deviation());
     }
     return lost == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -145,7 +145,8 @@ static void mdlTerminate(SimStruct *S)
 }
 
 #ifdef MATLAB_MEX_FILE
-#include "simulink.c"
+/* Such is the interface: an S-function includes its gateway. */
+#include "simulink.c" /* NOLINT(bugprone-suspicious-include) */
 #else
 #include "cg_sfun.h"
 #endif

@@ -5,7 +5,6 @@
 #include "{{ model }}.h"
 
 #include "ahv_elementary.h"
-#include "{{ table }}_parameters.h"
 
 #include <float.h>
 {%- if needs_string %}

@@ -9,7 +9,7 @@
 #ifndef {{ guard }}
 #define {{ guard }}
 
-#include "{{ table }}_parameters.h"
+#include "{{ table }}_parameters.h" /* IWYU pragma: export */
 
 #ifdef __cplusplus
 extern "C" {

@@ -50,15 +50,16 @@ pub fn write_library(folder: &Path) {
     }
 }
 
-/// Compiles sources, which are relative to the library's folder, with warnings denied: by `cc` or what `CC` names.
+/// Compiles sources, which are relative to the library's folder, with these flags and warnings denied: by `cc` or what
+/// `CC` names.
 ///
 /// # Panics
 /// Without a compiler, and where it fails.
-pub fn compile(folder: &Path, sources: &[String], binary: &Path) {
+pub fn compile(folder: &Path, flags: &[&str], sources: &[String], binary: &Path) {
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
     let mut command = Command::new(compiler);
     command.current_dir(folder).args(STRICT);
-    command.args(["-O2", "-Isrc", "-o"]).arg(binary);
+    command.args(flags).args(["-Isrc", "-o"]).arg(binary);
     let output = command.args(sources).arg("-lm").output();
     let output = output.unwrap_or_else(|error| {
         panic!("the C compiler does not run ({error}): this test needs one; install gcc or clang, or set CC")

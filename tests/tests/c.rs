@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
 use ahv_core::{GeneratedModel, ModelList as _, ModelVisitor, Vector};
 use ahv_integrate::{ItoEulerMaruyama, Rk4, StepError};
@@ -252,9 +252,31 @@ impl Described {
     }
 }
 
-/// Compiles a driver with the library and feeds it.
+/// How the library is compiled: for this very processor too, which may have a fused multiply-add.
+const FLAGS: [&[&str]; 3] = [
+    &["-O2"],
+    &["-O0"],
+    if cfg!(target_arch = "x86_64") {
+        &["-O3", "-march=native"]
+    } else {
+        &["-O3"]
+    },
+];
+
+/// What a driver prints, compiled in each of these ways: the same numbers.
 fn driven(folder: &Path, name: &str, table: &str, program: &str, input: &str) -> Vec<f64> {
     fs::write(folder.join(format!("drive_{name}.c")), program).expect("a file");
+    let [first, others @ ..] = FLAGS.map(|flags| run(folder, flags, name, table, input));
+    for (flags, other) in FLAGS[1..].iter().zip(others) {
+        let mut pairs = first.iter().zip(&other);
+        assert_eq!(first.len(), other.len(), "{name} {flags:?}");
+        assert!(pairs.all(|(a, b)| same(*a, *b)), "{name} {flags:?}");
+    }
+    first
+}
+
+/// Compiles a driver with the library and feeds it.
+fn run(folder: &Path, flags: &[&str], name: &str, table: &str, input: &str) -> Vec<f64> {
     let binary = folder.join(format!("drive_{name}"));
     let sources = [
         format!("drive_{name}.c"),
@@ -262,8 +284,8 @@ fn driven(folder: &Path, name: &str, table: &str, program: &str, input: &str) ->
         format!("src/{table}_parameters.c"),
         "src/ahv_elementary.c".to_owned(),
     ];
-    compile(folder, &sources, &binary);
-    let mut child = std::process::Command::new(&binary)
+    compile(folder, flags, &sources, &binary);
+    let mut child = Command::new(&binary)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()

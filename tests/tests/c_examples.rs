@@ -78,7 +78,7 @@ fn the_example_in_c_prints_the_flight_of_the_rust() {
     let mut sources = vec![example.to_string_lossy().into_owned()];
     sources.extend(library.map(|name| format!("src/{name}.c")));
     let binary = folder.path().join("fly");
-    compile(folder.path(), &sources, &binary);
+    compile(folder.path(), &["-O2"], &sources, &binary);
     let output = Command::new(&binary).output().expect("the example runs");
     assert!(output.status.success());
     let printed = String::from_utf8(output.stdout).expect("text");

@@ -14,6 +14,14 @@ const PAGE: &str = "examples/README.md";
 /// Where those commands find the library.
 const LIBRARY: &str = "generated/c/src";
 
+/// The sources of the examples.
+const EXAMPLES: [&str; 4] = [
+    "examples/c/fly.c",
+    "examples/cpp/monte_carlo.cpp",
+    "examples/simulink/ahv_dcom.c",
+    "examples/simulink/stub/drive.c",
+];
+
 /// What may not warn, in C and C++.
 const STRICT: [&str; 7] = [
     "-Wall",
@@ -82,7 +90,9 @@ pub(crate) fn run(all: bool) -> Result<(), String> {
     shell::run(cppcheck.arg("-DMATLAB_MEX_FILE").args(&sources))?;
     if let Some(tidy) = tidy {
         println!("clang-tidy");
-        for_all(&sources, |source| tidied(&tidy, source))?;
+        let mut sources = sources;
+        sources.extend(EXAMPLES.map(|it| shell::root().join(it)));
+        for_all(&sources, |source| tidied(&tidy, &library, source))?;
     }
     Ok(())
 }
@@ -166,11 +176,18 @@ fn as_cpp(compiler: &Compiler, source: &Path) -> Result<(), String> {
     shell::messages(command.args(STRICT).arg(source)).map(drop)
 }
 
-fn tidied(tidy: &Path, source: &Path) -> Result<(), String> {
+/// clang-tidy of the library and the examples.
+fn tidied(tidy: &Path, library: &Path, source: &Path) -> Result<(), String> {
+    let is_c = source.extension().is_some_and(|it| it == "c");
+    let standard = if is_c { "-std=c99" } else { "-std=c++17" };
     let mut command = shell::program(tidy);
     let checks = format!("--checks={TIDY}");
     command.args(["--quiet", &checks, "--warnings-as-errors=*"]);
-    command.arg(source).args(["--", "-std=c99"]);
+    command
+        .arg(source)
+        .args(["--", standard, "-I"])
+        .arg(library);
+    command.args(["-Iexamples/simulink/stub", "-DMATLAB_MEX_FILE"]);
     shell::run(command.args(&STRICT[..5]))
 }
 

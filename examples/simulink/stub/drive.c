@@ -5,6 +5,7 @@
 
 #include "dcom.h"
 #include "methods.h"
+#include "simstruc.h"
 
 #define COUNT(type) ((int_T)(sizeof(type) / sizeof(real_T)))
 #define COUNT_OF_STATES (sizeof(DcomState) / sizeof(real_T))
@@ -19,6 +20,24 @@ static void expect(int holds, const char *what)
         (void)fprintf(stderr, "the S-function fails: %s\n", what);
         exit(EXIT_FAILURE);
     }
+}
+
+int_T ssSetNumInputPorts(SimStruct *S, int_T count)
+{
+    S->input_ports = count;
+    return count <= STUB_PORTS;
+}
+
+int_T ssSetNumOutputPorts(SimStruct *S, int_T count)
+{
+    S->output_ports = count;
+    return count <= STUB_PORTS;
+}
+
+/* Whether two objects have the same bits. */
+static int same(const void *a, const void *b, size_t size)
+{
+    return memcmp(a, b, size) == 0;
 }
 
 /* A block with its parameters and inputs, before any call. */
@@ -75,9 +94,9 @@ static void flies(const mxArray *state, real_T chosen, const real_T *inputs)
         dcom_drift(&x, &INPUT, &p, &rate);
         stub_methods.outputs(&block, 0);
         stub_methods.derivatives(&block);
-        expect(memcmp(block.outputs[0], &x, sizeof x) == 0, "states");
-        expect(memcmp(block.outputs[1], &outputs, sizeof outputs) == 0, "outputs");
-        expect(memcmp(block.rates, &rate, sizeof rate) == 0, "derivatives");
+        expect(same(block.outputs[0], &x, sizeof x), "states");
+        expect(same(block.outputs[1], &outputs, sizeof outputs), "outputs");
+        expect(same(block.rates, &rate, sizeof rate), "derivatives");
         for (i = 0; i < COUNT(DcomState); i++) {
             block.states[i] += 0.001 * block.rates[i];
             now[i] = block.states[i];

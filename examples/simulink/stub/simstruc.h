@@ -1,7 +1,7 @@
 /* A stub of `simstruc.h`: NOT MathWorks' header, and no copy of it.
  *
- * It declares what `ahv_dcom.c` uses of the S-function interface, by the public names, over a struct of its own, so that
- * the file compiles and runs in the tests without MATLAB. It shows that the S-function computes what the library
+ * It declares what `ahv_dcom.c` uses of the S-function interface, by the public names, over a struct of its own, so
+ * that the file compiles and runs in the tests without MATLAB. It shows that the S-function computes what the library
  * computes; it does not show that Simulink accepts it: nothing was run there.
  */
 #ifndef AHV_STUB_SIMSTRUC_H
@@ -60,6 +60,10 @@ typedef struct SimStruct {
     real_T outputs[STUB_PORTS][STUB_NUMBERS];
 } SimStruct;
 
+/* Whether there can be that many ports. */
+int_T ssSetNumInputPorts(SimStruct *S, int_T count);
+int_T ssSetNumOutputPorts(SimStruct *S, int_T count);
+
 #define ssSetErrorStatus(S, text) ((S)->error = (text))
 #define ssGetErrorStatus(S) ((S)->error)
 #define ssSetNumSFcnParams(S, n) ((S)->asked_parameters = (n))
@@ -69,8 +73,6 @@ typedef struct SimStruct {
 #define ssSetSFcnParamTunable(S, i, yes) ((void)(S), (void)(i), (void)(yes))
 #define ssSetNumContStates(S, n) ((S)->cont_states = (n))
 #define ssSetNumDiscStates(S, n) ((S)->disc_states = (n))
-#define ssSetNumInputPorts(S, n) ((S)->input_ports = (n), (n) <= STUB_PORTS)
-#define ssSetNumOutputPorts(S, n) ((S)->output_ports = (n), (n) <= STUB_PORTS)
 #define ssSetInputPortWidth(S, port, n) ((S)->input_width[port] = (n))
 #define ssSetInputPortDirectFeedThrough(S, port, yes) ((S)->feed_through[port] = (yes))
 #define ssSetOutputPortWidth(S, port, n) ((S)->output_width[port] = (n))

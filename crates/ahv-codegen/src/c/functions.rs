@@ -526,6 +526,15 @@ fn result_name(function: &Function<'_>, output: usize) -> String {
 
 fn documentation(function: &Function<'_>) -> Vec<String> {
     let mut docs = summary(function.ir);
+    let lists = function
+        .shapes
+        .iter()
+        .zip(0..)
+        .filter(|(it, _)| it.is_list());
+    docs.extend(lists.map(|(shape, position)| {
+        let (name, count) = (result_name(function, position), shape.axes[0].names.len());
+        format!("`{name}` holds {count} numbers, one for each mode.")
+    }));
     docs.push(format!("{}.", capitalised(&function.cost.describe())));
     docs
 }

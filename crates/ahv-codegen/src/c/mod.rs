@@ -60,7 +60,6 @@ struct Code<'a> {
     origin: &'a str,
     heading: String,
     model: &'a str,
-    table: &'a str,
     functions: &'a [Text],
     own: &'a str,
     prefix: &'a str,
@@ -203,13 +202,12 @@ pub(crate) fn model(
     let needs_string = texts
         .iter()
         .any(|text| text.lines.iter().any(|line| line.contains("memset(")));
-    let table = identifier(&program.document.provenance.table);
     let header = Header {
         origin,
         heading: program.model.heading(),
         units: program.document.units.in_words(),
         guard: format!("AHV_{}_H", name.to_uppercase()),
-        table: table.clone(),
+        table: identifier(&program.document.provenance.table),
         structs,
         functions: &texts,
         own: &own,
@@ -220,7 +218,6 @@ pub(crate) fn model(
         origin,
         heading: program.model.heading(),
         model: name,
-        table: &table,
         functions: &texts,
         own: &own,
         prefix: &prefix,
