@@ -39,8 +39,9 @@ static const double COS[6] = {
 
 /* (e^r - 1 - r)/r^2 as a polynomial in r for |r| <= ln 2/2; relative error of e^r 2^-56. */
 static const double EXP[10] = {
-    0.5000000000000011,    0.16666666666666413,    0.041666666666530155,   0.008333333333494465, 0.0013888888943630188,
-    0.00019841269506571267, 2.4801493098816138e-05, 2.75575863808365e-06, 2.763024841408471e-07, 2.500005928835836e-08,
+    0.5000000000000011,     0.16666666666666413,    0.041666666666530155,   0.008333333333494465,
+    0.0013888888943630188,  0.00019841269506571267, 2.4801493098816138e-05, 2.75575863808365e-06,
+    2.763024841408471e-07,  2.500005928835836e-08,
 };
 
 /* pi/2 in parts of 33 bits and the rest, so that a whole multiple of a part below 2^20 is exact. */
@@ -95,7 +96,7 @@ static int32_t exponent_of(double x) {
     return (int32_t)((to_bits(x) >> 52U) & 0x7FFU) - 1023;
 }
 
-/* --- Angles up to 1e6 rad ---------------------------------------------------------------------------------------- */
+/* --- Angles up to 1e6 rad --------------------------------------------------------------------------------------- */
 
 /* A polynomial of six coefficients by Estrin's scheme: three short chains instead of a long one. */
 static double cubic_pairs(const double c[6], double z, double z_2) {
@@ -145,7 +146,7 @@ static void reduced_sin_cos(double x, double *sine, double *cosine) {
     turn(to_bits(shifted), sine, cosine);
 }
 
-/* --- Angles above 1e6 rad, rounded as in msun --------------------------------------------------------------------- */
+/* --- Angles above 1e6 rad, rounded as in msun ------------------------------------------------------------------- */
 
 /* Below these bits, those of 2^20 * pi/2 without the last 32, the parts of pi/2 suffice for the reduction. */
 static const uint64_t LARGEST_BY_PARTS = UINT64_C(0x413921FB00000000);
@@ -225,7 +226,11 @@ static Reduced reduced_by_parts(double x) {
 
 /* Digits 0 to `last` of angle * 2/pi. Digits of 2/pi before `position` - 2 would add multiples of 8 and are left out.
  * Digit 0 keeps what is above 24 bits. */
-static void multiply_digits(const uint64_t angle[3], int32_t position, int32_t last, uint64_t digits[LAST_DIGIT + 1]) {
+static void multiply_digits(
+    const uint64_t angle[3],
+    int32_t position,
+    int32_t last,
+    uint64_t digits[LAST_DIGIT + 1]) {
     uint64_t sum = 0U;
     for (int32_t i = last; i >= 0; i--) {
         for (int32_t j = 0; j < 3; j++) {
@@ -243,8 +248,8 @@ static void multiply_digits(const uint64_t angle[3], int32_t position, int32_t l
     }
 }
 
-/* Splits digits into whole quarters and the fraction; a fraction from 1/2 on becomes 1 less the fraction, negative, and
- * a quarter more. */
+/* Splits digits into whole quarters and the fraction; a fraction from 1/2 on becomes 1 less the fraction, negative,
+ * and a quarter more. */
 static void split_quarters(Fraction *number) {
     /* Digits 0 and 1 in one: the point stands in either. What falls off are multiples of 8 quarters. */
     const uint32_t fraction_bits = (uint32_t)(DIGIT_BITS - number->exponent);
@@ -381,7 +386,7 @@ static void large_angle_sin_cos(double x, double *sine, double *cosine) {
     }
 }
 
-/* --- Exponential -------------------------------------------------------------------------------------------------- */
+/* --- Exponential ------------------------------------------------------------------------------------------------ */
 
 /* e^x for |x| <= 708. */
 static double moderate_exp(double x) {
@@ -430,7 +435,7 @@ static double extreme_exp(double x) {
     return (fraction * power_of_two(doublings / 2)) * power_of_two(doublings - (doublings / 2));
 }
 
-/* --- What the header offers --------------------------------------------------------------------------------------- */
+/* --- What the header offers ------------------------------------------------------------------------------------- */
 
 double ahv_exp(double x) {
     const double size = magnitude(x);

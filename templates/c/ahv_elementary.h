@@ -37,9 +37,11 @@
 #endif
 #endif
 
-/* Stands at the head of a source file, outside functions. gcc has not the standard pragma but one of its own. */
+/* Stands at the head of a source file, outside functions. gcc has not the standard pragma but one of its own; and its
+ * vectorisers fuse products and sums even with -ffp-contract=off, as gcc 12 does at -O3 -mfma. */
 #if defined(__GNUC__) && !defined(__clang__)
-#define AHV_NO_CONTRACTION _Pragma("GCC optimize (\"-ffp-contract=off\")")
+#define AHV_NO_CONTRACTION \
+    _Pragma("GCC optimize (\"-ffp-contract=off\", \"-fno-tree-slp-vectorize\", \"-fno-tree-loop-vectorize\")")
 #else
 #define AHV_NO_CONTRACTION _Pragma("STDC FP_CONTRACT OFF")
 #endif
@@ -48,12 +50,12 @@
 extern "C" {
 #endif
 
-/* e to the power x, to less than 1 ulp of a normal result. Infinity above about 709.78, subnormal below about -708.40,
- * 0 below about -745.13; NaN of NaN. */
+/* e to the power x, to less than 1 ulp of a normal result. Infinity above about 709.78, subnormal below about
+ * -708.40, 0 below about -745.13; NaN of NaN. */
 double ahv_exp(double x);
 
-/* Sine and cosine of an angle in rad, each to less than 1 ulp; they share the reduction of the angle. Any finite angle;
- * NaN of infinity and NaN. The sine of -0 is +0. `sine` and `cosine` must not be null. */
+/* Sine and cosine of an angle in rad, each to less than 1 ulp; they share the reduction of the angle. Any finite
+ * angle; NaN of infinity and NaN. The sine of -0 is +0. `sine` and `cosine` must not be null. */
 void ahv_sin_cos(double angle, double *sine, double *cosine);
 
 /* The sine that `ahv_sin_cos` gives. */

@@ -4,6 +4,8 @@
 
 #include "{{ model }}.h"
 
+#include "ahv_elementary.h"
+
 #include <float.h>
 {%- if needs_string %}
 #include <string.h>
@@ -50,7 +52,11 @@ static {{ own }}State {{ prefix }}moved(const {{ own }}State *x, double h, const
     return moved;
 }
 
-int {{ prefix }}rk4_step(const {{ own }}Prepared *p, const {{ own }}Input *u, double dt, {{ own }}State *x)
+int {{ prefix }}rk4_step(
+    const {{ own }}Prepared *p,
+    const {{ own }}Input *u,
+    double dt,
+    {{ own }}State *x)
 {
     const double half = dt * 0.5;
     const double sixth = dt * (1.0 / 6.0);

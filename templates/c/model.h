@@ -2,14 +2,14 @@
 
 /* {{ heading }}.
  *
- * Units are {{ units }}; every field says its own.
+ * Units are {{ units }}; every field says its own. A rate has the unit of its state
+ * per second; an entry of a Jacobian has the unit of its row over that of its column.
  * No function allocates, keeps state or touches errno; outside the model's domain a result may be infinite or NaN.
  * Each function has the bits of the generated Rust. */
 #ifndef {{ guard }}
 #define {{ guard }}
 
-#include "ahv_elementary.h"
-#include "{{ table }}_parameters.h"
+#include "{{ table }}_parameters.h" /* IWYU pragma: export */
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,13 +31,17 @@ typedef struct {{ it.name }} {
 
 /* One step of the classical Runge-Kutta scheme of order 4, dt in s, at held inputs.
  *
- * Returns 0; -1 where dt is not a positive number; k where component k of the state, counted from 1, would not be a
- * number: the state is then as it was. */
-int {{ prefix }}rk4_step(const {{ own }}Prepared *p, const {{ own }}Input *u, double dt, {{ own }}State *x);
+ * Returns 0 if the step was made. Otherwise the state is as it was, and the result is -1 if dt is not a positive
+ * number, or k if component k of the state, counted from 1, would not be finite. */
+int {{ prefix }}rk4_step(
+    const {{ own }}Prepared *p,
+    const {{ own }}Input *u,
+    double dt,
+    {{ own }}State *x);
 {%- if is_stochastic %}
 
-/* One step of the Euler-Maruyama scheme in the sense of Ito, dt in s, at held inputs. The increments `dw` of the Wiener
- * processes have variance dt. Returns as the step above. */
+/* One step of the Euler-Maruyama scheme in the sense of Ito, dt in s, at held inputs. The increments `dw` of the
+ * Wiener processes have mean 0 and variance dt. Returns as {{ prefix }}rk4_step. */
 int {{ prefix }}euler_maruyama_step(
     const {{ own }}Prepared *p,
     const {{ own }}Input *u,

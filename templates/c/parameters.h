@@ -23,7 +23,7 @@ static const {{ own }}Parameters {{ prefix }}nominal = {
 };
 {%- for set in subject.document.sets.iter().skip(1) %}
 
-/* Replaces what the set {{ set.name }} replaces. */
+/* Writes the values of the set {{ set.name }} into the parameters; what the set does not name stays. */
 void {{ prefix }}set_{{ crate::c::identifier(set.name) }}({{ own }}Parameters *p);
 {%- endfor %}
 {%- for choice in subject.document.choices %}
@@ -35,7 +35,7 @@ typedef enum {{ own }}{{ choice.type_name }} {
 {%- endfor %}
 } {{ own }}{{ choice.type_name }};
 
-/* Makes this choice. */
+/* Writes the parameters of this choice; a number that is no choice changes nothing. */
 void {{ prefix }}choose_{{ choice.name }}({{ own }}Parameters *p, {{ own }}{{ choice.type_name }} choice);
 {%- endfor %}
 

@@ -11,43 +11,15 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use ahv_codegen::{Options, Table, Target, Tree, emit};
 use ahv_core::{GeneratedModel, ModelList as _, ModelVisitor, Vector};
 use ahv_integrate::{ItoEulerMaruyama, Rk4, StepError};
+use ahv_tests::c::{compile, write_library};
 use ahv_tests::evaluate::{MODELS, evaluate, vector};
 use ahv_tests::vectors::read_oracle;
 use serde_json::Value;
 
-const STRICT: [&str; 8] = [
-    "-std=c99",
-    "-Wall",
-    "-Wextra",
-    "-Wpedantic",
-    "-Wconversion",
-    "-Wshadow",
-    "-Werror",
-    "-ffp-contract=off",
-];
-
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// The C tree of the project's tables.
-fn tree() -> Tree {
-    let read = |path: String| fs::read_to_string(root().join(path)).expect("a file");
-    let names = ["com", "dcom", "flexible_mode"];
-    let tables = names.map(|name| {
-        let file = format!("{name}.toml");
-        let text = read(format!("generator/tables/{file}"));
-        Table::parse(&file, &text).expect("a table")
-    });
-    let irs = names.map(|name| (name.to_owned(), read(format!("generated/ir/{name}.json"))));
-    let options = Options {
-        target: Target::C,
-        ..Options::default()
-    };
-    emit(&tables, &irs.into(), &options).expect("a tree")
 }
 
 fn list(value: &Value) -> &[Value] {
@@ -280,23 +252,31 @@ impl Described {
     }
 }
 
-fn compiler() -> String {
-    std::env::var("CC").unwrap_or_else(|_| "cc".to_owned())
-}
+/// How the library is compiled: for this very processor too, which may have a fused multiply-add.
+const FLAGS: [&[&str]; 3] = [
+    &["-O2"],
+    &["-O0"],
+    if cfg!(target_arch = "x86_64") {
+        &["-O3", "-march=native"]
+    } else {
+        &["-O3"]
+    },
+];
 
-fn run(command: &mut Command, what: &str) -> Vec<u8> {
-    let output = command.output();
-    let output = output.unwrap_or_else(|error| {
-        panic!("{what} does not run ({error}): this test needs a C99 compiler; install gcc or clang, or set CC")
-    });
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{what}: {errors}");
-    output.stdout
+/// What a driver prints, compiled in each of these ways: the same numbers.
+fn driven(folder: &Path, name: &str, table: &str, program: &str, input: &str) -> Vec<f64> {
+    fs::write(folder.join(format!("drive_{name}.c")), program).expect("a file");
+    let [first, others @ ..] = FLAGS.map(|flags| run(folder, flags, name, table, input));
+    for (flags, other) in FLAGS[1..].iter().zip(others) {
+        let mut pairs = first.iter().zip(&other);
+        assert_eq!(first.len(), other.len(), "{name} {flags:?}");
+        assert!(pairs.all(|(a, b)| same(*a, *b)), "{name} {flags:?}");
+    }
+    first
 }
 
 /// Compiles a driver with the library and feeds it.
-fn driven(folder: &Path, name: &str, table: &str, program: &str, input: &str) -> Vec<f64> {
-    fs::write(folder.join(format!("drive_{name}.c")), program).expect("a file");
+fn run(folder: &Path, flags: &[&str], name: &str, table: &str, input: &str) -> Vec<f64> {
     let binary = folder.join(format!("drive_{name}"));
     let sources = [
         format!("drive_{name}.c"),
@@ -304,15 +284,7 @@ fn driven(folder: &Path, name: &str, table: &str, program: &str, input: &str) ->
         format!("src/{table}_parameters.c"),
         "src/ahv_elementary.c".to_owned(),
     ];
-    let mut command = Command::new(compiler());
-    command
-        .current_dir(folder)
-        .args(STRICT)
-        .args(["-O2", "-Isrc", "-o"]);
-    run(
-        command.arg(&binary).args(sources).arg("-lm"),
-        "the C compiler",
-    );
+    compile(folder, flags, &sources, &binary);
     let mut child = Command::new(&binary)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -381,11 +353,7 @@ const DT: f64 = 0.0037;
 #[test]
 fn every_function_and_step_has_the_bits_of_rust() {
     let folder = tempfile::tempdir().expect("a folder");
-    for (path, text) in tree() {
-        let path = folder.path().join(path);
-        fs::create_dir_all(path.parent().expect("a parent")).expect("a folder");
-        fs::write(path, text).expect("a file");
-    }
+    write_library(folder.path());
     for (model, table) in MODELS {
         let described = Described::of(model, table);
         let (program, labels) = described.driver();

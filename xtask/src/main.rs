@@ -4,6 +4,7 @@
 mod audit;
 mod bench;
 mod book;
+mod c;
 mod demo;
 mod determinism;
 mod firmware;
@@ -47,6 +48,12 @@ enum Task {
     },
     /// Compare the bits of every stepper between builds of all optimisation levels
     Determinism,
+    /// Compile the C library with every compiler found, build and run its examples, and run the checkers of C
+    C {
+        /// Also the pinned clang and clang-tidy, which are large
+        #[arg(long)]
+        all: bool,
+    },
     /// Generate models of other tables than this repository's, and run an `ahv` of their own over each
     OwnVehicle,
     /// Draw and compute the reference vectors of the tests again
@@ -84,6 +91,7 @@ fn main() -> ExitCode {
         Task::Test { all } => steps::run(all),
         Task::Audit { points, seeds } => audit::run(points, seeds),
         Task::Determinism => determinism::run(),
+        Task::C { all } => c::run(all),
         Task::OwnVehicle => own_vehicle::run(),
         Task::Vectors => vectors::run(),
         Task::Names => names::run(),

@@ -24,6 +24,11 @@ pub(crate) fn development() -> Result<PathBuf, String> {
     environment("development", "requirements-dev.txt")
 }
 
+/// The interpreter that has the large checkers of C: clang and clang-tidy.
+pub(crate) fn checkers_of_c() -> Result<PathBuf, String> {
+    environment("checking C", "requirements-c.txt")
+}
+
 fn environment(purpose: &str, requirements: &str) -> Result<PathBuf, String> {
     let path = shell::root().join("generator").join(requirements);
     let text = fs::read_to_string(&path)

@@ -4,7 +4,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::{
-    audit, book, determinism, firmware, instructions, no_panic, own_vehicle, python, shell,
+    audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, python, shell,
 };
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.
@@ -37,7 +37,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 22] = [
+const STEPS: [Step; 23] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK[..2], &[])
@@ -86,6 +86,7 @@ const STEPS: [Step; 22] = [
     ("consumer, no_std", || {
         bare_metal(|| cargo(&["build", "--lib", "--target", BARE_METAL], &CONSUMER, &[]))
     }),
+    ("c", || c::run(false).map(|()| Outcome::Passed)),
     ("own vehicle", || {
         own_vehicle::run().map(|()| Outcome::Passed)
     }),
@@ -96,7 +97,7 @@ const STEPS: [Step; 22] = [
     ("instructions", counted_calls),
 ];
 /// What takes too long for every change, after all else.
-const MORE: [Step; 3] = [
+const MORE: [Step; 4] = [
     ("clippy of every feature", || {
         cargo(
             &["clippy", "--workspace", "--all-targets", "--all-features"],
@@ -106,6 +107,9 @@ const MORE: [Step; 3] = [
     }),
     ("commands with every feature", || {
         cargo(&["test", "--package", "ahv", "--all-features"], &[], &[])
+    }),
+    ("c with clang and clang-tidy", || {
+        c::run(true).map(|()| Outcome::Passed)
     }),
     ("audit in full", || {
         audit::run(audit::POINTS, audit::SEEDS).map(|()| Outcome::Passed)

@@ -24,6 +24,21 @@ const COMMAND: &str = "ahv generate";
 pub const AUDIT: &str = "audit";
 const AUDIT_PAGE: &str = "docs/audit.md";
 
+/// The templates of the Rust package, for the manifest; those of its documentation stand in `docs`.
+const RUST_TEMPLATES: [&str; 11] = [
+    include_str!("../templates/manifest.toml"),
+    include_str!("../templates/choices.rs"),
+    include_str!("../templates/description.rs"),
+    include_str!("../templates/functions.rs"),
+    include_str!("../templates/lib.rs"),
+    include_str!("../templates/model.rs"),
+    include_str!("../templates/nominal.rs"),
+    include_str!("../templates/parameters.rs"),
+    include_str!("../templates/provenance.rs"),
+    include_str!("../templates/stages.rs"),
+    include_str!("../templates/table.rs"),
+];
+
 /// What the generated package is called and where it finds `ahv-core`.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -47,6 +62,17 @@ pub enum Target {
     Rust,
     /// A C99 library.
     C,
+}
+
+impl Target {
+    /// What the manifest calls the language; it names none for Rust.
+    #[must_use]
+    pub fn language(self) -> Option<&'static str> {
+        match self {
+            Self::Rust => None,
+            Self::C => Some("c"),
+        }
+    }
 }
 
 /// Where the generated package finds `ahv-core`.
@@ -524,30 +550,20 @@ fn check_sets(subject: &Subject<'_>, tree: &Tree) -> Result<(), EmitError> {
     Ok(())
 }
 
+/// The manifest without the hashes of files.
 fn manifest(
     tables: &[Table],
     irs: &BTreeMap<String, String>,
     options: &Options,
     known: &Known,
 ) -> Manifest {
-    let templates: Vec<&str> = [
-        include_str!("../templates/manifest.toml"),
-        include_str!("../templates/choices.rs"),
-        include_str!("../templates/description.rs"),
-        include_str!("../templates/functions.rs"),
-        include_str!("../templates/lib.rs"),
-        include_str!("../templates/model.rs"),
-        include_str!("../templates/nominal.rs"),
-        include_str!("../templates/parameters.rs"),
-        include_str!("../templates/provenance.rs"),
-        include_str!("../templates/stages.rs"),
-        include_str!("../templates/table.rs"),
-    ]
-    .into_iter()
-    .chain(docs::TEMPLATES)
-    .chain(c::TEMPLATES)
-    .chain(c::LIBRARY.map(|(_, text)| text))
-    .collect();
+    let templates = match options.target {
+        Target::Rust => RUST_TEMPLATES.concat() + &docs::TEMPLATES.concat(),
+        Target::C => c::TEMPLATES.concat() + &c::LIBRARY.map(|(_, text)| text).concat(),
+    };
+    // The audit of printed equations is no part of a C library.
+    let has = |name: &str| name != AUDIT || options.target == Target::Rust;
+    let left_out = options.passes.left_out();
     Manifest {
         schema_version: SCHEMA_VERSION,
         emitter: env!("CARGO_PKG_VERSION").to_owned(),
@@ -561,14 +577,12 @@ fn manifest(
             .collect(),
         ir: irs
             .iter()
+            .filter(|(name, _)| has(name))
             .map(|(name, text)| (name.clone(), sha256(text)))
             .collect(),
-        templates: sha256(&templates.concat()),
-        without_passes: options
-            .passes
-            .left_out()
-            .map(|p| p.name().to_owned())
-            .collect(),
+        templates: sha256(&templates),
+        language: options.target.language().map(str::to_owned),
+        without_passes: left_out.map(|p| p.name().to_owned()).collect(),
         files: BTreeMap::new(),
         seal: String::new(),
     }

@@ -42,6 +42,7 @@ mod wording;
 use std::collections::BTreeMap;
 
 pub use ahv_table::{Part, Unreadable};
+pub use c::identifier as c_identifier;
 pub use emit::{AUDIT, Core, Known, Options, Target, emit, emit_again};
 pub use graph::passes::{Pass, Passes, UnknownPass};
 pub use manifest::{Earlier, Manifest, sha256};

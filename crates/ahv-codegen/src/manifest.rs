@@ -31,6 +31,9 @@ pub struct Manifest {
     pub ir: BTreeMap<String, String>,
     /// Hash of the templates.
     pub templates: String,
+    /// The language of the models; none for Rust.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub language: Option<String>,
     /// Passes of the emitter that were left out; a tree to keep has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub without_passes: Vec<String>,
@@ -129,7 +132,8 @@ impl Earlier {
         let emitter = |it: &Manifest| {
             let sources =
                 [&it.emitter, &it.emitter_sources, &it.templates, &it.units].map(Clone::clone);
-            (it.schema_version, sources, it.without_passes.clone())
+            let passes = it.without_passes.clone();
+            (it.schema_version, it.language.clone(), sources, passes)
         };
         emitter(&self.manifest) == emitter(now)
     }

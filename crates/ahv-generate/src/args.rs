@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{Core, Pass, Target};
 
+use crate::failure::Failure;
+
 const PACKAGE: &str = "ahv-models";
 const CORE_PATH: &str = "../crates/ahv-core";
 
-/// Derive the models from the tables and write them as Rust.
+/// Derive the models from the tables and write them as Rust or C.
 ///
 /// Exit code: 0 done (or, with --check, tree and tables agree), 1 they differ, 2 bad input.
 #[derive(Debug, Clone, clap::Args)]
@@ -37,15 +39,15 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 
-    /// Name of the generated package
+    /// Name of the generated package; for Rust
     #[arg(long, value_name = "NAME", default_value = PACKAGE, value_parser = package_name)]
     pub package: String,
 
-    /// Where the generated package finds ahv-core, relative to itself
+    /// Where the generated package finds ahv-core, relative to itself; for Rust
     #[arg(long, value_name = "PATH", default_value = CORE_PATH)]
     pub core_path: String,
 
-    /// Take ahv-core from the workspace around the generated package, whose Cargo.toml says where it comes from
+    /// Take ahv-core from the workspace around the generated package, whose Cargo.toml says where it comes from; for Rust
     #[arg(long, conflicts_with = "core_path")]
     pub core_workspace: bool,
 
@@ -76,6 +78,14 @@ pub enum Language {
 }
 
 impl Language {
+    /// The language as people write it.
+    pub(crate) fn shown(self) -> &'static str {
+        match self {
+            Self::Rust => "Rust",
+            Self::C => "C",
+        }
+    }
+
     /// The folder of the generated files in a project.
     pub(crate) fn folder(self) -> &'static str {
         match self {
@@ -91,6 +101,23 @@ impl Args {
         match self.target {
             Language::Rust => Target::Rust,
             Language::C => Target::C,
+        }
+    }
+
+    /// Refuses what a C library does not have.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let of_rust = [
+            ("--package", self.package != PACKAGE),
+            ("--core-path", self.core_path != CORE_PATH),
+            ("--core-workspace", self.core_workspace),
+        ];
+        let given = of_rust.into_iter().find(|(_, is_given)| *is_given);
+        match given {
+            Some((flag, _)) if self.target == Language::C => Err(Failure::new(format!(
+                "{flag} describes a Rust package, and --target c writes a C library"
+            ))
+            .with_help(format!("leave {flag} out"))),
+            _ => Ok(()),
         }
     }
 

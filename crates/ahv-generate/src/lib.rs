@@ -1,4 +1,4 @@
-//! The act of generating: tables of coefficients in, a tree of Rust models written or checked.
+//! The act of generating: tables of coefficients in, a tree of models in Rust or C written or checked.
 //!
 //! `ahv generate` and `cargo xtask generate` are both [`run`]. This crate never depends on the
 //! generated package, so that it also mends a tree that does not compile.
@@ -123,10 +123,10 @@ fn print(text: &str) -> Result<(), Failure> {
 /// Derives and emits what has changed, and brings the tree on disk up to date.
 ///
 /// # Errors
-/// Bad tables, no usable Python, a signal, or a tree that cannot be written; the tree is then as it was, or the
+/// Flags or a folder of another language, bad tables, no usable Python, a signal, or a tree that cannot be written; the tree is then as it was, or the
 /// message names the files that are new.
 pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, Failure> {
-    let project = Project::locate(args, surroundings);
+    let project = located(args, surroundings)?;
     let tables = Tables::load(&project)?;
     let trusted = if args.derive {
         Trusted::default()
@@ -147,9 +147,9 @@ pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, F
 /// Compares the tree on disk with what the tables give, and writes nothing.
 ///
 /// # Errors
-/// Bad tables, no usable Python, an IR of an unknown schema version, or an unreadable tree.
+/// Flags or a folder of another language, bad tables, no usable Python, an IR of an unknown schema version, or an unreadable tree.
 pub fn check(args: &Args, surroundings: &Surroundings) -> Result<Checked, Failure> {
-    let project = Project::locate(args, surroundings);
+    let project = located(args, surroundings)?;
     let tables = Tables::load(&project)?;
     let start = Instant::now();
     let (differences, owners, seconds, command) = if args.from_ir {
@@ -192,6 +192,14 @@ struct Made {
     /// The tables that were derived.
     derived: Vec<String>,
     seconds: Seconds,
+}
+
+/// The project, where its folder may hold what is asked for.
+fn located(args: &Args, surroundings: &Surroundings) -> Result<Project, Failure> {
+    args.check()?;
+    let project = Project::locate(args, surroundings);
+    manifest::refuse_other_language(args, &project)?;
+    Ok(project)
 }
 
 fn derive_and_emit(

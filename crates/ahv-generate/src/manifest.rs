@@ -4,7 +4,10 @@ use std::path::Path;
 
 use ahv_codegen::Manifest;
 
+use crate::args::{Args, Language};
+use crate::failure::Failure;
 use crate::files;
+use crate::project::Project;
 
 /// Says from what the tree was made, and what was written.
 pub(crate) const MANIFEST: &str = "manifest.json";
@@ -22,6 +25,26 @@ pub(crate) fn on_disk(out: &Path) -> Vec<Manifest> {
     let sides = sides(&text);
     let parsed = sides.iter().filter_map(|side| Manifest::parse(side).ok());
     parsed.collect()
+}
+
+/// Refuses a folder that holds models in another language: its files would be removed or overwritten.
+pub(crate) fn refuse_other_language(args: &Args, project: &Project) -> Result<(), Failure> {
+    let own = args.target().language();
+    let written = on_disk(&project.out);
+    let Some(other) = written.iter().find(|it| it.language.as_deref() != own) else {
+        return Ok(());
+    };
+    let found = match other.language.as_deref() {
+        None => Language::Rust.shown(),
+        Some("c") => Language::C.shown(),
+        Some(other) => other,
+    };
+    Err(Failure::new(format!(
+        "{} holds models in {found}; models in {} need a folder of their own",
+        project.shown(&project.out),
+        args.target.shown()
+    ))
+    .with_help("name another folder with --out, or another language with --target"))
 }
 
 /// What git merged: the text with one side of each conflict, then with the other.

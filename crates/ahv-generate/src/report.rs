@@ -88,7 +88,7 @@ fn summary(differences: &[(String, Difference)]) -> String {
 pub(crate) struct Owners(BTreeMap<String, String>);
 
 impl Owners {
-    /// A table gives the module of its own name and those of its models.
+    /// A table gives the modules of its own name and of its models, and its parameters in C.
     pub(crate) fn new(tables: &Tables, irs: &BTreeMap<String, String>) -> Self {
         let mut owners = BTreeMap::new();
         for (source, table) in tables.sources.iter().zip(&tables.parsed) {
@@ -103,7 +103,10 @@ impl Owners {
             {
                 owners.insert(name.to_owned(), source.shown.clone());
             }
-            owners.insert(table.name.clone(), source.shown.clone());
+            let parameters = format!("{}_parameters", ahv_codegen::c_identifier(&table.name));
+            for name in [table.name.clone(), parameters] {
+                owners.insert(name, source.shown.clone());
+            }
         }
         Self(owners)
     }

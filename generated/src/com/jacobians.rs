@@ -71,7 +71,8 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity to eta_2.
+/// Entries of [`jacobians_values`]: derivatives by velocity, altitude, gamma, alpha, pitch_rate, eta_1,
+/// eta_dot_1, eta_2.
 #[inline(always)]
 fn jacobians_by_velocity_to_eta_2<R: Real>(
     state: &mut StateJacobianEntries<R>,
@@ -167,7 +168,7 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
     state.eta_dot_2_by_eta_2 = p.d_eta_acceleration_2_d_eta_2;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by eta_dot_2 to delta_e.
+/// Entries of [`jacobians_values`]: derivatives by eta_dot_2, phi, delta_e.
 #[inline(always)]
 fn jacobians_by_eta_dot_2_to_delta_e<R: Real>(
     state: &mut StateJacobianEntries<R>,
@@ -208,7 +209,7 @@ fn jacobians_by_eta_dot_2_to_delta_e<R: Real>(
     input.eta_dot_2_by_delta_e = d_eta_acceleration_2_d_delta_e;
 }
 
-/// [`jacobians_values`] from what is computed once.
+/// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
     x: &State<R>,

@@ -3,8 +3,8 @@
 //! Functions of COM. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Slopes, State,
-    intermediates, slopes,
+    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes,
+    State, intermediates, sensitivities, slopes,
 };
 
 use ahv_core::Real;
@@ -170,7 +170,7 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle_environment.
+/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle, environment.
 #[inline(always)]
 fn parameter_jacobian_by_vehicle_environment<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -178,6 +178,7 @@ fn parameter_jacobian_by_vehicle_environment<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_force_turn_d_m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
@@ -209,13 +210,12 @@ fn parameter_jacobian_by_vehicle_environment<R: Real>(
     let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_effective_inertia; // rad/s^2/ft
     let d_eta_acceleration_1_d_h_s = -p.psi_1 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_eta_acceleration_2_d_h_s = -p.psi_2 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
-    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
             * (x.velocity
-                - p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
+                - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
-                * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
+                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
 
     parameter.velocity_by_m = -i.path_force * p.inv_m_2;
@@ -247,7 +247,7 @@ fn parameter_jacobian_by_vehicle_environment<R: Real>(
     parameter.velocity_by_h_s = d_velocity_rate_d_h_s;
     parameter.velocity_by_g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity_by_r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e
-        * i.radius_ratio * slope_of_radius_ratio_in_earth_curvature;
+        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
     parameter.gamma_by_rho_0 = i.c_l * p.half_s_over_m * x.velocity * i.density_ratio;
     parameter.gamma_by_h_0 = d_force_turn_d_h_0;
     parameter.gamma_by_h_s = d_force_turn_d_h_s;
@@ -273,7 +273,7 @@ fn parameter_jacobian_by_vehicle_environment<R: Real>(
     parameter.eta_dot_2_by_h_s = d_eta_acceleration_2_d_h_s;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by choices to c_l.
+/// Entries of [`parameter_jacobian_values`]: derivatives by choices, t, c_d, c_l.
 #[inline(always)]
 fn parameter_jacobian_by_choices_to_c_l<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -281,18 +281,19 @@ fn parameter_jacobian_by_choices_to_c_l<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
+    q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
-            * (p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity
+            * (q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity
                 - x.velocity)
-            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
+            - x.velocity * p.earth_curvature
+                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
 
     parameter.velocity_by_spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e
-        * i.radius_ratio * slope_of_radius_ratio_in_earth_curvature;
+        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
     parameter.gamma_by_spherical_earth = d_gamma_rate_d_spherical_earth;
     parameter.alpha_by_spherical_earth = -d_gamma_rate_d_spherical_earth;
     parameter.velocity_by_t_phi_alpha_3 = i.cos_alpha * u.phi * i.alpha_3 * p.inv_m;
@@ -368,7 +369,7 @@ fn parameter_jacobian_by_choices_to_c_l<R: Real>(
     parameter.alpha_by_c_l_0 = -i.turn_factor;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by modes to n_1.
+/// Entries of [`parameter_jacobian_values`]: derivatives by modes, c_m, n_1.
 #[inline(always)]
 fn parameter_jacobian_by_modes_to_n_1<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -376,6 +377,7 @@ fn parameter_jacobian_by_modes_to_n_1<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
+    q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_modal_load_1_d_omega_1 = -(x.eta_dot_1 * p.two_zeta_1
@@ -462,9 +464,8 @@ fn parameter_jacobian_by_modes_to_n_1<R: Real>(
     parameter.eta_dot_1_by_n_1_alpha_2 = d_eta_acceleration_1_d_n_1_alpha_2;
     parameter.eta_dot_1_by_n_1_alpha = d_eta_acceleration_1_d_n_1_alpha;
     parameter.eta_dot_1_by_n_1_0 = p.d_eta_acceleration_1_d_n_1_0;
-    parameter.eta_dot_2_by_n_1_alpha_2 = p.psi_1_psi_2_over_effective_inertia
-        * i.alpha_2;
-    parameter.eta_dot_2_by_n_1_alpha = p.psi_1_psi_2_over_effective_inertia * x.alpha;
+    parameter.eta_dot_2_by_n_1_alpha_2 = q.psi_1_psi_2_over_effective_inertia_alpha_2;
+    parameter.eta_dot_2_by_n_1_alpha = q.psi_1_psi_2_over_effective_inertia_alpha;
     parameter.eta_dot_2_by_n_1_0 = p.psi_1_psi_2_over_effective_inertia;
 }
 
@@ -476,6 +477,7 @@ fn parameter_jacobian_by_n_2<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
+    q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_eta_acceleration_2_d_n_2_alpha_2 = i.alpha_2
@@ -489,9 +491,8 @@ fn parameter_jacobian_by_n_2<R: Real>(
     parameter.pitch_rate_by_n_2_alpha = -p.psi_2_over_effective_inertia * x.alpha;
     parameter.pitch_rate_by_n_2_delta_e = -p.psi_2_over_effective_inertia * u.delta_e;
     parameter.pitch_rate_by_n_2_0 = p.minus_psi_2_over_effective_inertia;
-    parameter.eta_dot_1_by_n_2_alpha_2 = p.psi_1_psi_2_over_effective_inertia
-        * i.alpha_2;
-    parameter.eta_dot_1_by_n_2_alpha = p.psi_1_psi_2_over_effective_inertia * x.alpha;
+    parameter.eta_dot_1_by_n_2_alpha_2 = q.psi_1_psi_2_over_effective_inertia_alpha_2;
+    parameter.eta_dot_1_by_n_2_alpha = q.psi_1_psi_2_over_effective_inertia_alpha;
     parameter.eta_dot_1_by_n_2_delta_e = p.psi_1_psi_2_over_effective_inertia
         * u.delta_e;
     parameter.eta_dot_1_by_n_2_0 = p.psi_1_psi_2_over_effective_inertia;
@@ -514,11 +515,12 @@ pub fn parameter_jacobian_values<R: Real>(
 ) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
+    let q = sensitivities(x, u, p, &i);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
-    parameter_jacobian_by_vehicle_environment(&mut parameter, x, p, &i, &s);
-    parameter_jacobian_by_choices_to_c_l(&mut parameter, x, u, p, &i);
-    parameter_jacobian_by_modes_to_n_1(&mut parameter, x, u, p, &i);
-    parameter_jacobian_by_n_2(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_vehicle_environment(&mut parameter, x, p, &i, &s, &q);
+    parameter_jacobian_by_choices_to_c_l(&mut parameter, x, u, p, &i, &q);
+    parameter_jacobian_by_modes_to_n_1(&mut parameter, x, u, p, &i, &q);
+    parameter_jacobian_by_n_2(&mut parameter, x, u, p, &i, &q);
     parameter
 }
 

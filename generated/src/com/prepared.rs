@@ -343,18 +343,19 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Derivatives with respect to eta_dot_2
     c.d_pitch_acceleration_d_eta_dot_2 = p.psi_2 * c.inv_effective_inertia * c.damping_2; // rad/s/ft^0.5/slug^0.5
     c.d_eta_acceleration_1_d_eta_dot_2 = -p.psi_1 * c.d_pitch_acceleration_d_eta_dot_2; // 1/s
+    c.d_eta_acceleration_2_d_eta_dot_2 = -(c.damping_2
+        + p.psi_2 * c.d_pitch_acceleration_d_eta_dot_2); // 1/s
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    c.d_eta_acceleration_2_d_eta_dot_2 = -(c.damping_2
-        + p.psi_2 * c.d_pitch_acceleration_d_eta_dot_2); // 1/s
-
     // Derivatives with respect to parameters
     c.psi_1_2_over_effective_inertia = c.psi_1_2 * c.inv_effective_inertia;
     c.d_eta_acceleration_1_d_n_1_0 = R::ONE + c.psi_1_2_over_effective_inertia;
     c.psi_2_2_over_effective_inertia = c.psi_2_2 * c.inv_effective_inertia;
     c.d_eta_acceleration_2_d_n_2_0 = R::ONE + c.psi_2_2_over_effective_inertia;
+
+    // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
     c.half_s_over_m = R::HALF * p.s * c.inv_m;

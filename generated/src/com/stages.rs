@@ -279,6 +279,46 @@ pub fn slopes<R: Real>(
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
     let d_drag_d_delta_e = i.reference_force * d_c_d_d_delta_e; // lb/ft/rad
     s.d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
+
+    // Further values
     s.inverse_momentum_2 = i.inverse_momentum * i.inverse_momentum;
     s
+}
+
+ahv_core::record! {
+    /// Quantities of the derivatives with respect to parameters that several parts of these need.
+    pub struct Sensitivities<R> {
+        /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
+        /// Earth, 0 where it is flat, ft.
+        pub slope_of_radius_ratio_in_earth_curvature: R,
+        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
+        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
+        /// `psi_1_psi_2_over_effective_inertia * i.alpha_2`.
+        pub psi_1_psi_2_over_effective_inertia_alpha_2: R,
+        /// `psi_1_psi_2_over_effective_inertia * x.alpha`.
+        pub psi_1_psi_2_over_effective_inertia_alpha: R,
+    }
+}
+
+/// Computes [`Sensitivities`].
+#[inline(always)]
+pub fn sensitivities<R: Real>(
+    x: &State<R>,
+    _u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+) -> Sensitivities<R> {
+    let mut q = Sensitivities::splat(R::ZERO);
+
+    // Derivatives with respect to parameters
+    q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+
+    // Further values
+    q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
+    q.psi_1_psi_2_over_effective_inertia_alpha_2 = p.psi_1_psi_2_over_effective_inertia
+        * i.alpha_2;
+    q.psi_1_psi_2_over_effective_inertia_alpha = p.psi_1_psi_2_over_effective_inertia
+        * x.alpha;
+    q
 }

@@ -48,7 +48,7 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`hessian_values`]: derivatives by velocity_altitude.
+/// Entries of [`hessian_values`]: derivatives by velocity, altitude.
 #[inline(always)]
 fn hessian_by_velocity_altitude<R: Real>(
     hessian: &mut HessianEntries<R>,
@@ -144,7 +144,7 @@ fn hessian_by_velocity_altitude<R: Real>(
     hessian.pitch_rate_by_altitude_altitude = d2_pitch_acceleration_d_altitude_d_altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by gamma_alpha.
+/// Entries of [`hessian_values`]: derivatives by gamma, alpha.
 #[inline(always)]
 fn hessian_by_gamma_alpha<R: Real>(
     hessian: &mut HessianEntries<R>,

@@ -167,6 +167,8 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     // Gravity, (1)
     c.inv_r_e = p.r_e.recip();
     c.earth_curvature = p.spherical_earth * c.inv_r_e; // 1/ft
+
+    // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
     c.half_s_over_m = R::HALF * p.s * c.inv_m;

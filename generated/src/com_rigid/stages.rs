@@ -249,6 +249,8 @@ pub fn slopes<R: Real>(
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e + p.c_d_delta_e; // 1/rad
     let d_drag_d_delta_e = i.reference_force * d_c_d_d_delta_e; // lb/ft/rad
     s.d_velocity_rate_d_delta_e = -d_drag_d_delta_e * p.inv_m; // ft/s^2/rad
+
+    // Further values
     s.inverse_momentum_2 = i.inverse_momentum * i.inverse_momentum;
     s
 }

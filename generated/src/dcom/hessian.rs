@@ -3,8 +3,8 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{
-    Hessian, Input, Intermediates, NoiseSlopes, Prepared, Slopes, State, intermediates,
-    noise_slopes, slopes,
+    Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures,
+    intermediates, slopes,
 };
 
 use ahv_core::Real;
@@ -144,6 +144,7 @@ fn hessian_by_altitude<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
@@ -163,8 +164,7 @@ fn hessian_by_altitude<R: Real>(
     let d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * power_2_of_d_radius_ratio_d_altitude
             + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    let d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
     let d2_density_d_altitude_d_altitude = p.rho_0
         * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
@@ -233,14 +233,14 @@ fn hessian_by_altitude<R: Real>(
     hessian.eta_dot_3_by_altitude_altitude = d2_generalized_force_3_d_altitude_d_altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by gamma to eta_1.
+/// Entries of [`hessian_values`]: derivatives by gamma, alpha, eta_1.
 #[inline(always)]
 fn hessian_by_gamma_to_eta_1<R: Real>(
     hessian: &mut HessianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-    m: &NoiseSlopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to eta_1
     let d2_thrust_d_velocity_d_eta_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
@@ -270,37 +270,37 @@ fn hessian_by_gamma_to_eta_1<R: Real>(
     let d2_pitch_acceleration_d_altitude_d_eta_1 = d2_pitching_moment_d_altitude_d_eta_1
         * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    hessian.velocity_by_gamma_altitude = m.d2_velocity_rate_d_gamma_d_altitude;
-    hessian.velocity_by_gamma_gamma = m.d2_velocity_rate_d_gamma_d_gamma;
+    hessian.velocity_by_gamma_altitude = h.d2_velocity_rate_d_altitude_d_gamma;
+    hessian.velocity_by_gamma_gamma = h.d2_velocity_rate_d_gamma_d_gamma;
     hessian.altitude_by_gamma_velocity = i.cos_gamma;
-    hessian.altitude_by_gamma_gamma = m.d2_altitude_rate_d_gamma_d_gamma;
-    hessian.gamma_by_gamma_velocity = m.d2_gamma_rate_d_gamma_d_velocity;
-    hessian.gamma_by_gamma_altitude = m.d2_gamma_rate_d_gamma_d_altitude;
-    hessian.gamma_by_gamma_gamma = m.d2_gamma_rate_d_gamma_d_gamma;
-    hessian.alpha_by_gamma_velocity = -m.d2_gamma_rate_d_gamma_d_velocity;
-    hessian.alpha_by_gamma_altitude = -m.d2_gamma_rate_d_gamma_d_altitude;
-    hessian.alpha_by_gamma_gamma = -m.d2_gamma_rate_d_gamma_d_gamma;
-    hessian.velocity_by_alpha_velocity = m.d2_velocity_rate_d_alpha_d_velocity;
-    hessian.velocity_by_alpha_altitude = m.d2_velocity_rate_d_alpha_d_altitude;
-    hessian.velocity_by_alpha_alpha = m.d2_velocity_rate_d_alpha_d_alpha;
-    hessian.gamma_by_alpha_velocity = m.d2_force_turn_d_alpha_d_velocity;
-    hessian.gamma_by_alpha_altitude = m.d2_force_turn_d_alpha_d_altitude;
-    hessian.gamma_by_alpha_alpha = m.d2_force_turn_d_alpha_d_alpha;
-    hessian.alpha_by_alpha_velocity = -m.d2_force_turn_d_alpha_d_velocity;
-    hessian.alpha_by_alpha_altitude = -m.d2_force_turn_d_alpha_d_altitude;
-    hessian.alpha_by_alpha_alpha = -m.d2_force_turn_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_velocity = m.d2_pitch_acceleration_d_alpha_d_velocity;
-    hessian.pitch_rate_by_alpha_altitude = m.d2_pitch_acceleration_d_alpha_d_altitude;
-    hessian.pitch_rate_by_alpha_alpha = m.d2_pitch_acceleration_d_alpha_d_alpha;
-    hessian.eta_dot_1_by_alpha_velocity = m.d2_generalized_force_1_d_alpha_d_velocity;
-    hessian.eta_dot_1_by_alpha_altitude = m.d2_generalized_force_1_d_alpha_d_altitude;
-    hessian.eta_dot_1_by_alpha_alpha = m.d2_generalized_force_1_d_alpha_d_alpha;
-    hessian.eta_dot_2_by_alpha_velocity = m.d2_generalized_force_2_d_alpha_d_velocity;
-    hessian.eta_dot_2_by_alpha_altitude = m.d2_generalized_force_2_d_alpha_d_altitude;
-    hessian.eta_dot_2_by_alpha_alpha = m.d2_generalized_force_2_d_alpha_d_alpha;
-    hessian.eta_dot_3_by_alpha_velocity = m.d2_generalized_force_3_d_alpha_d_velocity;
-    hessian.eta_dot_3_by_alpha_altitude = m.d2_generalized_force_3_d_alpha_d_altitude;
-    hessian.eta_dot_3_by_alpha_alpha = m.d2_generalized_force_3_d_alpha_d_alpha;
+    hessian.altitude_by_gamma_gamma = h.d2_altitude_rate_d_gamma_d_gamma;
+    hessian.gamma_by_gamma_velocity = h.d2_gamma_rate_d_velocity_d_gamma;
+    hessian.gamma_by_gamma_altitude = h.d2_gamma_rate_d_altitude_d_gamma;
+    hessian.gamma_by_gamma_gamma = h.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.alpha_by_gamma_velocity = -h.d2_gamma_rate_d_velocity_d_gamma;
+    hessian.alpha_by_gamma_altitude = -h.d2_gamma_rate_d_altitude_d_gamma;
+    hessian.alpha_by_gamma_gamma = -h.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.velocity_by_alpha_velocity = h.d2_velocity_rate_d_velocity_d_alpha;
+    hessian.velocity_by_alpha_altitude = h.d2_velocity_rate_d_altitude_d_alpha;
+    hessian.velocity_by_alpha_alpha = h.d2_velocity_rate_d_alpha_d_alpha;
+    hessian.gamma_by_alpha_velocity = h.d2_force_turn_d_velocity_d_alpha;
+    hessian.gamma_by_alpha_altitude = h.d2_force_turn_d_altitude_d_alpha;
+    hessian.gamma_by_alpha_alpha = h.d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha_by_alpha_velocity = -h.d2_force_turn_d_velocity_d_alpha;
+    hessian.alpha_by_alpha_altitude = -h.d2_force_turn_d_altitude_d_alpha;
+    hessian.alpha_by_alpha_alpha = -h.d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate_by_alpha_velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
+    hessian.pitch_rate_by_alpha_altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
+    hessian.pitch_rate_by_alpha_alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
+    hessian.eta_dot_1_by_alpha_velocity = h.d2_generalized_force_1_d_velocity_d_alpha;
+    hessian.eta_dot_1_by_alpha_altitude = h.d2_generalized_force_1_d_altitude_d_alpha;
+    hessian.eta_dot_1_by_alpha_alpha = h.d2_generalized_force_1_d_alpha_d_alpha;
+    hessian.eta_dot_2_by_alpha_velocity = h.d2_generalized_force_2_d_velocity_d_alpha;
+    hessian.eta_dot_2_by_alpha_altitude = h.d2_generalized_force_2_d_altitude_d_alpha;
+    hessian.eta_dot_2_by_alpha_alpha = h.d2_generalized_force_2_d_alpha_d_alpha;
+    hessian.eta_dot_3_by_alpha_velocity = h.d2_generalized_force_3_d_velocity_d_alpha;
+    hessian.eta_dot_3_by_alpha_altitude = h.d2_generalized_force_3_d_altitude_d_alpha;
+    hessian.eta_dot_3_by_alpha_alpha = h.d2_generalized_force_3_d_alpha_d_alpha;
     hessian.velocity_by_eta_1_velocity = d2_velocity_rate_d_velocity_d_eta_1;
     hessian.velocity_by_eta_1_altitude = d2_velocity_rate_d_altitude_d_eta_1;
     hessian.velocity_by_eta_1_alpha = d2_velocity_rate_d_alpha_d_eta_1;
@@ -314,7 +314,7 @@ fn hessian_by_gamma_to_eta_1<R: Real>(
     hessian.pitch_rate_by_eta_1_altitude = d2_pitch_acceleration_d_altitude_d_eta_1;
 }
 
-/// Entries of [`hessian_values`]: derivatives by eta_2_eta_3.
+/// Entries of [`hessian_values`]: derivatives by eta_2, eta_3.
 #[inline(always)]
 fn hessian_by_eta_2_eta_3<R: Real>(
     hessian: &mut HessianEntries<R>,
@@ -443,11 +443,11 @@ pub fn hessian_values<R: Real>(
 ) -> HessianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let m = noise_slopes(x, u, p, &i, &s);
+    let h = curvatures(x, u, p, &i, &s);
     let mut hessian = HessianEntries::splat(R::ZERO);
     hessian_by_velocity(&mut hessian, p, &i, &s);
-    hessian_by_altitude(&mut hessian, x, p, &i, &s);
-    hessian_by_gamma_to_eta_1(&mut hessian, p, &i, &s, &m);
+    hessian_by_altitude(&mut hessian, x, p, &i, &s, &h);
+    hessian_by_gamma_to_eta_1(&mut hessian, p, &i, &s, &h);
     hessian_by_eta_2_eta_3(&mut hessian, p, &i, &s);
     hessian
 }

@@ -87,7 +87,7 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity to eta_2.
+/// Entries of [`jacobians_values`]: derivatives by velocity, altitude, gamma, alpha, eta_1, eta_2.
 #[inline(always)]
 fn jacobians_by_velocity_to_eta_2<R: Real>(
     state: &mut StateJacobianEntries<R>,
@@ -180,7 +180,8 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
     state.eta_dot_2_by_eta_2 = p.minus_stiffness_2;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by eta_3 to delta_c.
+/// Entries of [`jacobians_values`]: derivatives by eta_3, pitch_rate, eta_dot_1, eta_dot_2, eta_dot_3, phi,
+/// delta_e, delta_c.
 #[inline(always)]
 fn jacobians_by_eta_3_to_delta_c<R: Real>(
     state: &mut StateJacobianEntries<R>,
@@ -252,7 +253,7 @@ fn jacobians_by_eta_3_to_delta_c<R: Real>(
     input.eta_dot_3_by_delta_c = d_generalized_force_3_d_delta_c;
 }
 
-/// [`jacobians_values`] from what is computed once.
+/// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
     _x: &State<R>,

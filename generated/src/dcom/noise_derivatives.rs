@@ -3,7 +3,7 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Noise, NoiseDerivatives, Prepared, State, intermediates, noise_slopes, slopes,
+    Input, Noise, NoiseDerivatives, Prepared, State, curvatures, intermediates, slopes,
 };
 
 use ahv_core::Real;
@@ -56,90 +56,100 @@ pub fn noise_derivatives_values<R: Real>(
 ) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let m = noise_slopes(x, u, p, &i, &s);
-    let noise_derivatives_term_1 = m.d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
-        + m.d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
-        + m.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
-    let noise_derivatives_term_2 = m.d2_gamma_rate_d_gamma_d_velocity
+    let h = curvatures(x, u, p, &i, &s);
+    let noise_derivatives_term_1 = h.d2_gamma_rate_d_velocity_d_gamma * s.d_velocity_rate_d_gamma
+        + h.d2_gamma_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
+        + h.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = h
+        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_gamma;
+    let d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = h
+        .d2_force_turn_d_altitude_d_alpha * s.d_altitude_rate_d_gamma;
+    let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = h
+        .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
+    let noise_derivatives_term_2 = h.d2_gamma_rate_d_velocity_d_gamma
         * s.d_velocity_rate_d_alpha
-        + m.d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
+        + h.d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h
+        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_alpha;
+    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h
+        .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
 
     NoiseDerivativesEntries {
         velocity_by_w_gamma_w_gamma: p.w_gamma_2
-            * (m.d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
-                + m.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
+            * (h.d2_velocity_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
+                + h.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         velocity_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (m.d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
-                + m.d2_velocity_rate_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
-                - m.d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+            * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+                + h.d2_velocity_rate_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+                - h.d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         velocity_by_w_alpha_w_gamma: p.w_alpha_w_gamma
-            * m.d2_velocity_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha,
+            * h.d2_velocity_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha,
         velocity_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        velocity_by_w_q_w_alpha: p.w_alpha_w_q * m.d2_velocity_rate_d_alpha_d_alpha,
+            * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+        velocity_by_w_q_w_alpha: p.w_alpha_w_q * h.d2_velocity_rate_d_alpha_d_alpha,
         altitude_by_w_gamma_w_gamma: p.w_gamma_2
             * (i.cos_gamma * s.d_velocity_rate_d_gamma
-                + m.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
+                + h.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         altitude_by_w_alpha_w_gamma: p.w_alpha_w_gamma
             * (i.cos_gamma * s.d_velocity_rate_d_alpha
-                + m.d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
+                + h.d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
         gamma_by_w_gamma_w_gamma: p.w_gamma_2 * noise_derivatives_term_1,
         gamma_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
-                + m.d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma
-                - m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma),
+            * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
+                + d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma
+                - d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma),
         gamma_by_w_alpha_w_gamma: p.w_alpha_w_gamma * noise_derivatives_term_2,
         gamma_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
-                - m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
-        gamma_by_w_q_w_alpha: p.w_alpha_w_q * m.d2_force_turn_d_alpha_d_alpha,
+            * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
+                - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
+        gamma_by_w_q_w_alpha: p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha,
         alpha_by_w_gamma_w_gamma: -p.w_gamma_2 * noise_derivatives_term_1,
         alpha_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
-                - m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
-                - m.d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma),
+            * (d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
+                - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
+                - d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma),
         alpha_by_w_alpha_w_gamma: -p.w_alpha_w_gamma * noise_derivatives_term_2,
         alpha_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
-                - m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha),
-        alpha_by_w_q_w_alpha: -p.w_alpha_w_q * m.d2_force_turn_d_alpha_d_alpha,
+            * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
+                - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha),
+        alpha_by_w_q_w_alpha: -p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha,
         pitch_rate_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (m.d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
-                + m.d2_pitch_acceleration_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
-                - m.d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+            * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+                + h.d2_pitch_acceleration_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+                - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         pitch_rate_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         pitch_rate_by_w_q_w_alpha: p.w_alpha_w_q
-            * m.d2_pitch_acceleration_d_alpha_d_alpha,
+            * h.d2_pitch_acceleration_d_alpha_d_alpha,
         eta_dot_1_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (m.d2_generalized_force_1_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
-                + m.d2_generalized_force_1_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
-                - m.d2_generalized_force_1_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+            * (h.d2_generalized_force_1_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+                + h.d2_generalized_force_1_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+                - h.d2_generalized_force_1_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         eta_dot_1_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d2_generalized_force_1_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_generalized_force_1_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (h.d2_generalized_force_1_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_generalized_force_1_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_dot_1_by_w_q_w_alpha: p.w_alpha_w_q
-            * m.d2_generalized_force_1_d_alpha_d_alpha,
+            * h.d2_generalized_force_1_d_alpha_d_alpha,
         eta_dot_2_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (m.d2_generalized_force_2_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
-                + m.d2_generalized_force_2_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
-                - m.d2_generalized_force_2_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+            * (h.d2_generalized_force_2_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+                + h.d2_generalized_force_2_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+                - h.d2_generalized_force_2_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         eta_dot_2_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d2_generalized_force_2_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_generalized_force_2_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (h.d2_generalized_force_2_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_generalized_force_2_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_dot_2_by_w_q_w_alpha: p.w_alpha_w_q
-            * m.d2_generalized_force_2_d_alpha_d_alpha,
+            * h.d2_generalized_force_2_d_alpha_d_alpha,
         eta_dot_3_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (m.d2_generalized_force_3_d_alpha_d_velocity * s.d_velocity_rate_d_gamma
-                + m.d2_generalized_force_3_d_alpha_d_altitude * s.d_altitude_rate_d_gamma
-                - m.d2_generalized_force_3_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
+            * (h.d2_generalized_force_3_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+                + h.d2_generalized_force_3_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+                - h.d2_generalized_force_3_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
         eta_dot_3_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d2_generalized_force_3_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_generalized_force_3_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (h.d2_generalized_force_3_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_generalized_force_3_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_dot_3_by_w_q_w_alpha: p.w_alpha_w_q
-            * m.d2_generalized_force_3_d_alpha_d_alpha,
+            * h.d2_generalized_force_3_d_alpha_d_alpha,
     }
 }
 
@@ -161,44 +171,48 @@ pub fn noise_derivatives<R: Real>(
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let m = noise_slopes(x, u, p, &i, &s);
+    let h = curvatures(x, u, p, &i, &s);
     let ito_correction_term_1 = p.half_w_gamma_2
-        * (m.d2_gamma_rate_d_gamma_d_velocity * s.d_velocity_rate_d_gamma
-            + m.d2_gamma_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
-            + m.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
+        * (h.d2_gamma_rate_d_velocity_d_gamma * s.d_velocity_rate_d_gamma
+            + h.d2_gamma_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
+            + h.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h
+        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_alpha;
+    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h
+        .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
 
     State {
         velocity: p.half_w_gamma_2
-            * (m.d2_velocity_rate_d_gamma_d_altitude * s.d_altitude_rate_d_gamma
-                + m.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma)
+            * (h.d2_velocity_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
+                + h.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma)
             + p.half_w_alpha_2
-                * (m.d2_velocity_rate_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                    - m.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+                * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                    - h.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         altitude: p.half_w_gamma_2
             * (i.cos_gamma * s.d_velocity_rate_d_gamma
-                + m.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
+                + h.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
         gamma: ito_correction_term_1
             + p.half_w_alpha_2
-                * (m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
-                    - m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
+                * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
+                    - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
         alpha: p.half_w_alpha_2
-            * (m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
-                - m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha)
+            * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
+                - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha)
             - ito_correction_term_1,
         pitch_rate: p.half_w_alpha_2
-            * (m.d2_pitch_acceleration_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_1: R::ZERO,
         eta_dot_1: p.half_w_alpha_2
-            * (m.d2_generalized_force_1_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_generalized_force_1_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (h.d2_generalized_force_1_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_generalized_force_1_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_2: R::ZERO,
         eta_dot_2: p.half_w_alpha_2
-            * (m.d2_generalized_force_2_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_generalized_force_2_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (h.d2_generalized_force_2_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_generalized_force_2_d_alpha_d_alpha * s.d_force_turn_d_alpha),
         eta_3: R::ZERO,
         eta_dot_3: p.half_w_alpha_2
-            * (m.d2_generalized_force_3_d_alpha_d_velocity * s.d_velocity_rate_d_alpha
-                - m.d2_generalized_force_3_d_alpha_d_alpha * s.d_force_turn_d_alpha),
+            * (h.d2_generalized_force_3_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+                - h.d2_generalized_force_3_d_alpha_d_alpha * s.d_force_turn_d_alpha),
     }
 }

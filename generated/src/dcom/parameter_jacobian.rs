@@ -3,8 +3,8 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes,
-    State, intermediates, sensitivities, slopes,
+    Curvatures, Input, Intermediates, ParameterJacobian, Parameters, Prepared,
+    Sensitivities, Slopes, State, curvatures, intermediates, sensitivities, slopes,
 };
 
 use ahv_core::Real;
@@ -219,6 +219,7 @@ fn parameter_jacobian_by_environment<R: Real>(
     x: &State<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
+    h: &Curvatures<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
@@ -229,8 +230,7 @@ fn parameter_jacobian_by_environment<R: Real>(
     let d_pitching_moment_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_bar * i.c_m * i.velocity_2 + p.half_z_t * i.c_t * i.velocity_2); // lb*ft^3/slug
     let d_pitch_acceleration_d_rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
-    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
+    let d_density_d_h_0 = p.rho_0 * h.density_ratio_over_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
     let d_thrust_d_h_0 = i.c_t * d_reference_force_d_h_0; // lb/ft^2
@@ -264,7 +264,7 @@ fn parameter_jacobian_by_environment<R: Real>(
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
             * (x.velocity
-                - p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
+                - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
@@ -301,7 +301,7 @@ fn parameter_jacobian_by_environment<R: Real>(
     parameter.eta_dot_3_by_h_s = d_generalized_force_3_d_h_s;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by choices_c_t.
+/// Entries of [`parameter_jacobian_values`]: derivatives by choices, c_t.
 #[inline(always)]
 fn parameter_jacobian_by_choices_c_t<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -315,7 +315,7 @@ fn parameter_jacobian_by_choices_c_t<R: Real>(
     // Derivatives with respect to parameters
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
-            * (p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity
+            * (q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity
                 - x.velocity)
             - x.velocity * p.earth_curvature
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
@@ -413,7 +413,7 @@ fn parameter_jacobian_by_choices_c_t<R: Real>(
     parameter.pitch_rate_by_c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * x.eta_3;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_l to c_n_3.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d, c_m, modes, c_n_1, c_n_2, c_n_3.
 #[inline(always)]
 fn parameter_jacobian_by_c_l_to_c_n_3<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -531,10 +531,11 @@ pub fn parameter_jacobian_values<R: Real>(
 ) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
     let q = sensitivities(x, u, p, &i);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
     parameter_jacobian_by_vehicle(&mut parameter, p, &i, &s);
-    parameter_jacobian_by_environment(&mut parameter, x, p, &i, &q);
+    parameter_jacobian_by_environment(&mut parameter, x, p, &i, &h, &q);
     parameter_jacobian_by_choices_c_t(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_l_to_c_n_3(&mut parameter, x, u, p, &i, &s, &q);
     parameter

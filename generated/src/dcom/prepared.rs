@@ -347,6 +347,12 @@ ahv_core::record! {
         pub half_w_gamma_2: R,
         /// `R::HALF * w_alpha_2`.
         pub half_w_alpha_2: R,
+        /// `c_l_delta_recip()`.
+        pub inv_c_l_delta_c: R,
+        /// Derivative of pitching-moment coefficient with respect to delta_e, 1/rad.
+        pub d_c_m_d_delta_e: R,
+        /// `inv_c_l_delta_c * inv_c_l_delta_c`.
+        pub inv_c_l_delta_c_2: R,
     }
 }
 
@@ -424,11 +430,12 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Gravity, (1)
     c.earth_curvature = p.spherical_earth * c.inv_r_e; // 1/ft
 
     // Canard, (4)
-    let inv_c_l_delta_c = p.c_l_delta_c.recip();
-    c.canard_gain = -p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c;
+    c.inv_c_l_delta_c = p.c_l_delta_c.recip();
+    c.canard_gain = -p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c;
     c.d_elevator_lift_d_c_l_delta_e = R::ONE - p.canard_slaving;
     c.elevator_lift = p.c_l_delta_e * c.d_elevator_lift_d_c_l_delta_e; // 1/rad
 
@@ -441,13 +448,15 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.stiffness_3 = p.omega_3 * p.omega_3; // rad^2/s^2
 
     // Derivatives with respect to delta_e
-    let d_c_m_d_delta_e = p.c_m_delta_e + p.c_m_delta_c * c.canard_gain; // 1/rad
+    c.d_c_m_d_delta_e = p.c_m_delta_e + p.c_m_delta_c * c.canard_gain; // 1/rad
     c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
     c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
     c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
 
     // Noise of the modes, (16)
     c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
+
+    // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
     c.half_s_over_m = R::HALF * p.s * c.inv_m;
@@ -477,7 +486,7 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_c_d_delta_e_2 = R::TWO * p.c_d_delta_e_2;
     c.two_c_d_delta_c_2 = R::TWO * p.c_d_delta_c_2;
     c.c_l_delta_c_canard_command = p.c_l_delta_c * p.canard_command;
-    c.c_bar_times_d_c_m_d_delta_e = p.c_bar * d_c_m_d_delta_e;
+    c.c_bar_times_d_c_m_d_delta_e = p.c_bar * c.d_c_m_d_delta_e;
     c.c_bar_c_m_delta_c_canard_command = p.c_bar * p.c_m_delta_c * p.canard_command;
     c.c_n_1_delta_c_canard_command = p.c_n_1_delta_c * p.canard_command;
     c.c_n_2_delta_c_canard_command = p.c_n_2_delta_c * p.canard_command;
@@ -485,12 +494,17 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.inv_m_2 = c.inv_m * c.inv_m;
     c.inv_h_s_2 = c.inv_h_s * c.inv_h_s;
     c.two_g_earth_curvature_over_r_e = R::TWO * p.g * c.earth_curvature * c.inv_r_e;
-    c.c_l_delta_e_over_c_l_delta_c_m = p.c_l_delta_e * inv_c_l_delta_c * c.inv_m;
+    c.c_l_delta_e_over_c_l_delta_c_m = p.c_l_delta_e * c.inv_c_l_delta_c * c.inv_m;
     c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
-    c.canard_slaving_over_c_l_delta_c_m = p.canard_slaving * inv_c_l_delta_c * c.inv_m;
-    let inv_c_l_delta_c_2 = inv_c_l_delta_c * inv_c_l_delta_c;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
+    c.canard_slaving_over_c_l_delta_c_m = p.canard_slaving * c.inv_c_l_delta_c * c.inv_m;
+    c.inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
     c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m = p.canard_slaving
-        * p.c_l_delta_e * inv_c_l_delta_c_2 * c.inv_m;
+        * p.c_l_delta_e * c.inv_c_l_delta_c_2 * c.inv_m;
     c.minus_half_inv_m_2 = R::from_f64(-0.5) * c.inv_m_2;
     c.half_over_m = R::HALF * c.inv_m;
     c.earth_curvature_2 = c.earth_curvature * c.earth_curvature;
@@ -501,12 +515,12 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.half_z_t = R::HALF * p.z_t;
     c.c_bar_c_m_delta_c_over_i_yy = p.c_bar * p.c_m_delta_c * c.inv_i_yy;
     c.c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy = p.c_bar * p.c_m_delta_c
-        * p.c_l_delta_e * inv_c_l_delta_c * c.inv_i_yy;
+        * p.c_l_delta_e * c.inv_c_l_delta_c * c.inv_i_yy;
     c.z_t_over_i_yy = p.z_t * c.inv_i_yy;
     c.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy = p.c_bar * p.c_m_delta_c
-        * p.canard_slaving * inv_c_l_delta_c * c.inv_i_yy;
+        * p.canard_slaving * c.inv_c_l_delta_c * c.inv_i_yy;
     c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar
-        * p.c_m_delta_c * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2
+        * p.c_m_delta_c * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2
         * c.inv_i_yy;
     c.c_bar_over_i_yy = p.c_bar * c.inv_i_yy;
     c.half_s = R::HALF * p.s;
@@ -514,33 +528,29 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_omega_1 = R::TWO * p.omega_1;
     c.minus_two_omega_1 = R::from_f64(-2.0) * p.omega_1;
     c.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_1_delta_c * p.c_l_delta_e
-        * inv_c_l_delta_c;
+        * c.inv_c_l_delta_c;
     c.c_n_1_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_1_delta_c * p.canard_slaving
-        * inv_c_l_delta_c;
+        * c.inv_c_l_delta_c;
     c.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_1_delta_c
-        * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2;
+        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
     c.two_zeta_2 = R::TWO * p.zeta_2;
     c.two_omega_2 = R::TWO * p.omega_2;
     c.minus_two_omega_2 = R::from_f64(-2.0) * p.omega_2;
     c.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_2_delta_c * p.c_l_delta_e
-        * inv_c_l_delta_c;
+        * c.inv_c_l_delta_c;
     c.c_n_2_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_2_delta_c * p.canard_slaving
-        * inv_c_l_delta_c;
+        * c.inv_c_l_delta_c;
     c.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_2_delta_c
-        * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2;
+        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
     c.two_zeta_3 = R::TWO * p.zeta_3;
     c.two_omega_3 = R::TWO * p.omega_3;
     c.minus_two_omega_3 = R::from_f64(-2.0) * p.omega_3;
     c.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_3_delta_c * p.c_l_delta_e
-        * inv_c_l_delta_c;
+        * c.inv_c_l_delta_c;
     c.c_n_3_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_3_delta_c * p.canard_slaving
-        * inv_c_l_delta_c;
+        * c.inv_c_l_delta_c;
     c.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_3_delta_c
-        * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
     c.two_earth_curvature_2 = R::TWO * c.earth_curvature_2;
     c.six_c_t_alpha_3 = R::from_f64(6.0) * p.c_t_alpha_3;
     c.six_c_t_phi_alpha_3 = R::from_f64(6.0) * p.c_t_phi_alpha_3;

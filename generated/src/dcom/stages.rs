@@ -406,6 +406,8 @@ pub fn slopes<R: Real>(
         * p.canard_command; // lb/ft/rad
     s.d_velocity_rate_d_delta_c = -d_drag_d_delta_c * p.inv_m; // ft/s^2/rad
     s.d_force_turn_d_delta_c = i.turn_factor * p.c_l_delta_c_canard_command; // 1/s
+
+    // Further values
     s.cos_alpha_c_t_eta_1 = i.cos_alpha * p.c_t_eta_1;
     s.cos_alpha_c_t_eta_2 = i.cos_alpha * p.c_t_eta_2;
     s.cos_alpha_c_t_eta_3 = i.cos_alpha * p.c_t_eta_3;
@@ -413,81 +415,93 @@ pub fn slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the noise's derivatives that other functions, or several parts of these, need.
-    pub struct NoiseSlopes<R> {
+    /// Quantities of the second derivatives that other functions, or several parts of these, need.
+    pub struct Curvatures<R> {
+        /// Derivative of rate of the velocity with respect to velocity and alpha, 1/s/rad.
+        pub d2_velocity_rate_d_velocity_d_alpha: R,
+        /// `i.density_ratio * inv_h_s`.
+        pub density_ratio_over_h_s: R,
+        /// Derivative of rate of the velocity with respect to altitude and gamma, 1/s^2/rad.
+        pub d2_velocity_rate_d_altitude_d_gamma: R,
+        /// Derivative of rate of the velocity with respect to altitude and alpha, 1/s^2/rad.
+        pub d2_velocity_rate_d_altitude_d_alpha: R,
         /// Derivative of rate of the velocity with respect to gamma and gamma, ft/s^2/rad^2.
         pub d2_velocity_rate_d_gamma_d_gamma: R,
         /// Derivative of rate of the velocity with respect to alpha and alpha, ft/s^2/rad^2.
         pub d2_velocity_rate_d_alpha_d_alpha: R,
         /// Derivative of rate of the altitude with respect to gamma and gamma, ft/s/rad^2.
         pub d2_altitude_rate_d_gamma_d_gamma: R,
+        /// Derivative of rate of the flight-path angle with respect to velocity and gamma, 1/ft.
+        pub d2_gamma_rate_d_velocity_d_gamma: R,
+        /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha, 1/ft.
+        pub d2_force_turn_d_velocity_d_alpha: R,
+        /// Derivative of rate of the flight-path angle with respect to altitude and gamma, 1/s/ft.
+        pub d2_gamma_rate_d_altitude_d_gamma: R,
+        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha, 1/s/ft.
+        pub d2_force_turn_d_altitude_d_alpha: R,
         /// Derivative of rate of the flight-path angle with respect to gamma and gamma, 1/s/rad.
         pub d2_gamma_rate_d_gamma_d_gamma: R,
         /// Derivative of turn rate by the force across the flight path with respect to alpha and alpha, 1/s/rad.
         pub d2_force_turn_d_alpha_d_alpha: R,
+        /// Derivative of pitch acceleration with respect to velocity and alpha, 1/s/ft.
+        pub d2_pitch_acceleration_d_velocity_d_alpha: R,
+        /// Derivative of pitch acceleration with respect to altitude and alpha, 1/s^2/ft.
+        pub d2_pitch_acceleration_d_altitude_d_alpha: R,
         /// Derivative of pitch acceleration with respect to alpha and alpha, 1/s^2/rad.
         pub d2_pitch_acceleration_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_1_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_1_d_altitude_d_alpha: R,
         /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
         pub d2_generalized_force_1_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_2_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_2_d_altitude_d_alpha: R,
         /// Derivative of generalized force of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
         pub d2_generalized_force_2_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_3_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_3_d_altitude_d_alpha: R,
         /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
         pub d2_generalized_force_3_d_alpha_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to gamma and altitude, 1/s^2/rad.
-        pub d2_velocity_rate_d_gamma_d_altitude: R,
-        /// Derivative of rate of the velocity with respect to alpha and velocity, 1/s/rad.
-        pub d2_velocity_rate_d_alpha_d_velocity: R,
-        /// Derivative of rate of the velocity with respect to alpha and altitude, 1/s^2/rad.
-        pub d2_velocity_rate_d_alpha_d_altitude: R,
-        /// Derivative of rate of the flight-path angle with respect to gamma and velocity, 1/ft.
-        pub d2_gamma_rate_d_gamma_d_velocity: R,
-        /// Derivative of rate of the flight-path angle with respect to gamma and altitude, 1/s/ft.
-        pub d2_gamma_rate_d_gamma_d_altitude: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and velocity, 1/ft.
-        pub d2_force_turn_d_alpha_d_velocity: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and altitude, 1/s/ft.
-        pub d2_force_turn_d_alpha_d_altitude: R,
-        /// Derivative of pitch acceleration with respect to alpha and velocity, 1/s/ft.
-        pub d2_pitch_acceleration_d_alpha_d_velocity: R,
-        /// Derivative of pitch acceleration with respect to alpha and altitude, 1/s^2/ft.
-        pub d2_pitch_acceleration_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_1_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_1_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_2_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_2_d_alpha_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha and velocity, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_3_d_alpha_d_velocity: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha and altitude, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_3_d_alpha_d_altitude: R,
-        /// `m.d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_gamma`.
-        pub d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma: R,
-        /// `m.d2_force_turn_d_alpha_d_altitude * s.d_altitude_rate_d_gamma`.
-        pub d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma: R,
-        /// `m.d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma`.
-        pub d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma: R,
-        /// `m.d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_alpha`.
-        pub d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha: R,
-        /// `m.d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha`.
-        pub d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha: R,
     }
 }
 
-/// Fills a part of [`NoiseSlopes`].
+/// Computes [`Curvatures`].
 #[inline(always)]
-fn noise_slopes_part_1<R: Real>(
-    m: &mut NoiseSlopes<R>,
+pub fn curvatures<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) {
+) -> Curvatures<R> {
+    let mut h = Curvatures::splat(R::ZERO);
+
+    // Derivatives with respect to alpha
+    let d2_thrust_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_t_d_alpha; // lb*s/ft^2/rad
+    let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
+    let d2_path_force_d_velocity_d_alpha = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_velocity_d_alpha
+        - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
+    h.d2_velocity_rate_d_velocity_d_alpha = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
+
     // Derivatives with respect to gamma
-    m.d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    h.d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+
+    // Derivatives with respect to alpha
+    let d2_thrust_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_t_d_alpha; // lb/ft^2/rad
+    let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
+    let d2_path_force_d_altitude_d_alpha = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * d2_thrust_d_altitude_d_alpha
+        - d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
+    h.d2_velocity_rate_d_altitude_d_alpha = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
+
+    // Derivatives with respect to gamma
+    h.d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
@@ -502,126 +516,66 @@ fn noise_slopes_part_1<R: Real>(
         + i.thrust * d2_cos_alpha_d_alpha_d_alpha
         + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    m.d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
+    h.d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to gamma
-    m.d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    h.d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    h.d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
+
+    // Derivatives with respect to alpha
+    h.d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha; // 1/ft
+
+    // Derivatives with respect to gamma
+    h.d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+
+    // Derivatives with respect to alpha
+    h.d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_alpha; // 1/s/ft
+
+    // Derivatives with respect to gamma
     let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    m.d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    h.d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
     let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
         + i.sin_alpha * d2_c_t_d_alpha_d_alpha
         + i.c_t * s.d_cos_alpha_d_alpha; // 1/rad^2
-    m.d2_force_turn_d_alpha_d_alpha = i.turn_factor
+    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor
         * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
+    let d2_pitching_moment_d_velocity_d_alpha = s.d_reference_force_d_velocity * p.c_bar
+        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
+    h.d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
+        * p.inv_i_yy; // 1/s/ft
+    let d2_pitching_moment_d_altitude_d_alpha = s.d_reference_force_d_altitude * p.c_bar
+        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_altitude_d_alpha; // lb/ft/rad
+    h.d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha
+        * p.inv_i_yy; // 1/s^2/ft
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
         + p.two_c_bar_c_m_alpha_2 * i.reference_force; // lb/rad^2
-    m.d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
+    h.d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
-    m.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    m.d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    m.d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-
-    // Derivatives with respect to altitude
-    m.d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha; // lb*s/ft^2/rad
-    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
-    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
-        - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
-    m.d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to altitude
-    let d2_thrust_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_t_d_alpha; // lb/ft^2/rad
-    let d2_drag_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
-    let d2_path_force_d_alpha_d_altitude = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_altitude
-        - d2_drag_d_alpha_d_altitude; // lb/ft^2/rad
-    m.d2_velocity_rate_d_alpha_d_altitude = d2_path_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    m.d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to altitude
-    m.d2_gamma_rate_d_gamma_d_altitude = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to velocity
-    m.d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_alpha; // 1/ft
-
-    // Derivatives with respect to altitude
-    m.d2_force_turn_d_alpha_d_altitude = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_alpha; // 1/s/ft
-
-    // Derivatives with respect to velocity
-    let d2_pitching_moment_d_alpha_d_velocity = s.d_reference_force_d_velocity * p.c_bar
-        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
-    m.d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
-        * p.inv_i_yy; // 1/s/ft
-
-    // Derivatives with respect to altitude
-    let d2_pitching_moment_d_alpha_d_altitude = s.d_reference_force_d_altitude * p.c_bar
-        * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
-    m.d2_pitch_acceleration_d_alpha_d_altitude = d2_pitching_moment_d_alpha_d_altitude
-        * p.inv_i_yy; // 1/s^2/ft
-}
-
-/// Fills a part of [`NoiseSlopes`].
-#[inline(always)]
-fn noise_slopes_part_2<R: Real>(m: &mut NoiseSlopes<R>, s: &Slopes<R>) {
-    // Derivatives with respect to velocity
-    m.d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
+    h.d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
         * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-
-    // Derivatives with respect to altitude
-    m.d2_generalized_force_1_d_alpha_d_altitude = s.d_reference_force_d_altitude
+    h.d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-
-    // Derivatives with respect to velocity
-    m.d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
+    h.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
         * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-
-    // Derivatives with respect to altitude
-    m.d2_generalized_force_2_d_alpha_d_altitude = s.d_reference_force_d_altitude
+    h.d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-
-    // Derivatives with respect to velocity
-    m.d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
+    h.d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
         * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-
-    // Derivatives with respect to altitude
-    m.d2_generalized_force_3_d_alpha_d_altitude = s.d_reference_force_d_altitude
+    h.d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = m
-        .d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_gamma;
-    m.d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = m
-        .d2_force_turn_d_alpha_d_altitude * s.d_altitude_rate_d_gamma;
-    m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = m
-        .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
-    m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = m
-        .d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_alpha;
-    m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = m
-        .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
-}
+    h.d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
 
-/// Computes [`NoiseSlopes`].
-#[inline(always)]
-pub fn noise_slopes<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) -> NoiseSlopes<R> {
-    let mut m = NoiseSlopes::splat(R::ZERO);
-    noise_slopes_part_1(&mut m, x, u, p, i, s);
-    noise_slopes_part_2(&mut m, s);
-    m
+    // Further values
+    h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    h
 }
 
 ahv_core::record! {
@@ -630,6 +584,8 @@ ahv_core::record! {
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
         pub slope_of_radius_ratio_in_earth_curvature: R,
+        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
+        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
         /// `i.reference_force * i.alpha_2`.
         pub reference_force_alpha_2: R,
         /// `i.reference_force * x.alpha`.
@@ -646,13 +602,17 @@ ahv_core::record! {
 pub fn sensitivities<R: Real>(
     x: &State<R>,
     u: &Input<R>,
-    _p: &Prepared<R>,
+    p: &Prepared<R>,
     i: &Intermediates<R>,
 ) -> Sensitivities<R> {
     let mut q = Sensitivities::splat(R::ZERO);
 
     // Derivatives with respect to parameters
     q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+
+    // Further values
+    q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     q.reference_force_alpha_2 = i.reference_force * i.alpha_2;
     q.reference_force_alpha = i.reference_force * x.alpha;
     q.reference_force_delta_e = i.reference_force * u.delta_e;

@@ -137,6 +137,8 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let inv_of_zeta_plus_overdamped_ratio = zeta_plus_overdamped_ratio.recip();
     c.slow_pole = p.omega * inv_of_zeta_plus_overdamped_ratio; // 1/s
     let pole_gap = R::TWO * p.omega * overdamped_ratio; // 1/s
+
+    // Further values
     c.minus_stiffness = -c.stiffness;
     c.minus_damping = -c.damping;
     c.minus_chi_decay = -c.chi_decay;

@@ -29,7 +29,7 @@ ahv_core::entries! {
     }
 }
 
-/// [`diffusion_values`] from what is computed once.
+/// [`diffusion_values`] where its stages are computed already.
 #[inline(always)]
 pub fn diffusion_values_from<R: Real>(
     _x: &State<R>,
@@ -96,7 +96,7 @@ pub fn drift_and_diffusion<R: Real>(
     (drift, diffusion.dense())
 }
 
-/// [`noise_increment`] from what is computed once.
+/// [`noise_increment`] where its stages are computed already.
 #[inline(always)]
 pub fn noise_increment_from<R: Real>(
     _x: &State<R>,

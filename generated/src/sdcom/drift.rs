@@ -5,7 +5,7 @@
 use super::{Input, Intermediates, Prepared, State, intermediates};
 use ahv_core::Real;
 
-/// [`drift`] from what is computed once.
+/// [`drift`] where its stages are computed already.
 #[inline(always)]
 pub fn drift_from<R: Real>(
     x: &State<R>,

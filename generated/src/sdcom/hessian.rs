@@ -3,8 +3,8 @@
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
 use super::{
-    Hessian, Input, Intermediates, NoiseSlopes, Prepared, Slopes, State, intermediates,
-    noise_slopes, slopes,
+    Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures,
+    intermediates, slopes,
 };
 
 use ahv_core::Real;
@@ -144,384 +144,99 @@ fn hessian_by_velocity<R: Real>(
     hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude_of_velocity.
+/// Entries of [`hessian_values`]: derivatives by altitude, gamma, alpha.
 #[inline(always)]
-fn hessian_by_altitude_of_velocity<R: Real>(
+fn hessian_by_altitude_to_alpha<R: Real>(
     hessian: &mut HessianEntries<R>,
-    x: &State<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_1_d_velocity_d_altitude = d2_generalized_force_1_d_velocity_d_altitude
-        * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_2_d_velocity_d_altitude = d2_generalized_force_2_d_velocity_d_altitude
-        * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_3_d_velocity_d_altitude = d2_generalized_force_3_d_velocity_d_altitude
-        * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
-    let d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
-    let d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
-        + s.d_reference_force_d_velocity * s.d_c_t_d_altitude
-        + i.c_t * d2_reference_force_d_velocity_d_altitude
-        + i.reference_force * d2_c_t_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_c_d_d_velocity_d_altitude = p.c_d_eta_1 * d2_eta_static_1_d_velocity_d_altitude
-        + p.c_d_eta_2 * d2_eta_static_2_d_velocity_d_altitude
-        + p.c_d_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    let d2_c_d_d_velocity_d_altitude = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
+        + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
+        + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
     let d2_drag_d_velocity_d_altitude = s.d_c_d_d_velocity * s.d_reference_force_d_altitude
         + s.d_reference_force_d_velocity * s.d_c_d_d_altitude
-        + i.c_d * d2_reference_force_d_velocity_d_altitude
+        + i.c_d * h.d2_reference_force_d_velocity_d_altitude
         + i.reference_force * d2_c_d_d_velocity_d_altitude; // lb*s/ft^3
     let d2_path_force_d_velocity_d_altitude = i.cos_alpha
-        * d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
+        * h.d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
     let d2_velocity_rate_d_velocity_d_altitude = d2_path_force_d_velocity_d_altitude
         * p.inv_m; // 1/s/ft
-    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
-    let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_1_d_altitude_d_altitude = d2_generalized_force_1_d_altitude_d_altitude
-        * p.inv_omega_1_2; // slug^0.5/ft^1.5
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_2_d_altitude_d_altitude = d2_generalized_force_2_d_altitude_d_altitude
-        * p.inv_omega_2_2; // slug^0.5/ft^1.5
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_3_d_altitude_d_altitude = d2_generalized_force_3_d_altitude_d_altitude
-        * p.inv_omega_3_2; // slug^0.5/ft^1.5
-    let d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    let d2_thrust_d_altitude_d_altitude = R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
-        + i.c_t * d2_reference_force_d_altitude_d_altitude
-        + i.reference_force * d2_c_t_d_altitude_d_altitude; // lb/ft^3
-    let d2_c_d_d_altitude_d_altitude = p.c_d_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_d_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_d_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    let d2_c_d_d_altitude_d_altitude = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
+        + p.c_d_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
+        + p.c_d_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
     let d2_drag_d_altitude_d_altitude = R::TWO * s.d_c_d_d_altitude * s.d_reference_force_d_altitude
-        + i.c_d * d2_reference_force_d_altitude_d_altitude
+        + i.c_d * h.d2_reference_force_d_altitude_d_altitude
         + i.reference_force * d2_c_d_d_altitude_d_altitude; // lb/ft^3
     let d2_path_force_d_altitude_d_altitude = i.cos_alpha
-        * d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude; // lb/ft^3
+        * h.d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude; // lb/ft^3
     let d2_velocity_rate_d_altitude_d_altitude = d2_path_force_d_altitude_d_altitude
-        * p.inv_m - i.sin_gamma * d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
-
-    hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
-    hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
-}
-
-/// Entries of [`hessian_values`]: derivatives by altitude_of_gamma.
-#[inline(always)]
-fn hessian_by_altitude_of_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_1_d_velocity_d_altitude = d2_generalized_force_1_d_velocity_d_altitude
-        * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_2_d_velocity_d_altitude = d2_generalized_force_2_d_velocity_d_altitude
-        * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_3_d_velocity_d_altitude = d2_generalized_force_3_d_velocity_d_altitude
-        * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
-    let d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
-    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
-    let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_1_d_altitude_d_altitude = d2_generalized_force_1_d_altitude_d_altitude
-        * p.inv_omega_1_2; // slug^0.5/ft^1.5
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_2_d_altitude_d_altitude = d2_generalized_force_2_d_altitude_d_altitude
-        * p.inv_omega_2_2; // slug^0.5/ft^1.5
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_3_d_altitude_d_altitude = d2_generalized_force_3_d_altitude_d_altitude
-        * p.inv_omega_3_2; // slug^0.5/ft^1.5
-    let d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
-    let d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_altitude
-        + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_altitude
-        + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
-    let d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha
-        * d2_c_t_d_velocity_d_altitude + d2_c_l_d_velocity_d_altitude; // s/ft^2
-    let d2_force_turn_d_velocity_d_altitude = s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
-        + s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_altitude
-        + i.normal_coefficient * d2_turn_factor_d_velocity_d_altitude
-        + i.turn_factor * d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
-    let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
-        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
-    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
-        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
-        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_l_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_l_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    let d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
-        * d2_c_t_d_altitude_d_altitude + d2_c_l_d_altitude_d_altitude; // 1/ft^2
-    let d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
-        + i.normal_coefficient * d2_turn_factor_d_altitude_d_altitude
-        + i.turn_factor * d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
-        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
-
-    hessian.gamma_by_altitude_velocity = d2_gamma_rate_d_velocity_d_altitude;
-    hessian.gamma_by_altitude_altitude = d2_gamma_rate_d_altitude_d_altitude;
-}
-
-/// Entries of [`hessian_values`]: derivatives by altitude_of_alpha.
-#[inline(always)]
-fn hessian_by_altitude_of_alpha<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_1_d_velocity_d_altitude = d2_generalized_force_1_d_velocity_d_altitude
-        * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_2_d_velocity_d_altitude = d2_generalized_force_2_d_velocity_d_altitude
-        * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_3_d_velocity_d_altitude = d2_generalized_force_3_d_velocity_d_altitude
-        * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
-    let d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
-    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
-    let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_1_d_altitude_d_altitude = d2_generalized_force_1_d_altitude_d_altitude
-        * p.inv_omega_1_2; // slug^0.5/ft^1.5
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_2_d_altitude_d_altitude = d2_generalized_force_2_d_altitude_d_altitude
-        * p.inv_omega_2_2; // slug^0.5/ft^1.5
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_3_d_altitude_d_altitude = d2_generalized_force_3_d_altitude_d_altitude
-        * p.inv_omega_3_2; // slug^0.5/ft^1.5
-    let d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
-    let d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_altitude
-        + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_altitude
-        + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
-    let d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha
-        * d2_c_t_d_velocity_d_altitude + d2_c_l_d_velocity_d_altitude; // s/ft^2
-    let d2_force_turn_d_velocity_d_altitude = s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
-        + s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_altitude
-        + i.normal_coefficient * d2_turn_factor_d_velocity_d_altitude
-        + i.turn_factor * d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
-    let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
-        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
-    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
-        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
-        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_l_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_l_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    let d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
-        * d2_c_t_d_altitude_d_altitude + d2_c_l_d_altitude_d_altitude; // 1/ft^2
-    let d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
-        + i.normal_coefficient * d2_turn_factor_d_altitude_d_altitude
-        + i.turn_factor * d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
-        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
-
-    hessian.alpha_by_altitude_velocity = -d2_gamma_rate_d_velocity_d_altitude;
-    hessian.alpha_by_altitude_altitude = -d2_gamma_rate_d_altitude_d_altitude;
-}
-
-/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate_gamma.
-#[inline(always)]
-fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    m: &NoiseSlopes<R>,
-) {
-    // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_1_d_velocity_d_altitude = d2_generalized_force_1_d_velocity_d_altitude
-        * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_2_d_velocity_d_altitude = d2_generalized_force_2_d_velocity_d_altitude
-        * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_eta_static_3_d_velocity_d_altitude = d2_generalized_force_3_d_velocity_d_altitude
-        * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
-    let d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
-    let d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
-        + s.d_reference_force_d_velocity * s.d_c_t_d_altitude
-        + i.c_t * d2_reference_force_d_velocity_d_altitude
-        + i.reference_force * d2_c_t_d_velocity_d_altitude; // lb*s/ft^3
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_1_d_altitude_d_altitude = d2_generalized_force_1_d_altitude_d_altitude
-        * p.inv_omega_1_2; // slug^0.5/ft^1.5
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_2_d_altitude_d_altitude = d2_generalized_force_2_d_altitude_d_altitude
-        * p.inv_omega_2_2; // slug^0.5/ft^1.5
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_eta_static_3_d_altitude_d_altitude = d2_generalized_force_3_d_altitude_d_altitude
-        * p.inv_omega_3_2; // slug^0.5/ft^1.5
-    let d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    let d2_thrust_d_altitude_d_altitude = R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
-        + i.c_t * d2_reference_force_d_altitude_d_altitude
-        + i.reference_force * d2_c_t_d_altitude_d_altitude; // lb/ft^3
-    let d2_c_m_d_velocity_d_altitude = p.c_m_eta_1 * d2_eta_static_1_d_velocity_d_altitude
-        + p.c_m_eta_2 * d2_eta_static_2_d_velocity_d_altitude
-        + p.c_m_eta_3 * d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+        * p.inv_m - i.sin_gamma * h.d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
+    let d2_c_m_d_velocity_d_altitude = p.c_m_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
     let d2_pitching_moment_d_velocity_d_altitude = p.c_bar
         * (s.d_c_m_d_velocity * s.d_reference_force_d_altitude
             + s.d_reference_force_d_velocity * s.d_c_m_d_altitude
-            + i.c_m * d2_reference_force_d_velocity_d_altitude
+            + i.c_m * h.d2_reference_force_d_velocity_d_altitude
             + i.reference_force * d2_c_m_d_velocity_d_altitude)
-        + p.z_t * d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
+        + p.z_t * h.d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
     let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
         * p.inv_i_yy; // rad/s/ft^2
-    let d2_c_m_d_altitude_d_altitude = p.c_m_eta_1 * d2_eta_static_1_d_altitude_d_altitude
-        + p.c_m_eta_2 * d2_eta_static_2_d_altitude_d_altitude
-        + p.c_m_eta_3 * d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    let d2_c_m_d_altitude_d_altitude = p.c_m_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
     let d2_pitching_moment_d_altitude_d_altitude = p.c_bar
         * (R::TWO * s.d_c_m_d_altitude * s.d_reference_force_d_altitude
-            + i.c_m * d2_reference_force_d_altitude_d_altitude
+            + i.c_m * h.d2_reference_force_d_altitude_d_altitude
             + i.reference_force * d2_c_m_d_altitude_d_altitude)
-        + p.z_t * d2_thrust_d_altitude_d_altitude; // lb/ft^2
+        + p.z_t * h.d2_thrust_d_altitude_d_altitude; // lb/ft^2
     let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
         * p.inv_i_yy; // rad/s^2/ft^2
 
+    hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
+    hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
+    hessian.gamma_by_altitude_velocity = h.d2_gamma_rate_d_velocity_d_altitude;
+    hessian.gamma_by_altitude_altitude = h.d2_gamma_rate_d_altitude_d_altitude;
+    hessian.alpha_by_altitude_velocity = -h.d2_gamma_rate_d_velocity_d_altitude;
+    hessian.alpha_by_altitude_altitude = -h.d2_gamma_rate_d_altitude_d_altitude;
     hessian.pitch_rate_by_altitude_velocity = d2_pitch_acceleration_d_velocity_d_altitude;
     hessian.pitch_rate_by_altitude_altitude = d2_pitch_acceleration_d_altitude_d_altitude;
-    hessian.velocity_by_gamma_altitude = m.d2_velocity_rate_d_gamma_d_altitude;
-    hessian.velocity_by_gamma_gamma = m.d2_velocity_rate_d_gamma_d_gamma;
+    hessian.velocity_by_gamma_altitude = h.d2_velocity_rate_d_altitude_d_gamma;
+    hessian.velocity_by_gamma_gamma = h.d2_velocity_rate_d_gamma_d_gamma;
     hessian.altitude_by_gamma_velocity = i.cos_gamma;
-    hessian.altitude_by_gamma_gamma = m.d2_altitude_rate_d_gamma_d_gamma;
-    hessian.gamma_by_gamma_velocity = m.d2_gamma_rate_d_gamma_d_velocity;
-    hessian.gamma_by_gamma_altitude = m.d2_gamma_rate_d_gamma_d_altitude;
-    hessian.gamma_by_gamma_gamma = m.d2_gamma_rate_d_gamma_d_gamma;
-    hessian.alpha_by_gamma_velocity = -m.d2_gamma_rate_d_gamma_d_velocity;
-    hessian.alpha_by_gamma_altitude = -m.d2_gamma_rate_d_gamma_d_altitude;
-    hessian.alpha_by_gamma_gamma = -m.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.altitude_by_gamma_gamma = h.d2_altitude_rate_d_gamma_d_gamma;
+    hessian.gamma_by_gamma_velocity = h.d2_gamma_rate_d_velocity_d_gamma;
+    hessian.gamma_by_gamma_altitude = h.d2_gamma_rate_d_altitude_d_gamma;
+    hessian.gamma_by_gamma_gamma = h.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.alpha_by_gamma_velocity = -h.d2_gamma_rate_d_velocity_d_gamma;
+    hessian.alpha_by_gamma_altitude = -h.d2_gamma_rate_d_altitude_d_gamma;
+    hessian.alpha_by_gamma_gamma = -h.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.velocity_by_alpha_velocity = h.d2_velocity_rate_d_velocity_d_alpha;
+    hessian.velocity_by_alpha_altitude = h.d2_velocity_rate_d_altitude_d_alpha;
+    hessian.velocity_by_alpha_alpha = h.d2_velocity_rate_d_alpha_d_alpha;
+    hessian.gamma_by_alpha_velocity = h.d2_force_turn_d_velocity_d_alpha;
+    hessian.gamma_by_alpha_altitude = h.d2_force_turn_d_altitude_d_alpha;
+    hessian.gamma_by_alpha_alpha = h.d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha_by_alpha_velocity = -h.d2_force_turn_d_velocity_d_alpha;
+    hessian.alpha_by_alpha_altitude = -h.d2_force_turn_d_altitude_d_alpha;
+    hessian.alpha_by_alpha_alpha = -h.d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate_by_alpha_velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
+    hessian.pitch_rate_by_alpha_altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
+    hessian.pitch_rate_by_alpha_alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
 }
 
-/// Entries of [`hessian_values`]: derivatives by alpha to chi_2.
+/// Entries of [`hessian_values`]: derivatives by chi_1, chi_2.
 #[inline(always)]
-fn hessian_by_alpha_to_chi_2<R: Real>(
+fn hessian_by_chi_1_chi_2<R: Real>(
     hessian: &mut HessianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-    m: &NoiseSlopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to chi_1
     let d2_thrust_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
@@ -591,38 +306,26 @@ fn hessian_by_alpha_to_chi_2<R: Real>(
     let d2_pitch_acceleration_d_altitude_d_chi_2 = d2_pitching_moment_d_altitude_d_chi_2
         * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    hessian.velocity_by_alpha_velocity = m.d2_velocity_rate_d_alpha_d_velocity;
-    hessian.velocity_by_alpha_altitude = m.d2_velocity_rate_d_alpha_d_altitude;
-    hessian.velocity_by_alpha_alpha = m.d2_velocity_rate_d_alpha_d_alpha;
-    hessian.gamma_by_alpha_velocity = m.d2_force_turn_d_alpha_d_velocity;
-    hessian.gamma_by_alpha_altitude = m.d2_force_turn_d_alpha_d_altitude;
-    hessian.gamma_by_alpha_alpha = m.d2_force_turn_d_alpha_d_alpha;
-    hessian.alpha_by_alpha_velocity = -m.d2_force_turn_d_alpha_d_velocity;
-    hessian.alpha_by_alpha_altitude = -m.d2_force_turn_d_alpha_d_altitude;
-    hessian.alpha_by_alpha_alpha = -m.d2_force_turn_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_velocity = m.d2_pitch_acceleration_d_alpha_d_velocity;
-    hessian.pitch_rate_by_alpha_altitude = m.d2_pitch_acceleration_d_alpha_d_altitude;
-    hessian.pitch_rate_by_alpha_alpha = m.d2_pitch_acceleration_d_alpha_d_alpha;
     hessian.velocity_by_chi_1_velocity = d2_velocity_rate_d_velocity_d_chi_1;
     hessian.velocity_by_chi_1_altitude = d2_velocity_rate_d_altitude_d_chi_1;
-    hessian.velocity_by_chi_1_alpha = m.d2_velocity_rate_d_alpha_d_chi_1;
+    hessian.velocity_by_chi_1_alpha = h.d2_velocity_rate_d_alpha_d_chi_1;
     hessian.gamma_by_chi_1_velocity = d2_force_turn_d_velocity_d_chi_1;
     hessian.gamma_by_chi_1_altitude = d2_force_turn_d_altitude_d_chi_1;
-    hessian.gamma_by_chi_1_alpha = m.d2_force_turn_d_alpha_d_chi_1;
+    hessian.gamma_by_chi_1_alpha = h.d2_force_turn_d_alpha_d_chi_1;
     hessian.alpha_by_chi_1_velocity = -d2_force_turn_d_velocity_d_chi_1;
     hessian.alpha_by_chi_1_altitude = -d2_force_turn_d_altitude_d_chi_1;
-    hessian.alpha_by_chi_1_alpha = -m.d2_force_turn_d_alpha_d_chi_1;
+    hessian.alpha_by_chi_1_alpha = -h.d2_force_turn_d_alpha_d_chi_1;
     hessian.pitch_rate_by_chi_1_velocity = d2_pitch_acceleration_d_velocity_d_chi_1;
     hessian.pitch_rate_by_chi_1_altitude = d2_pitch_acceleration_d_altitude_d_chi_1;
     hessian.velocity_by_chi_2_velocity = d2_velocity_rate_d_velocity_d_chi_2;
     hessian.velocity_by_chi_2_altitude = d2_velocity_rate_d_altitude_d_chi_2;
-    hessian.velocity_by_chi_2_alpha = m.d2_velocity_rate_d_alpha_d_chi_2;
+    hessian.velocity_by_chi_2_alpha = h.d2_velocity_rate_d_alpha_d_chi_2;
     hessian.gamma_by_chi_2_velocity = d2_force_turn_d_velocity_d_chi_2;
     hessian.gamma_by_chi_2_altitude = d2_force_turn_d_altitude_d_chi_2;
-    hessian.gamma_by_chi_2_alpha = m.d2_force_turn_d_alpha_d_chi_2;
+    hessian.gamma_by_chi_2_alpha = h.d2_force_turn_d_alpha_d_chi_2;
     hessian.alpha_by_chi_2_velocity = -d2_force_turn_d_velocity_d_chi_2;
     hessian.alpha_by_chi_2_altitude = -d2_force_turn_d_altitude_d_chi_2;
-    hessian.alpha_by_chi_2_alpha = -m.d2_force_turn_d_alpha_d_chi_2;
+    hessian.alpha_by_chi_2_alpha = -h.d2_force_turn_d_alpha_d_chi_2;
     hessian.pitch_rate_by_chi_2_velocity = d2_pitch_acceleration_d_velocity_d_chi_2;
     hessian.pitch_rate_by_chi_2_altitude = d2_pitch_acceleration_d_altitude_d_chi_2;
 }
@@ -634,7 +337,7 @@ fn hessian_by_chi_3<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-    m: &NoiseSlopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to chi_3
     let d2_thrust_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
@@ -662,13 +365,13 @@ fn hessian_by_chi_3<R: Real>(
 
     hessian.velocity_by_chi_3_velocity = d2_velocity_rate_d_velocity_d_chi_3;
     hessian.velocity_by_chi_3_altitude = d2_velocity_rate_d_altitude_d_chi_3;
-    hessian.velocity_by_chi_3_alpha = m.d2_velocity_rate_d_alpha_d_chi_3;
+    hessian.velocity_by_chi_3_alpha = h.d2_velocity_rate_d_alpha_d_chi_3;
     hessian.gamma_by_chi_3_velocity = d2_force_turn_d_velocity_d_chi_3;
     hessian.gamma_by_chi_3_altitude = d2_force_turn_d_altitude_d_chi_3;
-    hessian.gamma_by_chi_3_alpha = m.d2_force_turn_d_alpha_d_chi_3;
+    hessian.gamma_by_chi_3_alpha = h.d2_force_turn_d_alpha_d_chi_3;
     hessian.alpha_by_chi_3_velocity = -d2_force_turn_d_velocity_d_chi_3;
     hessian.alpha_by_chi_3_altitude = -d2_force_turn_d_altitude_d_chi_3;
-    hessian.alpha_by_chi_3_alpha = -m.d2_force_turn_d_alpha_d_chi_3;
+    hessian.alpha_by_chi_3_alpha = -h.d2_force_turn_d_alpha_d_chi_3;
     hessian.pitch_rate_by_chi_3_velocity = d2_pitch_acceleration_d_velocity_d_chi_3;
     hessian.pitch_rate_by_chi_3_altitude = d2_pitch_acceleration_d_altitude_d_chi_3;
 }
@@ -686,15 +389,12 @@ pub fn hessian_values<R: Real>(
 ) -> HessianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let m = noise_slopes(x, u, p, &i, &s);
+    let h = curvatures(x, u, p, &i, &s);
     let mut hessian = HessianEntries::splat(R::ZERO);
     hessian_by_velocity(&mut hessian, p, &i, &s);
-    hessian_by_altitude_of_velocity(&mut hessian, x, p, &i, &s);
-    hessian_by_altitude_of_gamma(&mut hessian, x, p, &i, &s);
-    hessian_by_altitude_of_alpha(&mut hessian, x, p, &i, &s);
-    hessian_by_altitude_of_pitch_rate_gamma(&mut hessian, x, p, &i, &s, &m);
-    hessian_by_alpha_to_chi_2(&mut hessian, p, &i, &s, &m);
-    hessian_by_chi_3(&mut hessian, p, &i, &s, &m);
+    hessian_by_altitude_to_alpha(&mut hessian, p, &i, &s, &h);
+    hessian_by_chi_1_chi_2(&mut hessian, p, &i, &s, &h);
+    hessian_by_chi_3(&mut hessian, p, &i, &s, &h);
     hessian
 }
 

@@ -66,7 +66,7 @@ ahv_core::entries! {
     }
 }
 
-/// [`jacobians_values`] from what is computed once.
+/// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
     _x: &State<R>,

@@ -4,7 +4,7 @@
 
 use super::{
     Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes,
-    State, intermediates, sensitivities, slopes,
+    State, curvatures, intermediates, sensitivities, slopes,
 };
 
 use ahv_core::Real;
@@ -267,25 +267,18 @@ fn parameter_jacobian_by_vehicle<R: Real>(
 #[inline(always)]
 fn parameter_jacobian_by_environment<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_c_t_d_rho_0 = p.s * i.density_ratio
-        * (p.half_c_t_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
-            + p.half_c_t_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
-            + p.half_c_t_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
-    let d_thrust_d_rho_0 = i.c_t * p.half_s * i.velocity_2 * i.density_ratio
-        + i.reference_force * d_c_t_d_rho_0; // lb*ft^2/slug
     let d_c_d_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_d_eta_1_times_inv_omega_1_2 * i.c_n_1 * i.velocity_2
             + p.half_c_d_eta_2_times_inv_omega_2_2 * i.c_n_2 * i.velocity_2
             + p.half_c_d_eta_3_times_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
     let d_drag_d_rho_0 = i.c_d * p.half_s * i.velocity_2 * i.density_ratio
         + i.reference_force * d_c_d_d_rho_0; // lb*ft^2/slug
-    let d_path_force_d_rho_0 = i.cos_alpha * d_thrust_d_rho_0 - d_drag_d_rho_0; // lb*ft^2/slug
+    let d_path_force_d_rho_0 = i.cos_alpha * q.d_thrust_d_rho_0 - d_drag_d_rho_0; // lb*ft^2/slug
     let d_velocity_rate_d_rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
     let d_c_m_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_m_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
@@ -293,63 +286,35 @@ fn parameter_jacobian_by_environment<R: Real>(
             + p.half_c_m_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
     let d_pitching_moment_d_rho_0 = p.c_bar
         * (p.half_s * i.c_m * i.velocity_2 * i.density_ratio
-            + i.reference_force * d_c_m_d_rho_0) + p.z_t * d_thrust_d_rho_0; // lb*ft^3/slug
+            + i.reference_force * d_c_m_d_rho_0) + p.z_t * q.d_thrust_d_rho_0; // lb*ft^3/slug
     let d_pitch_acceleration_d_rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
-    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
-    let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_1_d_h_0 = d_generalized_force_1_d_h_0 * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_2_d_h_0 = d_generalized_force_2_d_h_0 * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_3_d_h_0 = d_generalized_force_3_d_h_0 * p.inv_omega_3_2; // slug^0.5/ft^0.5
-    let d_c_t_d_h_0 = p.c_t_eta_1 * d_eta_static_1_d_h_0
-        + p.c_t_eta_2 * d_eta_static_2_d_h_0
-        + p.c_t_eta_3 * d_eta_static_3_d_h_0; // 1/ft
-    let d_thrust_d_h_0 = i.c_t * d_reference_force_d_h_0
-        + i.reference_force * d_c_t_d_h_0; // lb/ft^2
-    let d_c_d_d_h_0 = p.c_d_eta_1 * d_eta_static_1_d_h_0
-        + p.c_d_eta_2 * d_eta_static_2_d_h_0
-        + p.c_d_eta_3 * d_eta_static_3_d_h_0; // 1/ft
-    let d_drag_d_h_0 = i.c_d * d_reference_force_d_h_0 + i.reference_force * d_c_d_d_h_0; // lb/ft^2
-    let d_path_force_d_h_0 = i.cos_alpha * d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
+    let d_c_d_d_h_0 = p.c_d_eta_1 * q.d_eta_static_1_d_h_0
+        + p.c_d_eta_2 * q.d_eta_static_2_d_h_0
+        + p.c_d_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
+    let d_drag_d_h_0 = i.c_d * q.d_reference_force_d_h_0
+        + i.reference_force * d_c_d_d_h_0; // lb/ft^2
+    let d_path_force_d_h_0 = i.cos_alpha * q.d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
     let d_velocity_rate_d_h_0 = d_path_force_d_h_0 * p.inv_m; // 1/s^2
-    let d_c_m_d_h_0 = p.c_m_eta_1 * d_eta_static_1_d_h_0
-        + p.c_m_eta_2 * d_eta_static_2_d_h_0
-        + p.c_m_eta_3 * d_eta_static_3_d_h_0; // 1/ft
+    let d_c_m_d_h_0 = p.c_m_eta_1 * q.d_eta_static_1_d_h_0
+        + p.c_m_eta_2 * q.d_eta_static_2_d_h_0
+        + p.c_m_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
     let d_pitching_moment_d_h_0 = p.c_bar
-        * (i.c_m * d_reference_force_d_h_0 + i.reference_force * d_c_m_d_h_0)
-        + p.z_t * d_thrust_d_h_0; // lb/ft
+        * (i.c_m * q.d_reference_force_d_h_0 + i.reference_force * d_c_m_d_h_0)
+        + p.z_t * q.d_thrust_d_h_0; // lb/ft
     let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
-    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
-    let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
-    let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_1_d_h_s = d_generalized_force_1_d_h_s * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_2_d_h_s = d_generalized_force_2_d_h_s * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_3_d_h_s = d_generalized_force_3_d_h_s * p.inv_omega_3_2; // slug^0.5/ft^0.5
-    let d_c_t_d_h_s = p.c_t_eta_1 * d_eta_static_1_d_h_s
-        + p.c_t_eta_2 * d_eta_static_2_d_h_s
-        + p.c_t_eta_3 * d_eta_static_3_d_h_s; // 1/ft
-    let d_thrust_d_h_s = i.c_t * d_reference_force_d_h_s
-        + i.reference_force * d_c_t_d_h_s; // lb/ft^2
-    let d_c_d_d_h_s = p.c_d_eta_1 * d_eta_static_1_d_h_s
-        + p.c_d_eta_2 * d_eta_static_2_d_h_s
-        + p.c_d_eta_3 * d_eta_static_3_d_h_s; // 1/ft
-    let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s + i.reference_force * d_c_d_d_h_s; // lb/ft^2
-    let d_path_force_d_h_s = i.cos_alpha * d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
+    let d_c_d_d_h_s = p.c_d_eta_1 * q.d_eta_static_1_d_h_s
+        + p.c_d_eta_2 * q.d_eta_static_2_d_h_s
+        + p.c_d_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
+    let d_drag_d_h_s = i.c_d * q.d_reference_force_d_h_s
+        + i.reference_force * d_c_d_d_h_s; // lb/ft^2
+    let d_path_force_d_h_s = i.cos_alpha * q.d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
     let d_velocity_rate_d_h_s = d_path_force_d_h_s * p.inv_m; // 1/s^2
-    let d_c_m_d_h_s = p.c_m_eta_1 * d_eta_static_1_d_h_s
-        + p.c_m_eta_2 * d_eta_static_2_d_h_s
-        + p.c_m_eta_3 * d_eta_static_3_d_h_s; // 1/ft
+    let d_c_m_d_h_s = p.c_m_eta_1 * q.d_eta_static_1_d_h_s
+        + p.c_m_eta_2 * q.d_eta_static_2_d_h_s
+        + p.c_m_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
     let d_pitching_moment_d_h_s = p.c_bar
-        * (i.c_m * d_reference_force_d_h_s + i.reference_force * d_c_m_d_h_s)
-        + p.z_t * d_thrust_d_h_s; // lb/ft
+        * (i.c_m * q.d_reference_force_d_h_s + i.reference_force * d_c_m_d_h_s)
+        + p.z_t * q.d_thrust_d_h_s; // lb/ft
     let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
 
     parameter.velocity_by_rho_0 = d_velocity_rate_d_rho_0;
@@ -484,9 +449,7 @@ fn parameter_jacobian_by_choices<R: Real>(
     let d_pitch_acceleration_d_canard_command = d_pitching_moment_d_canard_command
         * p.inv_i_yy; // rad/s^2
     let d_c_t_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c * i.reference_force
-        * (p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
-            + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
-            + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e);
+        * q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e;
     let d_thrust_d_canard_slaving = i.reference_force * d_c_t_d_canard_slaving; // lb/ft
     let d_c_d_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * (i.reference_force
@@ -500,9 +463,7 @@ fn parameter_jacobian_by_choices<R: Real>(
     let d_velocity_rate_d_canard_slaving = d_path_force_d_canard_slaving * p.inv_m; // ft/s^2
     let d_c_l_d_canard_slaving = -p.c_l_delta_e
         * (p.inv_c_l_delta_c * i.reference_force
-            * (p.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
-                + p.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
-                + p.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e) + u.delta_e);
+            * q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e + u.delta_e);
     let d_normal_coefficient_d_canard_slaving = i.sin_alpha * d_c_t_d_canard_slaving
         + d_c_l_d_canard_slaving;
     let d_force_turn_d_canard_slaving = i.turn_factor
@@ -519,7 +480,7 @@ fn parameter_jacobian_by_choices<R: Real>(
         * p.inv_i_yy; // rad/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
-            * (p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity
+            * (q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity
                 - x.velocity)
             - x.velocity * p.earth_curvature
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
@@ -616,22 +577,20 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter.pitch_rate_by_c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * i.eta_3;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d.
 #[inline(always)]
-fn parameter_jacobian_by_c_l<R: Real>(
+fn parameter_jacobian_by_c_l_c_d<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e = p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
-        + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
-        + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
     let d_c_t_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * i.reference_force
-        * sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
+        * q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
     let d_thrust_d_c_l_delta_e = i.reference_force * d_c_t_d_c_l_delta_e; // lb*rad/ft
     let d_c_d_d_c_l_delta_e_term_1 = i.reference_force
         * (p.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 * u.delta_e
@@ -644,16 +603,10 @@ fn parameter_jacobian_by_c_l<R: Real>(
     let d_path_force_d_c_l_delta_e = i.cos_alpha * d_thrust_d_c_l_delta_e
         - d_drag_d_c_l_delta_e; // lb*rad/ft
     let d_velocity_rate_d_c_l_delta_e = d_path_force_d_c_l_delta_e * p.inv_m; // ft*rad/s^2
-    let c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e = p
-        .c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e;
-    let c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e = p
-        .c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e;
-    let c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e = p
-        .c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
     let d_c_l_d_c_l_delta_e = p.canard_slaving_over_c_l_delta_c * i.reference_force
-        * (-c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
-            - c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
-            - c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e)
+        * (-q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
+            - q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
+            - q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e)
         + u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
     let d_normal_coefficient_d_c_l_delta_e = i.sin_alpha * d_c_t_d_c_l_delta_e
         + d_c_l_d_c_l_delta_e; // rad
@@ -670,7 +623,7 @@ fn parameter_jacobian_by_c_l<R: Real>(
     let d_pitch_acceleration_d_c_l_delta_e = d_pitching_moment_d_c_l_delta_e
         * p.inv_i_yy; // rad^2/s^2
     let d_c_t_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * i.reference_force * sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
+        * i.reference_force * q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
     let d_thrust_d_c_l_delta_c = i.reference_force * d_c_t_d_c_l_delta_c; // lb*rad/ft
     let d_c_d_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_c_d_d_c_l_delta_e_term_1; // rad
@@ -679,10 +632,8 @@ fn parameter_jacobian_by_c_l<R: Real>(
         - d_drag_d_c_l_delta_c; // lb*rad/ft
     let d_velocity_rate_d_c_l_delta_c = d_path_force_d_c_l_delta_c * p.inv_m; // ft*rad/s^2
     let d_c_l_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * i.reference_force
-        * (c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
-            + c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
-            + c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e) + i.canard_commanded; // rad
+        * i.reference_force * q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e
+        + i.canard_commanded; // rad
     let d_normal_coefficient_d_c_l_delta_c = i.sin_alpha * d_c_t_d_c_l_delta_c
         + d_c_l_d_c_l_delta_c; // rad
     let d_force_turn_d_c_l_delta_c = i.turn_factor * d_normal_coefficient_d_c_l_delta_c; // rad^2/s
@@ -711,75 +662,6 @@ fn parameter_jacobian_by_c_l<R: Real>(
     parameter.alpha_by_c_l_eta_3 = -i.turn_factor * i.eta_3;
     parameter.pitch_rate_by_c_l_delta_e = d_pitch_acceleration_d_c_l_delta_e;
     parameter.pitch_rate_by_c_l_delta_c = d_pitch_acceleration_d_c_l_delta_c;
-}
-
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_d_c_n_1.
-#[inline(always)]
-fn parameter_jacobian_by_c_d_c_n_1<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to parameters
-    let reference_force_2 = i.reference_force * i.reference_force;
-    let d_path_force_d_c_n_1_alpha_2 = reference_force_2 * p.inv_omega_1_2
-        * (i.cos_alpha * p.c_t_eta_1 * i.alpha_2 - p.c_d_eta_1 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
-    let d_velocity_rate_d_c_n_1_alpha_2 = d_path_force_d_c_n_1_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_normal_coefficient_d_c_n_1_alpha_2 = p.inv_omega_1_2 * i.reference_force
-        * (i.sin_alpha * p.c_t_eta_1 * i.alpha_2 + p.c_l_eta_1 * i.alpha_2); // slug^0.5*rad^2/ft^0.5
-    let d_force_turn_d_c_n_1_alpha_2 = i.turn_factor
-        * d_normal_coefficient_d_c_n_1_alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_alpha_2 = p.inv_omega_1_2 * reference_force_2
-        * (p.c_bar_c_m_eta_1 * i.alpha_2 + p.z_t_c_t_eta_1 * i.alpha_2); // lb*slug^0.5*rad^2/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_alpha_2 = d_pitching_moment_d_c_n_1_alpha_2
-        * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_1_alpha = reference_force_2 * p.inv_omega_1_2
-        * (i.cos_alpha * p.c_t_eta_1 * x.alpha - p.c_d_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_1_alpha = d_path_force_d_c_n_1_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_1_alpha = p.inv_omega_1_2 * i.reference_force
-        * (i.sin_alpha * p.c_t_eta_1 * x.alpha + p.c_l_eta_1 * x.alpha); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_alpha = i.turn_factor * d_normal_coefficient_d_c_n_1_alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_alpha = p.inv_omega_1_2 * reference_force_2
-        * (p.c_bar_c_m_eta_1 * x.alpha + p.z_t_c_t_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_alpha = d_pitching_moment_d_c_n_1_alpha
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_1_delta_e = reference_force_2 * p.inv_omega_1_2
-        * (i.cos_alpha * p.c_t_eta_1 * u.delta_e - p.c_d_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_1_delta_e = d_path_force_d_c_n_1_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_1_delta_e = p.inv_omega_1_2 * i.reference_force
-        * (i.sin_alpha * p.c_t_eta_1 * u.delta_e + p.c_l_eta_1 * u.delta_e); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_delta_e = i.turn_factor
-        * d_normal_coefficient_d_c_n_1_delta_e; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_delta_e = p.inv_omega_1_2 * reference_force_2
-        * (p.c_bar_c_m_eta_1 * u.delta_e + p.z_t_c_t_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_delta_e = d_pitching_moment_d_c_n_1_delta_e
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = s.cos_alpha_c_t_eta_1 - p.c_d_eta_1;
-    let d_path_force_d_c_n_1_delta_c = reference_force_2 * p.inv_omega_1_2
-        * i.canard_deflection * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_1_delta_c = d_path_force_d_c_n_1_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_1_delta_c = p.inv_omega_1_2 * i.reference_force
-        * i.canard_deflection * s.d_normal_coefficient_d_chi_1; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_delta_c = i.turn_factor
-        * d_normal_coefficient_d_c_n_1_delta_c; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_delta_c = p
-        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * reference_force_2
-        * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_delta_c = d_pitching_moment_d_c_n_1_delta_c
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_1_0 = reference_force_2 * p.inv_omega_1_2
-        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5/ft^1.5
-    let d_velocity_rate_d_c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
-    let d_normal_coefficient_d_c_n_1_0 = p.inv_omega_1_2 * i.reference_force
-        * s.d_normal_coefficient_d_chi_1; // slug^0.5/ft^0.5
-    let d_force_turn_d_c_n_1_0 = i.turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_0 = p
-        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * reference_force_2; // lb*slug^0.5/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.velocity_by_c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
     parameter.velocity_by_c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
     parameter.velocity_by_c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
@@ -792,6 +674,75 @@ fn parameter_jacobian_by_c_d_c_n_1<R: Real>(
     parameter.velocity_by_c_d_eta_1 = -i.reference_force * i.eta_1 * p.inv_m;
     parameter.velocity_by_c_d_eta_2 = -i.reference_force * i.eta_2 * p.inv_m;
     parameter.velocity_by_c_d_eta_3 = -i.reference_force * i.eta_3 * p.inv_m;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_1.
+#[inline(always)]
+fn parameter_jacobian_by_c_n_1<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>,
+    x: &State<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+    q: &Sensitivities<R>,
+) {
+    // Derivatives with respect to parameters
+    let d_path_force_d_c_n_1_alpha_2 = q.reference_force_2 * p.inv_omega_1_2
+        * (i.cos_alpha * p.c_t_eta_1 * i.alpha_2 - p.c_d_eta_1 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
+    let d_velocity_rate_d_c_n_1_alpha_2 = d_path_force_d_c_n_1_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_normal_coefficient_d_c_n_1_alpha_2 = p.inv_omega_1_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_1 * i.alpha_2 + p.c_l_eta_1 * i.alpha_2); // slug^0.5*rad^2/ft^0.5
+    let d_force_turn_d_c_n_1_alpha_2 = i.turn_factor
+        * d_normal_coefficient_d_c_n_1_alpha_2; // rad^3*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_alpha_2 = p.inv_omega_1_2 * q.reference_force_2
+        * (p.c_bar_c_m_eta_1 * i.alpha_2 + p.z_t_c_t_eta_1 * i.alpha_2); // lb*slug^0.5*rad^2/ft^0.5
+    let d_pitch_acceleration_d_c_n_1_alpha_2 = d_pitching_moment_d_c_n_1_alpha_2
+        * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_1_alpha = q.reference_force_2 * p.inv_omega_1_2
+        * (i.cos_alpha * p.c_t_eta_1 * x.alpha - p.c_d_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^1.5
+    let d_velocity_rate_d_c_n_1_alpha = d_path_force_d_c_n_1_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let d_normal_coefficient_d_c_n_1_alpha = p.inv_omega_1_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_1 * x.alpha + p.c_l_eta_1 * x.alpha); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_alpha = i.turn_factor * d_normal_coefficient_d_c_n_1_alpha; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_alpha = p.inv_omega_1_2 * q.reference_force_2
+        * (p.c_bar_c_m_eta_1 * x.alpha + p.z_t_c_t_eta_1 * x.alpha); // lb*slug^0.5*rad/ft^0.5
+    let d_pitch_acceleration_d_c_n_1_alpha = d_pitching_moment_d_c_n_1_alpha
+        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_1_delta_e = q.reference_force_2 * p.inv_omega_1_2
+        * (i.cos_alpha * p.c_t_eta_1 * u.delta_e - p.c_d_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
+    let d_velocity_rate_d_c_n_1_delta_e = d_path_force_d_c_n_1_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let d_normal_coefficient_d_c_n_1_delta_e = p.inv_omega_1_2 * i.reference_force
+        * (i.sin_alpha * p.c_t_eta_1 * u.delta_e + p.c_l_eta_1 * u.delta_e); // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_delta_e = i.turn_factor
+        * d_normal_coefficient_d_c_n_1_delta_e; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_delta_e = p.inv_omega_1_2 * q.reference_force_2
+        * (p.c_bar_c_m_eta_1 * u.delta_e + p.z_t_c_t_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
+    let d_pitch_acceleration_d_c_n_1_delta_e = d_pitching_moment_d_c_n_1_delta_e
+        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = s.cos_alpha_c_t_eta_1 - p.c_d_eta_1;
+    let d_path_force_d_c_n_1_delta_c = q.reference_force_2 * p.inv_omega_1_2
+        * i.canard_deflection * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
+    let d_velocity_rate_d_c_n_1_delta_c = d_path_force_d_c_n_1_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let d_normal_coefficient_d_c_n_1_delta_c = p.inv_omega_1_2 * i.reference_force
+        * i.canard_deflection * s.d_normal_coefficient_d_chi_1; // slug^0.5*rad/ft^0.5
+    let d_force_turn_d_c_n_1_delta_c = i.turn_factor
+        * d_normal_coefficient_d_c_n_1_delta_c; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_delta_c = p
+        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * q.reference_force_2
+        * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
+    let d_pitch_acceleration_d_c_n_1_delta_c = d_pitching_moment_d_c_n_1_delta_c
+        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_1_0 = q.reference_force_2 * p.inv_omega_1_2
+        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5/ft^1.5
+    let d_velocity_rate_d_c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
+    let d_normal_coefficient_d_c_n_1_0 = p.inv_omega_1_2 * i.reference_force
+        * s.d_normal_coefficient_d_chi_1; // slug^0.5/ft^0.5
+    let d_force_turn_d_c_n_1_0 = i.turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_0 = p
+        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * q.reference_force_2; // lb*slug^0.5/ft^0.5
+    let d_pitch_acceleration_d_c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
+
     parameter.velocity_by_c_n_1_alpha_2 = d_velocity_rate_d_c_n_1_alpha_2;
     parameter.velocity_by_c_n_1_alpha = d_velocity_rate_d_c_n_1_alpha;
     parameter.velocity_by_c_n_1_delta_e = d_velocity_rate_d_c_n_1_delta_e;
@@ -823,43 +774,43 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let reference_force_2 = i.reference_force * i.reference_force;
-    let d_path_force_d_c_n_2_alpha_2 = reference_force_2 * p.inv_omega_2_2
+    let d_path_force_d_c_n_2_alpha_2 = q.reference_force_2 * p.inv_omega_2_2
         * (i.cos_alpha * p.c_t_eta_2 * i.alpha_2 - p.c_d_eta_2 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     let d_velocity_rate_d_c_n_2_alpha_2 = d_path_force_d_c_n_2_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
     let d_normal_coefficient_d_c_n_2_alpha_2 = p.inv_omega_2_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_2 * i.alpha_2 + p.c_l_eta_2 * i.alpha_2); // slug^0.5*rad^2/ft^0.5
     let d_force_turn_d_c_n_2_alpha_2 = i.turn_factor
         * d_normal_coefficient_d_c_n_2_alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_2_alpha_2 = p.inv_omega_2_2 * reference_force_2
+    let d_pitching_moment_d_c_n_2_alpha_2 = p.inv_omega_2_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_2 * i.alpha_2 + p.z_t_c_t_eta_2 * i.alpha_2); // lb*slug^0.5*rad^2/ft^0.5
     let d_pitch_acceleration_d_c_n_2_alpha_2 = d_pitching_moment_d_c_n_2_alpha_2
         * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_2_alpha = reference_force_2 * p.inv_omega_2_2
+    let d_path_force_d_c_n_2_alpha = q.reference_force_2 * p.inv_omega_2_2
         * (i.cos_alpha * p.c_t_eta_2 * x.alpha - p.c_d_eta_2 * x.alpha); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_alpha = d_path_force_d_c_n_2_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_2_alpha = p.inv_omega_2_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_2 * x.alpha + p.c_l_eta_2 * x.alpha); // slug^0.5*rad/ft^0.5
     let d_force_turn_d_c_n_2_alpha = i.turn_factor * d_normal_coefficient_d_c_n_2_alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_2_alpha = p.inv_omega_2_2 * reference_force_2
+    let d_pitching_moment_d_c_n_2_alpha = p.inv_omega_2_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_2 * x.alpha + p.z_t_c_t_eta_2 * x.alpha); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_alpha = d_pitching_moment_d_c_n_2_alpha
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_2_delta_e = reference_force_2 * p.inv_omega_2_2
+    let d_path_force_d_c_n_2_delta_e = q.reference_force_2 * p.inv_omega_2_2
         * (i.cos_alpha * p.c_t_eta_2 * u.delta_e - p.c_d_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_delta_e = d_path_force_d_c_n_2_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_2_delta_e = p.inv_omega_2_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_2 * u.delta_e + p.c_l_eta_2 * u.delta_e); // slug^0.5*rad/ft^0.5
     let d_force_turn_d_c_n_2_delta_e = i.turn_factor
         * d_normal_coefficient_d_c_n_2_delta_e; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_2_delta_e = p.inv_omega_2_2 * reference_force_2
+    let d_pitching_moment_d_c_n_2_delta_e = p.inv_omega_2_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_2 * u.delta_e + p.z_t_c_t_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_delta_e = d_pitching_moment_d_c_n_2_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = s.cos_alpha_c_t_eta_2 - p.c_d_eta_2;
-    let d_path_force_d_c_n_2_delta_c = reference_force_2 * p.inv_omega_2_2
+    let d_path_force_d_c_n_2_delta_c = q.reference_force_2 * p.inv_omega_2_2
         * i.canard_deflection * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_2_delta_c = d_path_force_d_c_n_2_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_2_delta_c = p.inv_omega_2_2 * i.reference_force
@@ -867,18 +818,18 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     let d_force_turn_d_c_n_2_delta_c = i.turn_factor
         * d_normal_coefficient_d_c_n_2_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_delta_c = p
-        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * reference_force_2
+        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * q.reference_force_2
         * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_2_delta_c = d_pitching_moment_d_c_n_2_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_2_0 = reference_force_2 * p.inv_omega_2_2
+    let d_path_force_d_c_n_2_0 = q.reference_force_2 * p.inv_omega_2_2
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_2_0 = d_path_force_d_c_n_2_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
     let d_normal_coefficient_d_c_n_2_0 = p.inv_omega_2_2 * i.reference_force
         * s.d_normal_coefficient_d_chi_2; // slug^0.5/ft^0.5
     let d_force_turn_d_c_n_2_0 = i.turn_factor * d_normal_coefficient_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_0 = p
-        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * reference_force_2; // lb*slug^0.5/ft^0.5
+        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * q.reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_2_0 = d_pitching_moment_d_c_n_2_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
 
     parameter.velocity_by_c_n_2_alpha_2 = d_velocity_rate_d_c_n_2_alpha_2;
@@ -903,7 +854,7 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     parameter.pitch_rate_by_c_n_2_0 = d_pitch_acceleration_d_c_n_2_0;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3_c_m.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3, c_m.
 #[inline(always)]
 fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -912,43 +863,43 @@ fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let reference_force_2 = i.reference_force * i.reference_force;
-    let d_path_force_d_c_n_3_alpha_2 = reference_force_2 * p.inv_omega_3_2
+    let d_path_force_d_c_n_3_alpha_2 = q.reference_force_2 * p.inv_omega_3_2
         * (i.cos_alpha * p.c_t_eta_3 * i.alpha_2 - p.c_d_eta_3 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     let d_velocity_rate_d_c_n_3_alpha_2 = d_path_force_d_c_n_3_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
     let d_normal_coefficient_d_c_n_3_alpha_2 = p.inv_omega_3_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_3 * i.alpha_2 + p.c_l_eta_3 * i.alpha_2); // slug^0.5*rad^2/ft^0.5
     let d_force_turn_d_c_n_3_alpha_2 = i.turn_factor
         * d_normal_coefficient_d_c_n_3_alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_3_alpha_2 = p.inv_omega_3_2 * reference_force_2
+    let d_pitching_moment_d_c_n_3_alpha_2 = p.inv_omega_3_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_3 * i.alpha_2 + p.z_t_c_t_eta_3 * i.alpha_2); // lb*slug^0.5*rad^2/ft^0.5
     let d_pitch_acceleration_d_c_n_3_alpha_2 = d_pitching_moment_d_c_n_3_alpha_2
         * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_3_alpha = reference_force_2 * p.inv_omega_3_2
+    let d_path_force_d_c_n_3_alpha = q.reference_force_2 * p.inv_omega_3_2
         * (i.cos_alpha * p.c_t_eta_3 * x.alpha - p.c_d_eta_3 * x.alpha); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_alpha = d_path_force_d_c_n_3_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_3_alpha = p.inv_omega_3_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_3 * x.alpha + p.c_l_eta_3 * x.alpha); // slug^0.5*rad/ft^0.5
     let d_force_turn_d_c_n_3_alpha = i.turn_factor * d_normal_coefficient_d_c_n_3_alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_3_alpha = p.inv_omega_3_2 * reference_force_2
+    let d_pitching_moment_d_c_n_3_alpha = p.inv_omega_3_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_3 * x.alpha + p.z_t_c_t_eta_3 * x.alpha); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_alpha = d_pitching_moment_d_c_n_3_alpha
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_3_delta_e = reference_force_2 * p.inv_omega_3_2
+    let d_path_force_d_c_n_3_delta_e = q.reference_force_2 * p.inv_omega_3_2
         * (i.cos_alpha * p.c_t_eta_3 * u.delta_e - p.c_d_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_delta_e = d_path_force_d_c_n_3_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_3_delta_e = p.inv_omega_3_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_3 * u.delta_e + p.c_l_eta_3 * u.delta_e); // slug^0.5*rad/ft^0.5
     let d_force_turn_d_c_n_3_delta_e = i.turn_factor
         * d_normal_coefficient_d_c_n_3_delta_e; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_3_delta_e = p.inv_omega_3_2 * reference_force_2
+    let d_pitching_moment_d_c_n_3_delta_e = p.inv_omega_3_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_3 * u.delta_e + p.z_t_c_t_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_delta_e = d_pitching_moment_d_c_n_3_delta_e
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = s.cos_alpha_c_t_eta_3 - p.c_d_eta_3;
-    let d_path_force_d_c_n_3_delta_c = reference_force_2 * p.inv_omega_3_2
+    let d_path_force_d_c_n_3_delta_c = q.reference_force_2 * p.inv_omega_3_2
         * i.canard_deflection * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad/ft^1.5
     let d_velocity_rate_d_c_n_3_delta_c = d_path_force_d_c_n_3_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_3_delta_c = p.inv_omega_3_2 * i.reference_force
@@ -956,18 +907,18 @@ fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
     let d_force_turn_d_c_n_3_delta_c = i.turn_factor
         * d_normal_coefficient_d_c_n_3_delta_c; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_delta_c = p
-        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * reference_force_2
+        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * q.reference_force_2
         * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
     let d_pitch_acceleration_d_c_n_3_delta_c = d_pitching_moment_d_c_n_3_delta_c
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_3_0 = reference_force_2 * p.inv_omega_3_2
+    let d_path_force_d_c_n_3_0 = q.reference_force_2 * p.inv_omega_3_2
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5/ft^1.5
     let d_velocity_rate_d_c_n_3_0 = d_path_force_d_c_n_3_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
     let d_normal_coefficient_d_c_n_3_0 = p.inv_omega_3_2 * i.reference_force
         * s.d_normal_coefficient_d_chi_3; // slug^0.5/ft^0.5
     let d_force_turn_d_c_n_3_0 = i.turn_factor * d_normal_coefficient_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_0 = p
-        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * reference_force_2; // lb*slug^0.5/ft^0.5
+        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * q.reference_force_2; // lb*slug^0.5/ft^0.5
     let d_pitch_acceleration_d_c_n_3_0 = d_pitching_moment_d_c_n_3_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
 
     parameter.velocity_by_c_n_3_alpha_2 = d_velocity_rate_d_c_n_3_alpha_2;
@@ -1016,17 +967,18 @@ pub fn parameter_jacobian_values<R: Real>(
 ) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let q = sensitivities(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &h);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
     parameter_jacobian_by_vehicle(&mut parameter, p, &i, &s);
-    parameter_jacobian_by_environment(&mut parameter, x, p, &i, &q);
+    parameter_jacobian_by_environment(&mut parameter, p, &i, &q);
     parameter_jacobian_by_modes(&mut parameter, x, p, &i);
     parameter_jacobian_by_choices(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_t(&mut parameter, x, u, p, &i);
-    parameter_jacobian_by_c_l(&mut parameter, x, u, p, &i, &s);
-    parameter_jacobian_by_c_d_c_n_1(&mut parameter, x, u, p, &i, &s);
-    parameter_jacobian_by_c_n_2(&mut parameter, x, u, p, &i, &s);
-    parameter_jacobian_by_c_n_3_c_m(&mut parameter, x, u, p, &i, &s);
+    parameter_jacobian_by_c_l_c_d(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_n_1(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_n_2(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_n_3_c_m(&mut parameter, x, u, p, &i, &s, &q);
     parameter
 }
 

@@ -491,6 +491,7 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Canard, (4)
     c.canard_gain = -p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c;
     c.d_elevator_lift_d_c_l_delta_e = R::ONE - p.canard_slaving;
     c.elevator_lift = p.c_l_delta_e * c.d_elevator_lift_d_c_l_delta_e; // 1/rad
@@ -561,6 +562,7 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_omega_1_2 = c.inv_omega_1 * c.inv_omega_1;
     c.inv_omega_2_2 = c.inv_omega_2 * c.inv_omega_2;
@@ -628,11 +630,12 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
         * c.inv_omega_2_2;
     c.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 = p.c_d_eta_3 * p.c_n_3_delta_c
         * c.inv_omega_3_2;
-    c.c_l_delta_e_over_c_l_delta_c = p.c_l_delta_e * c.inv_c_l_delta_c;
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_4<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
+    c.c_l_delta_e_over_c_l_delta_c = p.c_l_delta_e * c.inv_c_l_delta_c;
     c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
     c.canard_slaving_over_c_l_delta_c = p.canard_slaving * c.inv_c_l_delta_c;
     let inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;

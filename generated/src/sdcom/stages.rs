@@ -450,6 +450,7 @@ fn slopes_part_2<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) {
+    // Derivatives with respect to alpha
     let d_generalized_force_1_d_alpha = i.reference_force * s.d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
     s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
@@ -538,6 +539,7 @@ fn slopes_part_3<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) {
+    // Derivatives with respect to phi
     let d_path_force_d_phi = i.cos_alpha * s.d_thrust_d_phi; // lb/ft
     s.d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
     let d_normal_coefficient_d_phi = i.sin_alpha * i.c_t_phi;
@@ -624,8 +626,41 @@ pub fn slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the noise's derivatives that other functions, or several parts of these, need.
-    pub struct NoiseSlopes<R> {
+    /// Quantities of the second derivatives that other functions, or several parts of these, need.
+    pub struct Curvatures<R> {
+        /// Derivative of dynamic pressure times reference area with respect to velocity and altitude, lb*s/ft^3.
+        pub d2_reference_force_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
+        pub d2_eta_static_1_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
+        pub d2_eta_static_2_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
+        pub d2_eta_static_3_d_velocity_d_altitude: R,
+        /// Derivative of thrust with respect to velocity and altitude, lb*s/ft^3.
+        pub d2_thrust_d_velocity_d_altitude: R,
+        /// Derivative of rate of the velocity with respect to velocity and alpha, 1/s/rad.
+        pub d2_velocity_rate_d_velocity_d_alpha: R,
+        /// Derivative of acceleration of gravity at altitude with respect to altitude and altitude, 1/s^2/ft.
+        pub d2_gravity_d_altitude_d_altitude: R,
+        /// `i.density_ratio * inv_h_s`.
+        pub density_ratio_over_h_s: R,
+        /// Derivative of dynamic pressure times reference area with respect to altitude and altitude, lb/ft^3.
+        pub d2_reference_force_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_1_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_2_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_3_d_altitude_d_altitude: R,
+        /// Derivative of thrust with respect to altitude and altitude, lb/ft^3.
+        pub d2_thrust_d_altitude_d_altitude: R,
+        /// Derivative of rate of the velocity with respect to altitude and gamma, 1/s^2/rad.
+        pub d2_velocity_rate_d_altitude_d_gamma: R,
+        /// Derivative of rate of the velocity with respect to altitude and alpha, 1/s^2/rad.
+        pub d2_velocity_rate_d_altitude_d_alpha: R,
         /// Derivative of rate of the velocity with respect to gamma and gamma, ft/s^2/rad^2.
         pub d2_velocity_rate_d_gamma_d_gamma: R,
         /// Derivative of rate of the velocity with respect to alpha and alpha, ft/s^2/rad^2.
@@ -638,6 +673,18 @@ ahv_core::record! {
         pub d2_velocity_rate_d_alpha_d_chi_3: R,
         /// Derivative of rate of the altitude with respect to gamma and gamma, ft/s/rad^2.
         pub d2_altitude_rate_d_gamma_d_gamma: R,
+        /// Derivative of rate of the flight-path angle with respect to velocity and altitude, rad/ft^2.
+        pub d2_gamma_rate_d_velocity_d_altitude: R,
+        /// Derivative of rate of the flight-path angle with respect to velocity and gamma, 1/ft.
+        pub d2_gamma_rate_d_velocity_d_gamma: R,
+        /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha, 1/ft.
+        pub d2_force_turn_d_velocity_d_alpha: R,
+        /// Derivative of rate of the flight-path angle with respect to altitude and altitude, rad/s/ft^2.
+        pub d2_gamma_rate_d_altitude_d_altitude: R,
+        /// Derivative of rate of the flight-path angle with respect to altitude and gamma, 1/s/ft.
+        pub d2_gamma_rate_d_altitude_d_gamma: R,
+        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha, 1/s/ft.
+        pub d2_force_turn_d_altitude_d_alpha: R,
         /// Derivative of rate of the flight-path angle with respect to gamma and gamma, 1/s/rad.
         pub d2_gamma_rate_d_gamma_d_gamma: R,
         /// Derivative of turn rate by the force across the flight path with respect to alpha and alpha, 1/s/rad.
@@ -651,299 +698,585 @@ ahv_core::record! {
         /// Derivative of turn rate by the force across the flight path with respect to alpha and chi_3,
         /// 1/s/ft^0.5/slug^0.5.
         pub d2_force_turn_d_alpha_d_chi_3: R,
+        /// Derivative of pitch acceleration with respect to velocity and alpha, 1/s/ft.
+        pub d2_pitch_acceleration_d_velocity_d_alpha: R,
+        /// Derivative of pitch acceleration with respect to altitude and alpha, 1/s^2/ft.
+        pub d2_pitch_acceleration_d_altitude_d_alpha: R,
         /// Derivative of pitch acceleration with respect to alpha and alpha, 1/s^2/rad.
         pub d2_pitch_acceleration_d_alpha_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to gamma and altitude, 1/s^2/rad.
-        pub d2_velocity_rate_d_gamma_d_altitude: R,
-        /// Derivative of rate of the velocity with respect to alpha and velocity, 1/s/rad.
-        pub d2_velocity_rate_d_alpha_d_velocity: R,
-        /// Derivative of rate of the velocity with respect to alpha and altitude, 1/s^2/rad.
-        pub d2_velocity_rate_d_alpha_d_altitude: R,
-        /// Derivative of rate of the flight-path angle with respect to gamma and velocity, 1/ft.
-        pub d2_gamma_rate_d_gamma_d_velocity: R,
-        /// Derivative of rate of the flight-path angle with respect to gamma and altitude, 1/s/ft.
-        pub d2_gamma_rate_d_gamma_d_altitude: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and velocity, 1/ft.
-        pub d2_force_turn_d_alpha_d_velocity: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and altitude, 1/s/ft.
-        pub d2_force_turn_d_alpha_d_altitude: R,
-        /// Derivative of pitch acceleration with respect to alpha and velocity, 1/s/ft.
-        pub d2_pitch_acceleration_d_alpha_d_velocity: R,
-        /// Derivative of pitch acceleration with respect to alpha and altitude, 1/s^2/ft.
-        pub d2_pitch_acceleration_d_alpha_d_altitude: R,
-        /// `m.d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_gamma`.
-        pub d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma: R,
-        /// `m.d2_force_turn_d_alpha_d_altitude * s.d_altitude_rate_d_gamma`.
-        pub d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma: R,
-        /// `m.d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma`.
-        pub d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma: R,
-        /// `m.d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_alpha`.
-        pub d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha: R,
-        /// `m.d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha`.
-        pub d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha: R,
+        /// Derivative of dynamic pressure with respect to velocity and altitude, lb*s/ft^4.
+        pub d2_dynamic_pressure_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_1_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 2 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_2_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 3 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_3_d_velocity_d_altitude: R,
+        /// Derivative of thrust coefficient with respect to velocity and altitude, s/ft^2.
+        pub d2_c_t_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_1_d_velocity_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and alpha,
+        /// slug^0.5*s/ft^0.5/rad.
+        pub d2_eta_static_1_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_2_d_velocity_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and alpha,
+        /// slug^0.5*s/ft^0.5/rad.
+        pub d2_eta_static_2_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_3_d_velocity_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and alpha,
+        /// slug^0.5*s/ft^0.5/rad.
+        pub d2_eta_static_3_d_velocity_d_alpha: R,
+        /// Derivative of thrust coefficient with respect to velocity and alpha, s/ft/rad.
+        pub d2_c_t_d_velocity_d_alpha: R,
+        /// Derivative of thrust with respect to velocity and alpha, lb*s/ft^2/rad.
+        pub d2_thrust_d_velocity_d_alpha: R,
+        /// Derivative of drag coefficient with respect to velocity and alpha, s/ft/rad.
+        pub d2_c_d_d_velocity_d_alpha: R,
+        /// Derivative of drag with respect to velocity and alpha, lb*s/ft^2/rad.
+        pub d2_drag_d_velocity_d_alpha: R,
+        /// Derivative of force along the flight path with respect to velocity and alpha, lb*s/ft^2/rad.
+        pub d2_path_force_d_velocity_d_alpha: R,
+        /// `i.radius_ratio * i.radius_ratio_2`.
+        pub radius_ratio_3: R,
+        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude and altitude,
+        /// 1/ft^2.
+        pub d2_radius_ratio_d_altitude_d_altitude: R,
+        /// `s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude`.
+        pub power_2_of_d_radius_ratio_d_altitude: R,
+        /// Derivative of air density over its reference with respect to altitude and altitude, 1/ft^2.
+        pub d2_density_ratio_d_altitude_d_altitude: R,
+        /// Derivative of air density with respect to altitude and altitude, slug/ft^5.
+        pub d2_density_d_altitude_d_altitude: R,
+        /// Derivative of dynamic pressure with respect to altitude and altitude, lb/ft^4.
+        pub d2_dynamic_pressure_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_1_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_2_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_3_d_altitude_d_altitude: R,
+        /// Derivative of thrust coefficient with respect to altitude and altitude, 1/ft^2.
+        pub d2_c_t_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_1_d_altitude_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and alpha,
+        /// slug^0.5/ft^0.5/rad.
+        pub d2_eta_static_1_d_altitude_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_2_d_altitude_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and alpha,
+        /// slug^0.5/ft^0.5/rad.
+        pub d2_eta_static_2_d_altitude_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_3_d_altitude_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and alpha,
+        /// slug^0.5/ft^0.5/rad.
+        pub d2_eta_static_3_d_altitude_d_alpha: R,
+        /// Derivative of thrust coefficient with respect to altitude and alpha, 1/ft/rad.
+        pub d2_c_t_d_altitude_d_alpha: R,
+        /// Derivative of thrust with respect to altitude and alpha, lb/ft^2/rad.
+        pub d2_thrust_d_altitude_d_alpha: R,
+        /// Derivative of drag coefficient with respect to altitude and alpha, 1/ft/rad.
+        pub d2_c_d_d_altitude_d_alpha: R,
+        /// Derivative of drag with respect to altitude and alpha, lb/ft^2/rad.
+        pub d2_drag_d_altitude_d_alpha: R,
+        /// Derivative of force along the flight path with respect to altitude and alpha, lb/ft^2/rad.
+        pub d2_path_force_d_altitude_d_alpha: R,
+        /// Derivative of cos of the angle of attack with respect to alpha and alpha, 1/rad^2.
+        pub d2_cos_alpha_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_1_d_alpha_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
+        pub d2_eta_static_1_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_2_d_alpha_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
+        pub d2_eta_static_2_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_3_d_alpha_d_alpha: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
+        pub d2_eta_static_3_d_alpha_d_alpha: R,
+        /// Derivative of slope of the thrust coefficient in the fuel equivalence ratio with respect to alpha and
+        /// alpha, 1/rad^2.
+        pub d2_c_t_phi_d_alpha_d_alpha: R,
+        /// Derivative of thrust coefficient with respect to alpha and alpha, 1/rad^2.
+        pub d2_c_t_d_alpha_d_alpha: R,
+        /// Derivative of thrust with respect to alpha and alpha, lb/ft/rad^2.
+        pub d2_thrust_d_alpha_d_alpha: R,
+        /// Derivative of drag coefficient with respect to alpha and alpha, 1/rad^2.
+        pub d2_c_d_d_alpha_d_alpha: R,
+        /// Derivative of drag with respect to alpha and alpha, lb/ft/rad^2.
+        pub d2_drag_d_alpha_d_alpha: R,
+        /// Derivative of force along the flight path with respect to alpha and alpha, lb/ft/rad^2.
+        pub d2_path_force_d_alpha_d_alpha: R,
+        /// Derivative of force along the flight path with respect to alpha and chi_1, lb/ft^1.5/rad/slug^0.5.
+        pub d2_path_force_d_alpha_d_chi_1: R,
+        /// Derivative of force along the flight path with respect to alpha and chi_2, lb/ft^1.5/rad/slug^0.5.
+        pub d2_path_force_d_alpha_d_chi_2: R,
+        /// Derivative of force along the flight path with respect to alpha and chi_3, lb/ft^1.5/rad/slug^0.5.
+        pub d2_path_force_d_alpha_d_chi_3: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// velocity and altitude, 1/ft^2.
+        pub d2_gravity_turn_d_velocity_d_altitude: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity and
+        /// altitude, 1/ft^2.
+        pub d2_turn_factor_d_velocity_d_altitude: R,
+        /// Derivative of lift coefficient with respect to velocity and altitude, s/ft^2.
+        pub d2_c_l_d_velocity_d_altitude: R,
+        /// Derivative of coefficient of the force across the flight path with respect to velocity and altitude,
+        /// s/ft^2.
+        pub d2_normal_coefficient_d_velocity_d_altitude: R,
+        /// Derivative of turn rate by the force across the flight path with respect to velocity and altitude,
+        /// rad/ft^2.
+        pub d2_force_turn_d_velocity_d_altitude: R,
+        /// Derivative of lift coefficient with respect to velocity and alpha, s/ft/rad.
+        pub d2_c_l_d_velocity_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to velocity and alpha,
+        /// s/ft/rad.
+        pub d2_normal_coefficient_d_velocity_d_alpha: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// altitude and altitude, 1/s/ft^2.
+        pub d2_gravity_turn_d_altitude_d_altitude: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude and
+        /// altitude, 1/s/ft^2.
+        pub d2_turn_factor_d_altitude_d_altitude: R,
+        /// Derivative of lift coefficient with respect to altitude and altitude, 1/ft^2.
+        pub d2_c_l_d_altitude_d_altitude: R,
+        /// Derivative of coefficient of the force across the flight path with respect to altitude and altitude,
+        /// 1/ft^2.
+        pub d2_normal_coefficient_d_altitude_d_altitude: R,
+        /// Derivative of turn rate by the force across the flight path with respect to altitude and altitude,
+        /// rad/s/ft^2.
+        pub d2_force_turn_d_altitude_d_altitude: R,
+        /// Derivative of lift coefficient with respect to altitude and alpha, 1/ft/rad.
+        pub d2_c_l_d_altitude_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to altitude and alpha,
+        /// 1/ft/rad.
+        pub d2_normal_coefficient_d_altitude_d_alpha: R,
+        /// Derivative of cos of the flight-path angle with respect to gamma and gamma, 1/rad^2.
+        pub d2_cos_gamma_d_gamma_d_gamma: R,
+        /// Derivative of lift coefficient with respect to alpha and alpha, 1/rad^2.
+        pub d2_c_l_d_alpha_d_alpha: R,
+        /// Derivative of coefficient of the force across the flight path with respect to alpha and alpha, 1/rad^2.
+        pub d2_normal_coefficient_d_alpha_d_alpha: R,
+        /// Derivative of pitching-moment coefficient with respect to velocity and alpha, s/ft/rad.
+        pub d2_c_m_d_velocity_d_alpha: R,
+        /// Derivative of pitching moment with respect to velocity and alpha, lb*s/ft/rad.
+        pub d2_pitching_moment_d_velocity_d_alpha: R,
+        /// Derivative of pitching-moment coefficient with respect to altitude and alpha, 1/ft/rad.
+        pub d2_c_m_d_altitude_d_alpha: R,
+        /// Derivative of pitching moment with respect to altitude and alpha, lb/ft/rad.
+        pub d2_pitching_moment_d_altitude_d_alpha: R,
+        /// Derivative of pitching-moment coefficient with respect to alpha and alpha, 1/rad^2.
+        pub d2_c_m_d_alpha_d_alpha: R,
+        /// Derivative of pitching moment with respect to alpha and alpha, lb/rad^2.
+        pub d2_pitching_moment_d_alpha_d_alpha: R,
     }
 }
 
-/// Fills a part of [`NoiseSlopes`].
+/// Fills a part of [`Curvatures`].
 #[inline(always)]
-fn noise_slopes_part_1<R: Real>(
-    m: &mut NoiseSlopes<R>,
+fn curvatures_part_1<R: Real>(
+    h: &mut Curvatures<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to altitude
+    h.d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    h.d2_reference_force_d_velocity_d_altitude = p.s
+        * h.d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    h.d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    h.d2_eta_static_1_d_velocity_d_altitude = h
+        .d2_generalized_force_1_d_velocity_d_altitude * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
+    h.d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    h.d2_eta_static_2_d_velocity_d_altitude = h
+        .d2_generalized_force_2_d_velocity_d_altitude * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
+    h.d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    h.d2_eta_static_3_d_velocity_d_altitude = h
+        .d2_generalized_force_3_d_velocity_d_altitude * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
+    h.d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    h.d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
+        + s.d_reference_force_d_velocity * s.d_c_t_d_altitude
+        + i.c_t * h.d2_reference_force_d_velocity_d_altitude
+        + i.reference_force * h.d2_c_t_d_velocity_d_altitude; // lb*s/ft^3
+
+    // Derivatives with respect to alpha
+    h.d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    h.d2_eta_static_1_d_velocity_d_alpha = h.d2_generalized_force_1_d_velocity_d_alpha
+        * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
+    h.d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    h.d2_eta_static_2_d_velocity_d_alpha = h.d2_generalized_force_2_d_velocity_d_alpha
+        * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
+    h.d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+    h.d2_eta_static_3_d_velocity_d_alpha = h.d2_generalized_force_3_d_velocity_d_alpha
+        * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
+    h.d2_c_t_d_velocity_d_alpha = p.c_t_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    h.d2_thrust_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
+        + i.reference_force * h.d2_c_t_d_velocity_d_alpha; // lb*s/ft^2/rad
+    h.d2_c_d_d_velocity_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    h.d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
+        + i.reference_force * h.d2_c_d_d_velocity_d_alpha; // lb*s/ft^2/rad
+    h.d2_path_force_d_velocity_d_alpha = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * h.d2_thrust_d_velocity_d_alpha
+        - h.d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
+    h.d2_velocity_rate_d_velocity_d_alpha = h.d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
+
+    // Derivatives with respect to altitude
+    h.radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * h.radius_ratio_3; // 1/ft^2
+    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
+    h.d2_gravity_d_altitude_d_altitude = p.g
+        * (R::TWO * h.power_2_of_d_radius_ratio_d_altitude
+            + R::TWO * i.radius_ratio * h.d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    h.d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    h.d2_density_d_altitude_d_altitude = p.rho_0
+        * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * h.d2_density_d_altitude_d_altitude; // lb/ft^4
+    h.d2_reference_force_d_altitude_d_altitude = p.s
+        * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    h.d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    h.d2_eta_static_1_d_altitude_d_altitude = h
+        .d2_generalized_force_1_d_altitude_d_altitude * p.inv_omega_1_2; // slug^0.5/ft^1.5
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>,
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
+    // Derivatives with respect to altitude
+    h.d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    h.d2_eta_static_2_d_altitude_d_altitude = h
+        .d2_generalized_force_2_d_altitude_d_altitude * p.inv_omega_2_2; // slug^0.5/ft^1.5
+    h.d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    h.d2_eta_static_3_d_altitude_d_altitude = h
+        .d2_generalized_force_3_d_altitude_d_altitude * p.inv_omega_3_2; // slug^0.5/ft^1.5
+    h.d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    h.d2_thrust_d_altitude_d_altitude = R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
+        + i.c_t * h.d2_reference_force_d_altitude_d_altitude
+        + i.reference_force * h.d2_c_t_d_altitude_d_altitude; // lb/ft^3
+
     // Derivatives with respect to gamma
-    m.d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    h.d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to alpha
-    let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_1_d_alpha_d_alpha = d2_generalized_force_1_d_alpha_d_alpha
+    h.d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_eta_static_1_d_altitude_d_alpha = h.d2_generalized_force_1_d_altitude_d_alpha
+        * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
+    h.d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_eta_static_2_d_altitude_d_alpha = h.d2_generalized_force_2_d_altitude_d_alpha
+        * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
+    h.d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_eta_static_3_d_altitude_d_alpha = h.d2_generalized_force_3_d_altitude_d_alpha
+        * p.inv_omega_3_2; // slug^0.5/ft^0.5/rad
+    h.d2_c_t_d_altitude_d_alpha = p.c_t_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_thrust_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
+        + i.reference_force * h.d2_c_t_d_altitude_d_alpha; // lb/ft^2/rad
+    h.d2_c_d_d_altitude_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_d_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_d_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
+        + i.reference_force * h.d2_c_d_d_altitude_d_alpha; // lb/ft^2/rad
+    h.d2_path_force_d_altitude_d_alpha = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
+        + i.cos_alpha * h.d2_thrust_d_altitude_d_alpha
+        - h.d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
+    h.d2_velocity_rate_d_altitude_d_alpha = h.d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
+
+    // Derivatives with respect to gamma
+    h.d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+
+    // Derivatives with respect to alpha
+    h.d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
+    h.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_eta_static_1_d_alpha_d_alpha = h.d2_generalized_force_1_d_alpha_d_alpha
         * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_2_d_alpha_d_alpha = d2_generalized_force_2_d_alpha_d_alpha
+    h.d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_eta_static_2_d_alpha_d_alpha = h.d2_generalized_force_2_d_alpha_d_alpha
         * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_eta_static_3_d_alpha_d_alpha = d2_generalized_force_3_d_alpha_d_alpha
+    h.d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_eta_static_3_d_alpha_d_alpha = h.d2_generalized_force_3_d_alpha_d_alpha
         * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
-    let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
+    h.d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
         + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
-    let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
+    h.d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
         + R::TWO * p.c_t_alpha_2
-        + p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_alpha
-        + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
-    let d2_thrust_d_alpha_d_alpha = i.reference_force * d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
-        + p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
-        + i.thrust * d2_cos_alpha_d_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_alpha
-        - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    m.d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
+        + p.c_t_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_t_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_t_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
+        + u.phi * h.d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
+    h.d2_thrust_d_alpha_d_alpha = i.reference_force * h.d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+    h.d2_c_d_d_alpha_d_alpha = R::TWO * p.c_d_alpha_2
+        + p.c_d_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_d_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_d_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_3<R: Real>(
+    h: &mut Curvatures<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to alpha
+    h.d2_drag_d_alpha_d_alpha = i.reference_force * h.d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
+    h.d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+        + i.thrust * h.d2_cos_alpha_d_alpha_d_alpha
+        + i.cos_alpha * h.d2_thrust_d_alpha_d_alpha
+        - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
+    h.d2_velocity_rate_d_alpha_d_alpha = h.d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to chi_1
-    let d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
+    h.d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
-    m.d2_velocity_rate_d_alpha_d_chi_1 = d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    h.d2_velocity_rate_d_alpha_d_chi_1 = h.d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
+    h.d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
-    m.d2_velocity_rate_d_alpha_d_chi_2 = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    h.d2_velocity_rate_d_alpha_d_chi_2 = h.d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
+    h.d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
         * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
-    m.d2_velocity_rate_d_alpha_d_chi_3 = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    h.d2_velocity_rate_d_alpha_d_chi_3 = h.d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to gamma
-    m.d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    m.d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    h.d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+
+    // Derivatives with respect to altitude
+    h.d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    h.d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    h.d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    h.d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha
+        * h.d2_c_t_d_velocity_d_altitude + h.d2_c_l_d_velocity_d_altitude; // s/ft^2
+    h.d2_force_turn_d_velocity_d_altitude = s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
+        + s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_altitude
+        + i.normal_coefficient * h.d2_turn_factor_d_velocity_d_altitude
+        + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
+    h.d2_gamma_rate_d_velocity_d_altitude = h.d2_force_turn_d_velocity_d_altitude
+        - i.cos_gamma * h.d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
+
+    // Derivatives with respect to gamma
+    h.d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_alpha
+    h.d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    h.d2_normal_coefficient_d_velocity_d_alpha = s.d_c_t_d_velocity * i.cos_alpha
+        + i.sin_alpha * h.d2_c_t_d_velocity_d_alpha
+        + h.d2_c_l_d_velocity_d_alpha; // s/ft/rad
+    h.d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha
+        + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_alpha; // 1/ft
+
+    // Derivatives with respect to altitude
+    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude
+        * i.inv_velocity
+        - x.velocity * p.earth_curvature * h.d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
+    h.d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
+        * h.d2_density_d_altitude_d_altitude; // 1/s/ft^2
+    h.d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    h.d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
+        * h.d2_c_t_d_altitude_d_altitude + h.d2_c_l_d_altitude_d_altitude; // 1/ft^2
+    h.d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
+        + i.normal_coefficient * h.d2_turn_factor_d_altitude_d_altitude
+        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_4<R: Real>(
+    h: &mut Curvatures<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to altitude
+    h.d2_gamma_rate_d_altitude_d_altitude = h.d2_force_turn_d_altitude_d_altitude
+        - i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
+
+    // Derivatives with respect to gamma
+    h.d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+
+    // Derivatives with respect to alpha
+    h.d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_normal_coefficient_d_altitude_d_alpha = s.d_c_t_d_altitude * i.cos_alpha
+        + i.sin_alpha * h.d2_c_t_d_altitude_d_alpha
+        + h.d2_c_l_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude
+        * s.d_normal_coefficient_d_alpha
+        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_alpha; // 1/s/ft
+
+    // Derivatives with respect to gamma
+    h.d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    h.d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * h.d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+
+    // Derivatives with respect to alpha
+    h.d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    h.d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
+        + i.sin_alpha * h.d2_c_t_d_alpha_d_alpha
         + i.c_t * s.d_cos_alpha_d_alpha
-        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    m.d2_force_turn_d_alpha_d_alpha = i.turn_factor
-        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
+        + h.d2_c_l_d_alpha_d_alpha; // 1/rad^2
+    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor
+        * h.d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
-    m.d2_force_turn_d_alpha_d_chi_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
+    h.d2_force_turn_d_alpha_d_chi_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    m.d2_force_turn_d_alpha_d_chi_2 = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+    h.d2_force_turn_d_alpha_d_chi_2 = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    m.d2_force_turn_d_alpha_d_chi_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+    h.d2_force_turn_d_alpha_d_chi_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha
-    let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
-        + p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_alpha
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_alpha
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
-        + p.c_bar * i.reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
-    m.d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
+    h.d2_c_m_d_velocity_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    h.d2_pitching_moment_d_velocity_d_alpha = p.c_bar
+        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
+            + i.reference_force * h.d2_c_m_d_velocity_d_alpha)
+        + p.z_t * h.d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
+    h.d2_pitch_acceleration_d_velocity_d_alpha = h.d2_pitching_moment_d_velocity_d_alpha
+        * p.inv_i_yy; // 1/s/ft
+    h.d2_c_m_d_altitude_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_pitching_moment_d_altitude_d_alpha = p.c_bar
+        * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
+            + i.reference_force * h.d2_c_m_d_altitude_d_alpha)
+        + p.z_t * h.d2_thrust_d_altitude_d_alpha; // lb/ft/rad
+    h.d2_pitch_acceleration_d_altitude_d_alpha = h.d2_pitching_moment_d_altitude_d_alpha
+        * p.inv_i_yy; // 1/s^2/ft
+    h.d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
+        + p.c_m_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    h.d2_pitching_moment_d_alpha_d_alpha = p.z_t * h.d2_thrust_d_alpha_d_alpha
+        + p.c_bar * i.reference_force * h.d2_c_m_d_alpha_d_alpha; // lb/rad^2
+    h.d2_pitch_acceleration_d_alpha_d_alpha = h.d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
 }
 
-/// Fills a part of [`NoiseSlopes`].
+/// Computes [`Curvatures`].
 #[inline(always)]
-fn noise_slopes_part_2<R: Real>(
-    m: &mut NoiseSlopes<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to altitude
-    m.d2_velocity_rate_d_gamma_d_altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    let d2_generalized_force_1_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_1_d_alpha_d_velocity = d2_generalized_force_1_d_alpha_d_velocity
-        * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_2_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_2_d_alpha_d_velocity = d2_generalized_force_2_d_alpha_d_velocity
-        * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
-    let d2_generalized_force_3_d_alpha_d_velocity = s.d_reference_force_d_velocity
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_eta_static_3_d_alpha_d_velocity = d2_generalized_force_3_d_alpha_d_velocity
-        * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
-    let d2_c_t_d_alpha_d_velocity = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_thrust_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
-        + i.reference_force * d2_c_t_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_c_d_d_alpha_d_velocity = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_drag_d_alpha_d_velocity = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_alpha_d_velocity; // lb*s/ft^2/rad
-    let d2_path_force_d_alpha_d_velocity = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_velocity
-        - d2_drag_d_alpha_d_velocity; // lb*s/ft^2/rad
-    m.d2_velocity_rate_d_alpha_d_velocity = d2_path_force_d_alpha_d_velocity * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to altitude
-    let d2_generalized_force_1_d_alpha_d_altitude = s.d_reference_force_d_altitude
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_1_d_alpha_d_altitude = d2_generalized_force_1_d_alpha_d_altitude
-        * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
-    let d2_generalized_force_2_d_alpha_d_altitude = s.d_reference_force_d_altitude
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_2_d_alpha_d_altitude = d2_generalized_force_2_d_alpha_d_altitude
-        * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
-    let d2_generalized_force_3_d_alpha_d_altitude = s.d_reference_force_d_altitude
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_eta_static_3_d_alpha_d_altitude = d2_generalized_force_3_d_alpha_d_altitude
-        * p.inv_omega_3_2; // slug^0.5/ft^0.5/rad
-    let d2_c_t_d_alpha_d_altitude = p.c_t_eta_1 * d2_eta_static_1_d_alpha_d_altitude
-        + p.c_t_eta_2 * d2_eta_static_2_d_alpha_d_altitude
-        + p.c_t_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_thrust_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
-        + i.reference_force * d2_c_t_d_alpha_d_altitude; // lb/ft^2/rad
-    let d2_c_d_d_alpha_d_altitude = p.c_d_eta_1 * d2_eta_static_1_d_alpha_d_altitude
-        + p.c_d_eta_2 * d2_eta_static_2_d_alpha_d_altitude
-        + p.c_d_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_drag_d_alpha_d_altitude = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_alpha_d_altitude; // lb/ft^2/rad
-    let d2_path_force_d_alpha_d_altitude = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d2_thrust_d_alpha_d_altitude
-        - d2_drag_d_alpha_d_altitude; // lb/ft^2/rad
-    m.d2_velocity_rate_d_alpha_d_altitude = d2_path_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to velocity
-    m.d2_gamma_rate_d_gamma_d_velocity = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to altitude
-    m.d2_gamma_rate_d_gamma_d_altitude = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to velocity
-    let d2_c_l_d_alpha_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_normal_coefficient_d_alpha_d_velocity = s.d_c_t_d_velocity * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_velocity
-        + d2_c_l_d_alpha_d_velocity; // s/rad/ft
-    m.d2_force_turn_d_alpha_d_velocity = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * d2_normal_coefficient_d_alpha_d_velocity; // 1/ft
-
-    // Derivatives with respect to altitude
-    let d2_c_l_d_alpha_d_altitude = p.c_l_eta_1 * d2_eta_static_1_d_alpha_d_altitude
-        + p.c_l_eta_2 * d2_eta_static_2_d_alpha_d_altitude
-        + p.c_l_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_normal_coefficient_d_alpha_d_altitude = s.d_c_t_d_altitude * i.cos_alpha
-        + i.sin_alpha * d2_c_t_d_alpha_d_altitude
-        + d2_c_l_d_alpha_d_altitude; // 1/rad/ft
-    m.d2_force_turn_d_alpha_d_altitude = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * d2_normal_coefficient_d_alpha_d_altitude; // 1/s/ft
-
-    // Derivatives with respect to velocity
-    let d2_c_m_d_alpha_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_velocity
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_velocity
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_velocity; // s/rad/ft
-    let d2_pitching_moment_d_alpha_d_velocity = p.c_bar
-        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
-            + i.reference_force * d2_c_m_d_alpha_d_velocity)
-        + p.z_t * d2_thrust_d_alpha_d_velocity; // lb*s/rad/ft
-    m.d2_pitch_acceleration_d_alpha_d_velocity = d2_pitching_moment_d_alpha_d_velocity
-        * p.inv_i_yy; // 1/s/ft
-
-    // Derivatives with respect to altitude
-    let d2_c_m_d_alpha_d_altitude = p.c_m_eta_1 * d2_eta_static_1_d_alpha_d_altitude
-        + p.c_m_eta_2 * d2_eta_static_2_d_alpha_d_altitude
-        + p.c_m_eta_3 * d2_eta_static_3_d_alpha_d_altitude; // 1/rad/ft
-    let d2_pitching_moment_d_alpha_d_altitude = p.c_bar
-        * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
-            + i.reference_force * d2_c_m_d_alpha_d_altitude)
-        + p.z_t * d2_thrust_d_alpha_d_altitude; // lb/rad/ft
-    m.d2_pitch_acceleration_d_alpha_d_altitude = d2_pitching_moment_d_alpha_d_altitude
-        * p.inv_i_yy; // 1/s^2/ft
-}
-
-/// Fills a part of [`NoiseSlopes`].
-#[inline(always)]
-fn noise_slopes_part_3<R: Real>(m: &mut NoiseSlopes<R>, s: &Slopes<R>) {
-    m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = m
-        .d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_gamma;
-    m.d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = m
-        .d2_force_turn_d_alpha_d_altitude * s.d_altitude_rate_d_gamma;
-    m.d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = m
-        .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
-    m.d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = m
-        .d2_force_turn_d_alpha_d_velocity * s.d_velocity_rate_d_alpha;
-    m.d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = m
-        .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
-}
-
-/// Computes [`NoiseSlopes`].
-#[inline(always)]
-pub fn noise_slopes<R: Real>(
+pub fn curvatures<R: Real>(
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) -> NoiseSlopes<R> {
-    let mut m = NoiseSlopes::splat(R::ZERO);
-    noise_slopes_part_1(&mut m, x, u, p, i, s);
-    noise_slopes_part_2(&mut m, p, i, s);
-    noise_slopes_part_3(&mut m, s);
-    m
+) -> Curvatures<R> {
+    let mut h = Curvatures::splat(R::ZERO);
+    curvatures_part_1(&mut h, x, p, i, s);
+    curvatures_part_2(&mut h, x, u, p, i, s);
+    curvatures_part_3(&mut h, x, p, i, s);
+    curvatures_part_4(&mut h, p, i, s);
+    h
 }
 
 ahv_core::record! {
     /// Quantities of the derivatives with respect to parameters that several parts of these need.
     pub struct Sensitivities<R> {
+        /// Derivative of thrust with respect to rho_0, lb*ft^2/slug.
+        pub d_thrust_d_rho_0: R,
         /// Derivative of turn rate by the force across the flight path with respect to rho_0, rad*ft^3/s/slug.
         pub d_force_turn_d_rho_0: R,
+        /// Derivative of dynamic pressure times reference area with respect to h_0, lb/ft^2.
+        pub d_reference_force_d_h_0: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to h_0, slug^0.5/ft^0.5.
+        pub d_eta_static_1_d_h_0: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to h_0, slug^0.5/ft^0.5.
+        pub d_eta_static_2_d_h_0: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to h_0, slug^0.5/ft^0.5.
+        pub d_eta_static_3_d_h_0: R,
+        /// Derivative of thrust with respect to h_0, lb/ft^2.
+        pub d_thrust_d_h_0: R,
         /// Derivative of turn rate by the force across the flight path with respect to h_0, rad/s/ft.
         pub d_force_turn_d_h_0: R,
+        /// Derivative of dynamic pressure times reference area with respect to h_s, lb/ft^2.
+        pub d_reference_force_d_h_s: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to h_s, slug^0.5/ft^0.5.
+        pub d_eta_static_1_d_h_s: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to h_s, slug^0.5/ft^0.5.
+        pub d_eta_static_2_d_h_s: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to h_s, slug^0.5/ft^0.5.
+        pub d_eta_static_3_d_h_s: R,
+        /// Derivative of thrust with respect to h_s, lb/ft^2.
+        pub d_thrust_d_h_s: R,
         /// Derivative of turn rate by the force across the flight path with respect to h_s, rad/s/ft.
         pub d_force_turn_d_h_s: R,
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
         pub slope_of_radius_ratio_in_earth_curvature: R,
+        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
+        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
         /// Derivative of rate of the flight-path angle with respect to r_e, rad/s/ft.
         pub d_gamma_rate_d_r_e: R,
+        /// `c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e + c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e +
+        /// c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e`.
+        pub sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e: R,
+        /// `c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e`.
+        pub c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e: R,
+        /// `c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e`.
+        pub c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e: R,
+        /// `c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e`.
+        pub c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e: R,
+        /// `q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e + q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e +
+        /// q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e`.
+        pub sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e: R,
+        /// `i.reference_force * i.reference_force`.
+        pub reference_force_2: R,
     }
 }
 
@@ -951,9 +1284,10 @@ ahv_core::record! {
 #[inline(always)]
 pub fn sensitivities<R: Real>(
     x: &State<R>,
-    _u: &Input<R>,
+    u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
+    h: &Curvatures<R>,
 ) -> Sensitivities<R> {
     let mut q = Sensitivities::splat(R::ZERO);
 
@@ -962,6 +1296,8 @@ pub fn sensitivities<R: Real>(
         * (p.half_c_t_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
             + p.half_c_t_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
             + p.half_c_t_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
+    q.d_thrust_d_rho_0 = i.c_t * p.half_s * i.velocity_2 * i.density_ratio
+        + i.reference_force * d_c_t_d_rho_0; // lb*ft^2/slug
     let d_c_l_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_l_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
             + p.half_c_l_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
@@ -969,53 +1305,73 @@ pub fn sensitivities<R: Real>(
     let d_normal_coefficient_d_rho_0 = i.sin_alpha * d_c_t_d_rho_0 + d_c_l_d_rho_0; // ft^3/slug
     q.d_force_turn_d_rho_0 = i.normal_coefficient * p.half_s_over_m * x.velocity
         * i.density_ratio + i.turn_factor * d_normal_coefficient_d_rho_0; // rad*ft^3/s/slug
-    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
+    let d_density_d_h_0 = p.rho_0 * h.density_ratio_over_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
-    let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_1_d_h_0 = d_generalized_force_1_d_h_0 * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_2_d_h_0 = d_generalized_force_2_d_h_0 * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_3_d_h_0 = d_generalized_force_3_d_h_0 * p.inv_omega_3_2; // slug^0.5/ft^0.5
-    let d_c_t_d_h_0 = p.c_t_eta_1 * d_eta_static_1_d_h_0
-        + p.c_t_eta_2 * d_eta_static_2_d_h_0
-        + p.c_t_eta_3 * d_eta_static_3_d_h_0; // 1/ft
+    q.d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
+    let d_generalized_force_1_d_h_0 = i.c_n_1 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_1_d_h_0 = d_generalized_force_1_d_h_0 * p.inv_omega_1_2; // slug^0.5/ft^0.5
+    let d_generalized_force_2_d_h_0 = i.c_n_2 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_2_d_h_0 = d_generalized_force_2_d_h_0 * p.inv_omega_2_2; // slug^0.5/ft^0.5
+    let d_generalized_force_3_d_h_0 = i.c_n_3 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_3_d_h_0 = d_generalized_force_3_d_h_0 * p.inv_omega_3_2; // slug^0.5/ft^0.5
+    let d_c_t_d_h_0 = p.c_t_eta_1 * q.d_eta_static_1_d_h_0
+        + p.c_t_eta_2 * q.d_eta_static_2_d_h_0
+        + p.c_t_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
+    q.d_thrust_d_h_0 = i.c_t * q.d_reference_force_d_h_0
+        + i.reference_force * d_c_t_d_h_0; // lb/ft^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_c_l_d_h_0 = p.c_l_eta_1 * d_eta_static_1_d_h_0
-        + p.c_l_eta_2 * d_eta_static_2_d_h_0
-        + p.c_l_eta_3 * d_eta_static_3_d_h_0; // 1/ft
+    let d_c_l_d_h_0 = p.c_l_eta_1 * q.d_eta_static_1_d_h_0
+        + p.c_l_eta_2 * q.d_eta_static_2_d_h_0
+        + p.c_l_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
     let d_normal_coefficient_d_h_0 = i.sin_alpha * d_c_t_d_h_0 + d_c_l_d_h_0; // 1/ft
     q.d_force_turn_d_h_0 = i.normal_coefficient * d_turn_factor_d_h_0
         + i.turn_factor * d_normal_coefficient_d_h_0; // rad/s/ft
     let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
-    let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_1_d_h_s = d_generalized_force_1_d_h_s * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_2_d_h_s = d_generalized_force_2_d_h_s * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_3_d_h_s = d_generalized_force_3_d_h_s * p.inv_omega_3_2; // slug^0.5/ft^0.5
-    let d_c_t_d_h_s = p.c_t_eta_1 * d_eta_static_1_d_h_s
-        + p.c_t_eta_2 * d_eta_static_2_d_h_s
-        + p.c_t_eta_3 * d_eta_static_3_d_h_s; // 1/ft
+    q.d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
+    let d_generalized_force_1_d_h_s = i.c_n_1 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_1_d_h_s = d_generalized_force_1_d_h_s * p.inv_omega_1_2; // slug^0.5/ft^0.5
+    let d_generalized_force_2_d_h_s = i.c_n_2 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_2_d_h_s = d_generalized_force_2_d_h_s * p.inv_omega_2_2; // slug^0.5/ft^0.5
+    let d_generalized_force_3_d_h_s = i.c_n_3 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_3_d_h_s = d_generalized_force_3_d_h_s * p.inv_omega_3_2; // slug^0.5/ft^0.5
+    let d_c_t_d_h_s = p.c_t_eta_1 * q.d_eta_static_1_d_h_s
+        + p.c_t_eta_2 * q.d_eta_static_2_d_h_s
+        + p.c_t_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
+    q.d_thrust_d_h_s = i.c_t * q.d_reference_force_d_h_s
+        + i.reference_force * d_c_t_d_h_s; // lb/ft^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_c_l_d_h_s = p.c_l_eta_1 * d_eta_static_1_d_h_s
-        + p.c_l_eta_2 * d_eta_static_2_d_h_s
-        + p.c_l_eta_3 * d_eta_static_3_d_h_s; // 1/ft
+    let d_c_l_d_h_s = p.c_l_eta_1 * q.d_eta_static_1_d_h_s
+        + p.c_l_eta_2 * q.d_eta_static_2_d_h_s
+        + p.c_l_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
     let d_normal_coefficient_d_h_s = i.sin_alpha * d_c_t_d_h_s + d_c_l_d_h_s; // 1/ft
     q.d_force_turn_d_h_s = i.normal_coefficient * d_turn_factor_d_h_s
         + i.turn_factor * d_normal_coefficient_d_h_s; // rad/s/ft
     q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+    q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
             * (x.velocity
-                - p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
+                - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     q.d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+
+    // Further values
+    q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e = p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
+        + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
+        + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
+    q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e = p
+        .c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e;
+    q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e = p
+        .c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e;
+    q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e = p
+        .c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
+    q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e = q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
+        + q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
+        + q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e;
+    q.reference_force_2 = i.reference_force * i.reference_force;
     q
 }

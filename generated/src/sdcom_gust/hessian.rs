@@ -160,7 +160,7 @@ fn hessian_by_velocity<R: Real>(
     hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude_gamma.
+/// Entries of [`hessian_values`]: derivatives by altitude, gamma.
 #[inline(always)]
 fn hessian_by_altitude_gamma<R: Real>(
     hessian: &mut HessianEntries<R>,
@@ -171,10 +171,6 @@ fn hessian_by_altitude_gamma<R: Real>(
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to altitude
-    let d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
-        + s.d_reference_force_d_velocity * s.d_c_t_d_altitude
-        + i.c_t * h.d2_reference_force_d_velocity_d_altitude
-        + i.reference_force * h.d2_c_t_d_velocity_d_altitude; // lb*s/ft^3
     let d2_c_d_d_velocity_d_altitude = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
         + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
@@ -183,12 +179,9 @@ fn hessian_by_altitude_gamma<R: Real>(
         + i.c_d * h.d2_reference_force_d_velocity_d_altitude
         + i.reference_force * d2_c_d_d_velocity_d_altitude; // lb*s/ft^3
     let d2_path_force_d_velocity_d_altitude = i.cos_alpha
-        * d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
+        * h.d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
     let d2_velocity_rate_d_velocity_d_altitude = d2_path_force_d_velocity_d_altitude
         * p.inv_m; // 1/s/ft
-    let d2_thrust_d_altitude_d_altitude = R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
-        + i.c_t * h.d2_reference_force_d_altitude_d_altitude
-        + i.reference_force * h.d2_c_t_d_altitude_d_altitude; // lb/ft^3
     let d2_c_d_d_altitude_d_altitude = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_d_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_d_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
@@ -196,7 +189,7 @@ fn hessian_by_altitude_gamma<R: Real>(
         + i.c_d * h.d2_reference_force_d_altitude_d_altitude
         + i.reference_force * d2_c_d_d_altitude_d_altitude; // lb/ft^3
     let d2_path_force_d_altitude_d_altitude = i.cos_alpha
-        * d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude; // lb/ft^3
+        * h.d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude; // lb/ft^3
     let d2_velocity_rate_d_altitude_d_altitude = d2_path_force_d_altitude_d_altitude
         * p.inv_m - i.sin_gamma * h.d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
 
@@ -220,7 +213,7 @@ fn hessian_by_altitude_gamma<R: Real>(
             + s.d_reference_force_d_velocity * s.d_c_m_d_altitude
             + i.c_m * h.d2_reference_force_d_velocity_d_altitude
             + i.reference_force * d2_c_m_d_velocity_d_altitude)
-        + p.z_t * d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
+        + p.z_t * h.d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
     let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
         * p.inv_i_yy; // rad/s/ft^2
     let d2_c_m_d_altitude_d_altitude = p.c_m_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
@@ -230,7 +223,7 @@ fn hessian_by_altitude_gamma<R: Real>(
         * (R::TWO * s.d_c_m_d_altitude * s.d_reference_force_d_altitude
             + i.c_m * h.d2_reference_force_d_altitude_d_altitude
             + i.reference_force * d2_c_m_d_altitude_d_altitude)
-        + p.z_t * d2_thrust_d_altitude_d_altitude; // lb/ft^2
+        + p.z_t * h.d2_thrust_d_altitude_d_altitude; // lb/ft^2
     let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
         * p.inv_i_yy; // rad/s^2/ft^2
 
@@ -254,7 +247,7 @@ fn hessian_by_altitude_gamma<R: Real>(
     hessian.alpha_by_gamma_gamma = -d2_gamma_rate_d_gamma_d_gamma;
 }
 
-/// Entries of [`hessian_values`]: derivatives by alpha_chi_1.
+/// Entries of [`hessian_values`]: derivatives by alpha, chi_1.
 #[inline(always)]
 fn hessian_by_alpha_chi_1<R: Real>(
     hessian: &mut HessianEntries<R>,
@@ -264,14 +257,9 @@ fn hessian_by_alpha_chi_1<R: Real>(
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to alpha
-    let d2_c_d_d_velocity_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
-        + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
-        + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_velocity_d_alpha; // lb*s/ft^2/rad
     let d2_path_force_d_velocity_d_alpha = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * h.d2_thrust_d_velocity_d_alpha
-        - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
+        + h.cos_alpha_times_d2_thrust_d_velocity_d_alpha
+        - h.d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
     let d2_velocity_rate_d_velocity_d_alpha = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to chi_1
@@ -282,14 +270,9 @@ fn hessian_by_alpha_chi_1<R: Real>(
     let d2_velocity_rate_d_velocity_d_chi_1 = d2_path_force_d_velocity_d_chi_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha
-    let d2_c_d_d_altitude_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
-        + p.c_d_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
-        + p.c_d_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_altitude_d_alpha; // lb/ft^2/rad
     let d2_path_force_d_altitude_d_alpha = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * h.d2_thrust_d_altitude_d_alpha
-        - d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
+        + h.cos_alpha_times_d2_thrust_d_altitude_d_alpha
+        - h.d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
     let d2_velocity_rate_d_altitude_d_alpha = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to chi_1
@@ -301,15 +284,10 @@ fn hessian_by_alpha_chi_1<R: Real>(
 
     // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    let d2_c_d_d_alpha_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
-        + p.c_d_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
-        + p.c_d_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
-        + R::TWO * p.c_d_alpha_2; // 1/rad^2
-    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_path_force_d_alpha_d_alpha = R::TWO * s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
+    let d2_path_force_d_alpha_d_alpha = R::TWO * h.d_thrust_d_alpha_times_d_cos_alpha_d_alpha
         + i.thrust * d2_cos_alpha_d_alpha_d_alpha
-        + i.cos_alpha * h.d2_thrust_d_alpha_d_alpha
-        - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
+        + h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
+        - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to chi_1
@@ -355,7 +333,7 @@ fn hessian_by_alpha_chi_1<R: Real>(
     hessian.pitch_rate_by_chi_1_altitude = d2_pitch_acceleration_d_altitude_d_chi_1;
 }
 
-/// Entries of [`hessian_values`]: derivatives by chi_2_chi_3.
+/// Entries of [`hessian_values`]: derivatives by chi_2, chi_3.
 #[inline(always)]
 fn hessian_by_chi_2_chi_3<R: Real>(
     hessian: &mut HessianEntries<R>,
@@ -476,53 +454,24 @@ fn hessian_by_chi_2_chi_3<R: Real>(
 fn hessian_by_alpha_gust<R: Real>(
     hessian: &mut HessianEntries<R>,
     p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to alpha
-    let d2_c_d_d_velocity_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
-        + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
-        + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_velocity_d_alpha; // lb*s/ft^2/rad
-
     // Derivatives with respect to alpha_gust
-    let d2_path_force_d_velocity_d_alpha_gust = i.cos_alpha
-        * h.d2_thrust_d_velocity_d_alpha - d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
+    let d2_path_force_d_velocity_d_alpha_gust = h
+        .cos_alpha_times_d2_thrust_d_velocity_d_alpha - h.d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
     let d2_velocity_rate_d_velocity_d_alpha_gust = d2_path_force_d_velocity_d_alpha_gust
         * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    let d2_c_d_d_altitude_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
-        + p.c_d_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
-        + p.c_d_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
-        + i.reference_force * d2_c_d_d_altitude_d_alpha; // lb/ft^2/rad
-
-    // Derivatives with respect to alpha_gust
-    let d2_path_force_d_altitude_d_alpha_gust = i.cos_alpha
-        * h.d2_thrust_d_altitude_d_alpha - d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
+    let d2_path_force_d_altitude_d_alpha_gust = h
+        .cos_alpha_times_d2_thrust_d_altitude_d_alpha - h.d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
     let d2_velocity_rate_d_altitude_d_alpha_gust = d2_path_force_d_altitude_d_alpha_gust
         * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to alpha
-    let d2_c_d_d_alpha_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
-        + p.c_d_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
-        + p.c_d_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
-        + R::TWO * p.c_d_alpha_2; // 1/rad^2
-    let d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
-
-    // Derivatives with respect to alpha_gust
-    let cos_alpha_times_d2_thrust_d_alpha_d_alpha = i.cos_alpha
-        * h.d2_thrust_d_alpha_d_alpha;
-    let d2_path_force_d_alpha_d_alpha_gust = s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha
-        + cos_alpha_times_d2_thrust_d_alpha_d_alpha
-        - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_path_force_d_alpha_d_alpha_gust = h.d_thrust_d_alpha_times_d_cos_alpha_d_alpha
+        + h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
+        - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_d_alpha_gust = d2_path_force_d_alpha_d_alpha_gust
         * p.inv_m; // ft/s^2/rad^2
-    let d2_path_force_d_alpha_gust_d_alpha_gust = cos_alpha_times_d2_thrust_d_alpha_d_alpha
-        - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
+    let d2_path_force_d_alpha_gust_d_alpha_gust = h
+        .cos_alpha_times_d2_thrust_d_alpha_d_alpha - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     let d2_velocity_rate_d_alpha_gust_d_alpha_gust = d2_path_force_d_alpha_gust_d_alpha_gust
         * p.inv_m; // ft/s^2/rad^2
 
@@ -566,7 +515,7 @@ pub fn hessian_values<R: Real>(
     hessian_by_altitude_gamma(&mut hessian, x, p, &i, &s, &h);
     hessian_by_alpha_chi_1(&mut hessian, p, &i, &s, &h);
     hessian_by_chi_2_chi_3(&mut hessian, p, &i, &s);
-    hessian_by_alpha_gust(&mut hessian, p, &i, &s, &h);
+    hessian_by_alpha_gust(&mut hessian, p, &h);
     hessian
 }
 

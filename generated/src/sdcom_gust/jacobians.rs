@@ -71,7 +71,7 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity to chi_2.
+/// Entries of [`jacobians_values`]: derivatives by velocity, altitude, gamma, alpha, chi_1, chi_2.
 #[inline(always)]
 fn jacobians_by_velocity_to_chi_2<R: Real>(
     state: &mut StateJacobianEntries<R>,
@@ -115,10 +115,9 @@ fn jacobians_by_velocity_to_chi_2<R: Real>(
     let d_gamma_rate_d_gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
-    let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
     let d_path_force_d_alpha = i.thrust * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * s.d_thrust_d_alpha
-        - d_drag_d_alpha; // lb/ft/rad
+        + s.cos_alpha_times_d_thrust_d_alpha
+        - s.d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_alpha = i.turn_factor * s.d_normal_coefficient_d_alpha; // 1/s
 
@@ -167,7 +166,7 @@ fn jacobians_by_velocity_to_chi_2<R: Real>(
     state.chi_2_by_chi_2 = p.minus_chi_decay_2;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by chi_3 to delta_e.
+/// Entries of [`jacobians_values`]: derivatives by chi_3, alpha_gust, pitch_rate, phi, delta_e.
 #[inline(always)]
 fn jacobians_by_chi_3_to_delta_e<R: Real>(
     state: &mut StateJacobianEntries<R>,
@@ -176,9 +175,6 @@ fn jacobians_by_chi_3_to_delta_e<R: Real>(
     i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
-    // Derivatives with respect to alpha
-    let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
-
     // Derivatives with respect to chi_3
     let d_path_force_d_chi_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     let d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
@@ -188,7 +184,8 @@ fn jacobians_by_chi_3_to_delta_e<R: Real>(
     let d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha_gust
-    let d_path_force_d_alpha_gust = i.cos_alpha * s.d_thrust_d_alpha - d_drag_d_alpha; // lb/ft/rad
+    let d_path_force_d_alpha_gust = s.cos_alpha_times_d_thrust_d_alpha
+        - s.d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha_gust = d_path_force_d_alpha_gust * p.inv_m; // ft/s^2/rad
     let d_force_turn_d_alpha_gust = i.turn_factor * s.d_normal_coefficient_d_alpha_gust; // 1/s
 
@@ -273,7 +270,7 @@ fn jacobians_by_delta_c<R: Real>(
     input.pitch_rate_by_delta_c = d_pitch_acceleration_d_delta_c;
 }
 
-/// [`jacobians_values`] from what is computed once.
+/// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
     _x: &State<R>,

@@ -569,6 +569,8 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
     // Noise of the modes, (16)
     c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
+
+    // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_omega_1_2 = c.inv_omega_1 * c.inv_omega_1;
     c.inv_omega_2_2 = c.inv_omega_2 * c.inv_omega_2;
@@ -610,12 +612,13 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
         + p.c_m_delta_c * c.canard_gain;
     c.c_m_delta_c_canard_command = p.c_m_delta_c * p.canard_command;
     c.inv_m_2 = c.inv_m * c.inv_m;
-    c.c_t_eta_1_inv_omega_1_2 = p.c_t_eta_1 * c.inv_omega_1_2;
-    c.c_t_eta_2_inv_omega_2_2 = p.c_t_eta_2 * c.inv_omega_2_2;
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
+    c.c_t_eta_1_inv_omega_1_2 = p.c_t_eta_1 * c.inv_omega_1_2;
+    c.c_t_eta_2_inv_omega_2_2 = p.c_t_eta_2 * c.inv_omega_2_2;
     c.c_t_eta_3_inv_omega_3_2 = p.c_t_eta_3 * c.inv_omega_3_2;
     c.c_d_eta_1_times_inv_omega_1_2 = p.c_d_eta_1 * c.inv_omega_1_2;
     c.c_d_eta_2_times_inv_omega_2_2 = p.c_d_eta_2 * c.inv_omega_2_2;

@@ -302,6 +302,10 @@ ahv_core::record! {
         pub d_thrust_d_alpha: R,
         /// Derivative of drag coefficient with respect to alpha, 1/rad.
         pub d_c_d_d_alpha: R,
+        /// Derivative of drag with respect to alpha, lb/ft/rad.
+        pub d_drag_d_alpha: R,
+        /// `i.cos_alpha * s.d_thrust_d_alpha`.
+        pub cos_alpha_times_d_thrust_d_alpha: R,
         /// Derivative of coefficient of the force across the flight path with respect to alpha, 1/rad.
         pub d_normal_coefficient_d_alpha: R,
         /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
@@ -422,6 +426,7 @@ fn slopes_part_2<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) {
+    // Derivatives with respect to gamma
     s.d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
 
     // Derivatives with respect to alpha
@@ -455,6 +460,7 @@ fn slopes_part_2<R: Real>(
         + p.c_d_eta_1 * d_eta_static_1_d_alpha
         + p.c_d_eta_2 * d_eta_static_2_d_alpha
         + p.c_d_eta_3 * d_eta_static_3_d_alpha; // 1/rad
+    s.d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
     let d_c_l_d_alpha = p.c_l_alpha
         + p.c_l_eta_1 * d_eta_static_1_d_alpha
         + p.c_l_eta_2 * d_eta_static_2_d_alpha
@@ -556,6 +562,9 @@ fn slopes_part_3<R: Real>(
         + p.c_l_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_normal_coefficient_d_delta_c = i.sin_alpha * d_c_t_d_delta_c + d_c_l_d_delta_c; // 1/rad
     s.d_force_turn_d_delta_c = i.turn_factor * d_normal_coefficient_d_delta_c; // 1/s
+
+    // Further values
+    s.cos_alpha_times_d_thrust_d_alpha = i.cos_alpha * s.d_thrust_d_alpha;
     s.cos_alpha_c_t_eta_1 = i.cos_alpha * p.c_t_eta_1;
     s.cos_alpha_c_t_eta_2 = i.cos_alpha * p.c_t_eta_2;
     s.cos_alpha_c_t_eta_3 = i.cos_alpha * p.c_t_eta_3;
@@ -577,10 +586,49 @@ pub fn slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the second derivatives that several parts of these need.
+    /// Quantities of the second derivatives that other functions, or several parts of these, need.
     pub struct Curvatures<R> {
+        /// Derivative of dynamic pressure times reference area with respect to velocity and altitude, lb*s/ft^3.
+        pub d2_reference_force_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
+        pub d2_eta_static_1_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
+        pub d2_eta_static_2_d_velocity_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and altitude,
+        /// slug^0.5*s/ft^1.5.
+        pub d2_eta_static_3_d_velocity_d_altitude: R,
+        /// Derivative of thrust with respect to velocity and altitude, lb*s/ft^3.
+        pub d2_thrust_d_velocity_d_altitude: R,
+        /// Derivative of drag with respect to velocity and alpha, lb*s/ft^2/rad.
+        pub d2_drag_d_velocity_d_alpha: R,
+        /// `i.cos_alpha * h.d2_thrust_d_velocity_d_alpha`.
+        pub cos_alpha_times_d2_thrust_d_velocity_d_alpha: R,
+        /// Derivative of acceleration of gravity at altitude with respect to altitude and altitude, 1/s^2/ft.
+        pub d2_gravity_d_altitude_d_altitude: R,
         /// `i.density_ratio * inv_h_s`.
         pub density_ratio_over_h_s: R,
+        /// Derivative of dynamic pressure times reference area with respect to altitude and altitude, lb/ft^3.
+        pub d2_reference_force_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_1_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_2_d_altitude_d_altitude: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5.
+        pub d2_eta_static_3_d_altitude_d_altitude: R,
+        /// Derivative of thrust with respect to altitude and altitude, lb/ft^3.
+        pub d2_thrust_d_altitude_d_altitude: R,
+        /// Derivative of drag with respect to altitude and alpha, lb/ft^2/rad.
+        pub d2_drag_d_altitude_d_alpha: R,
+        /// `i.cos_alpha * h.d2_thrust_d_altitude_d_alpha`.
+        pub cos_alpha_times_d2_thrust_d_altitude_d_alpha: R,
+        /// Derivative of drag with respect to alpha and alpha, lb/ft/rad^2.
+        pub d2_drag_d_alpha_d_alpha: R,
+        /// `s.d_thrust_d_alpha * s.d_cos_alpha_d_alpha`.
+        pub d_thrust_d_alpha_times_d_cos_alpha_d_alpha: R,
+        /// `i.cos_alpha * h.d2_thrust_d_alpha_d_alpha`.
+        pub cos_alpha_times_d2_thrust_d_alpha_d_alpha: R,
         /// Derivative of rate of the flight-path angle with respect to velocity and altitude, rad/ft^2.
         pub d2_gamma_rate_d_velocity_d_altitude: R,
         /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha, 1/ft.
@@ -609,23 +657,12 @@ ahv_core::record! {
         pub d2_pitch_acceleration_d_alpha_d_alpha: R,
         /// Derivative of dynamic pressure with respect to velocity and altitude, lb*s/ft^4.
         pub d2_dynamic_pressure_d_velocity_d_altitude: R,
-        /// Derivative of dynamic pressure times reference area with respect to velocity and altitude, lb*s/ft^3.
-        pub d2_reference_force_d_velocity_d_altitude: R,
         /// Derivative of generalized force of mode 1 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
         pub d2_generalized_force_1_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and altitude,
-        /// slug^0.5*s/ft^1.5.
-        pub d2_eta_static_1_d_velocity_d_altitude: R,
         /// Derivative of generalized force of mode 2 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
         pub d2_generalized_force_2_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and altitude,
-        /// slug^0.5*s/ft^1.5.
-        pub d2_eta_static_2_d_velocity_d_altitude: R,
         /// Derivative of generalized force of mode 3 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
         pub d2_generalized_force_3_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and altitude,
-        /// slug^0.5*s/ft^1.5.
-        pub d2_eta_static_3_d_velocity_d_altitude: R,
         /// Derivative of thrust coefficient with respect to velocity and altitude, s/ft^2.
         pub d2_c_t_d_velocity_d_altitude: R,
         /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
@@ -647,6 +684,8 @@ ahv_core::record! {
         pub d2_c_t_d_velocity_d_alpha: R,
         /// Derivative of thrust with respect to velocity and alpha, lb*s/ft^2/rad.
         pub d2_thrust_d_velocity_d_alpha: R,
+        /// Derivative of drag coefficient with respect to velocity and alpha, s/ft/rad.
+        pub d2_c_d_d_velocity_d_alpha: R,
         /// `i.radius_ratio * i.radius_ratio_2`.
         pub radius_ratio_3: R,
         /// Derivative of radius of the Earth over the distance to its centre with respect to altitude and altitude,
@@ -654,28 +693,18 @@ ahv_core::record! {
         pub d2_radius_ratio_d_altitude_d_altitude: R,
         /// `s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude`.
         pub power_2_of_d_radius_ratio_d_altitude: R,
-        /// Derivative of acceleration of gravity at altitude with respect to altitude and altitude, 1/s^2/ft.
-        pub d2_gravity_d_altitude_d_altitude: R,
         /// Derivative of air density over its reference with respect to altitude and altitude, 1/ft^2.
         pub d2_density_ratio_d_altitude_d_altitude: R,
         /// Derivative of air density with respect to altitude and altitude, slug/ft^5.
         pub d2_density_d_altitude_d_altitude: R,
         /// Derivative of dynamic pressure with respect to altitude and altitude, lb/ft^4.
         pub d2_dynamic_pressure_d_altitude_d_altitude: R,
-        /// Derivative of dynamic pressure times reference area with respect to altitude and altitude, lb/ft^3.
-        pub d2_reference_force_d_altitude_d_altitude: R,
         /// Derivative of generalized force of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
         pub d2_generalized_force_1_d_altitude_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5.
-        pub d2_eta_static_1_d_altitude_d_altitude: R,
         /// Derivative of generalized force of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
         pub d2_generalized_force_2_d_altitude_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5.
-        pub d2_eta_static_2_d_altitude_d_altitude: R,
         /// Derivative of generalized force of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
         pub d2_generalized_force_3_d_altitude_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5.
-        pub d2_eta_static_3_d_altitude_d_altitude: R,
         /// Derivative of thrust coefficient with respect to altitude and altitude, 1/ft^2.
         pub d2_c_t_d_altitude_d_altitude: R,
         /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
@@ -697,6 +726,8 @@ ahv_core::record! {
         pub d2_c_t_d_altitude_d_alpha: R,
         /// Derivative of thrust with respect to altitude and alpha, lb/ft^2/rad.
         pub d2_thrust_d_altitude_d_alpha: R,
+        /// Derivative of drag coefficient with respect to altitude and alpha, 1/ft/rad.
+        pub d2_c_d_d_altitude_d_alpha: R,
         /// Derivative of partial derivative of thrust coefficient with respect to angle of attack against the air,
         /// which moves with the gust with respect to alpha, 1/rad^2.
         pub d_slope_of_c_t_in_incidence_d_alpha: R,
@@ -719,6 +750,8 @@ ahv_core::record! {
         pub d2_c_t_d_alpha_d_alpha: R,
         /// Derivative of thrust with respect to alpha and alpha, lb/ft/rad^2.
         pub d2_thrust_d_alpha_d_alpha: R,
+        /// Derivative of drag coefficient with respect to alpha and alpha, 1/rad^2.
+        pub d2_c_d_d_alpha_d_alpha: R,
         /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
         /// velocity and altitude, 1/ft^2.
         pub d2_gravity_turn_d_velocity_d_altitude: R,
@@ -824,6 +857,10 @@ fn curvatures_part_1<R: Real>(
     h.d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_t_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
         + p.c_t_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    h.d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
+        + s.d_reference_force_d_velocity * s.d_c_t_d_altitude
+        + i.c_t * h.d2_reference_force_d_velocity_d_altitude
+        + i.reference_force * h.d2_c_t_d_velocity_d_altitude; // lb*s/ft^3
 
     // Derivatives with respect to alpha
     h.d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
@@ -843,6 +880,11 @@ fn curvatures_part_1<R: Real>(
         + p.c_t_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
     h.d2_thrust_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
         + i.reference_force * h.d2_c_t_d_velocity_d_alpha; // lb*s/ft^2/rad
+    h.d2_c_d_d_velocity_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    h.d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
+        + i.reference_force * h.d2_c_d_d_velocity_d_alpha; // lb*s/ft^2/rad
 
     // Derivatives with respect to altitude
     h.radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
@@ -862,6 +904,18 @@ fn curvatures_part_1<R: Real>(
         * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
     h.d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
         * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to altitude
     h.d2_eta_static_1_d_altitude_d_altitude = h
         .d2_generalized_force_1_d_altitude_d_altitude * p.inv_omega_1_2; // slug^0.5/ft^1.5
     h.d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
@@ -875,6 +929,9 @@ fn curvatures_part_1<R: Real>(
     h.d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_t_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_t_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
+    h.d2_thrust_d_altitude_d_altitude = R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
+        + i.c_t * h.d2_reference_force_d_altitude_d_altitude
+        + i.reference_force * h.d2_c_t_d_altitude_d_altitude; // lb/ft^3
 
     // Derivatives with respect to alpha
     h.d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
@@ -883,18 +940,6 @@ fn curvatures_part_1<R: Real>(
         * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
     h.d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.slope_of_c_n_2_in_incidence; // slug^0.5/ft^0.5/s^2/rad
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_2<R: Real>(
-    h: &mut Curvatures<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
     h.d2_eta_static_2_d_altitude_d_alpha = h.d2_generalized_force_2_d_altitude_d_alpha
         * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
     h.d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
@@ -906,6 +951,11 @@ fn curvatures_part_2<R: Real>(
         + p.c_t_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
     h.d2_thrust_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
         + i.reference_force * h.d2_c_t_d_altitude_d_alpha; // lb/ft^2/rad
+    h.d2_c_d_d_altitude_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_d_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_d_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    h.d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
+        + i.reference_force * h.d2_c_d_d_altitude_d_alpha; // lb/ft^2/rad
     h.d_slope_of_c_t_in_incidence_d_alpha = p.six_c_t_alpha_3 * i.incidence
         + R::TWO * p.c_t_alpha_2; // 1/rad^2
     h.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
@@ -925,10 +975,27 @@ fn curvatures_part_2<R: Real>(
         + p.c_t_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
         + u.phi * h.d_slope_of_c_t_phi_in_incidence_d_alpha; // 1/rad^2
     h.d2_thrust_d_alpha_d_alpha = i.reference_force * h.d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
+    h.d2_c_d_d_alpha_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_d_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_d_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
+        + R::TWO * p.c_d_alpha_2; // 1/rad^2
+    h.d2_drag_d_alpha_d_alpha = i.reference_force * h.d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
 
     // Derivatives with respect to altitude
     h.d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_3<R: Real>(
+    h: &mut Curvatures<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to altitude
     h.d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
     h.d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
@@ -971,16 +1038,6 @@ fn curvatures_part_2<R: Real>(
     h.d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_3<R: Real>(
-    h: &mut Curvatures<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
     h.d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
         * h.d2_c_t_d_altitude_d_altitude + h.d2_c_l_d_altitude_d_altitude; // 1/ft^2
     h.d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
@@ -1008,7 +1065,16 @@ fn curvatures_part_3<R: Real>(
     h.d2_force_turn_d_altitude_d_alpha_gust = s.d_turn_factor_d_altitude
         * s.d_normal_coefficient_d_alpha_gust
         + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_alpha_gust; // 1/s/ft
+}
 
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_4<R: Real>(
+    h: &mut Curvatures<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     // Derivatives with respect to alpha
     h.d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
         + p.c_l_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
@@ -1060,6 +1126,16 @@ fn curvatures_part_3<R: Real>(
         + p.c_bar * i.reference_force * h.d2_c_m_d_alpha_d_alpha; // lb/rad^2
     h.d2_pitch_acceleration_d_alpha_d_alpha = h.d2_pitching_moment_d_alpha_d_alpha
         * p.inv_i_yy; // 1/s^2/rad
+
+    // Further values
+    h.cos_alpha_times_d2_thrust_d_velocity_d_alpha = i.cos_alpha
+        * h.d2_thrust_d_velocity_d_alpha;
+    h.cos_alpha_times_d2_thrust_d_altitude_d_alpha = i.cos_alpha
+        * h.d2_thrust_d_altitude_d_alpha;
+    h.d_thrust_d_alpha_times_d_cos_alpha_d_alpha = s.d_thrust_d_alpha
+        * s.d_cos_alpha_d_alpha;
+    h.cos_alpha_times_d2_thrust_d_alpha_d_alpha = i.cos_alpha
+        * h.d2_thrust_d_alpha_d_alpha;
 }
 
 /// Computes [`Curvatures`].
@@ -1073,25 +1149,64 @@ pub fn curvatures<R: Real>(
 ) -> Curvatures<R> {
     let mut h = Curvatures::splat(R::ZERO);
     curvatures_part_1(&mut h, x, p, i, s);
-    curvatures_part_2(&mut h, x, u, p, i, s);
-    curvatures_part_3(&mut h, p, i, s);
+    curvatures_part_2(&mut h, u, p, i, s);
+    curvatures_part_3(&mut h, x, p, i, s);
+    curvatures_part_4(&mut h, p, i, s);
     h
 }
 
 ahv_core::record! {
     /// Quantities of the derivatives with respect to parameters that several parts of these need.
     pub struct Sensitivities<R> {
+        /// Derivative of thrust with respect to rho_0, lb*ft^2/slug.
+        pub d_thrust_d_rho_0: R,
         /// Derivative of turn rate by the force across the flight path with respect to rho_0, rad*ft^3/s/slug.
         pub d_force_turn_d_rho_0: R,
+        /// Derivative of dynamic pressure times reference area with respect to h_0, lb/ft^2.
+        pub d_reference_force_d_h_0: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to h_0, slug^0.5/ft^0.5.
+        pub d_eta_static_1_d_h_0: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to h_0, slug^0.5/ft^0.5.
+        pub d_eta_static_2_d_h_0: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to h_0, slug^0.5/ft^0.5.
+        pub d_eta_static_3_d_h_0: R,
+        /// Derivative of thrust with respect to h_0, lb/ft^2.
+        pub d_thrust_d_h_0: R,
         /// Derivative of turn rate by the force across the flight path with respect to h_0, rad/s/ft.
         pub d_force_turn_d_h_0: R,
+        /// Derivative of dynamic pressure times reference area with respect to h_s, lb/ft^2.
+        pub d_reference_force_d_h_s: R,
+        /// Derivative of static flexible coordinate of mode 1 with respect to h_s, slug^0.5/ft^0.5.
+        pub d_eta_static_1_d_h_s: R,
+        /// Derivative of static flexible coordinate of mode 2 with respect to h_s, slug^0.5/ft^0.5.
+        pub d_eta_static_2_d_h_s: R,
+        /// Derivative of static flexible coordinate of mode 3 with respect to h_s, slug^0.5/ft^0.5.
+        pub d_eta_static_3_d_h_s: R,
+        /// Derivative of thrust with respect to h_s, lb/ft^2.
+        pub d_thrust_d_h_s: R,
         /// Derivative of turn rate by the force across the flight path with respect to h_s, rad/s/ft.
         pub d_force_turn_d_h_s: R,
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
         pub slope_of_radius_ratio_in_earth_curvature: R,
+        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
+        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
         /// Derivative of rate of the flight-path angle with respect to r_e, rad/s/ft.
         pub d_gamma_rate_d_r_e: R,
+        /// `c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e + c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e +
+        /// c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e`.
+        pub sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e: R,
+        /// `c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e`.
+        pub c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e: R,
+        /// `c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e`.
+        pub c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e: R,
+        /// `c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e`.
+        pub c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e: R,
+        /// `q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e + q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e +
+        /// q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e`.
+        pub sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e: R,
+        /// `i.reference_force * i.reference_force`.
+        pub reference_force_2: R,
     }
 }
 
@@ -1099,7 +1214,7 @@ ahv_core::record! {
 #[inline(always)]
 pub fn sensitivities<R: Real>(
     x: &State<R>,
-    _u: &Input<R>,
+    u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     h: &Curvatures<R>,
@@ -1111,6 +1226,8 @@ pub fn sensitivities<R: Real>(
         * (p.half_c_t_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
             + p.half_c_t_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
             + p.half_c_t_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
+    q.d_thrust_d_rho_0 = i.c_t * p.half_s * i.velocity_2 * i.density_ratio
+        + i.reference_force * d_c_t_d_rho_0; // lb*ft^2/slug
     let d_c_l_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_l_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
             + p.half_c_l_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
@@ -1120,50 +1237,71 @@ pub fn sensitivities<R: Real>(
         * i.density_ratio + i.turn_factor * d_normal_coefficient_d_rho_0; // rad*ft^3/s/slug
     let d_density_d_h_0 = p.rho_0 * h.density_ratio_over_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
-    let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_1_d_h_0 = d_generalized_force_1_d_h_0 * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_2_d_h_0 = d_generalized_force_2_d_h_0 * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_3_d_h_0 = d_generalized_force_3_d_h_0 * p.inv_omega_3_2; // slug^0.5/ft^0.5
-    let d_c_t_d_h_0 = p.c_t_eta_1 * d_eta_static_1_d_h_0
-        + p.c_t_eta_2 * d_eta_static_2_d_h_0
-        + p.c_t_eta_3 * d_eta_static_3_d_h_0; // 1/ft
+    q.d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
+    let d_generalized_force_1_d_h_0 = i.c_n_1 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_1_d_h_0 = d_generalized_force_1_d_h_0 * p.inv_omega_1_2; // slug^0.5/ft^0.5
+    let d_generalized_force_2_d_h_0 = i.c_n_2 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_2_d_h_0 = d_generalized_force_2_d_h_0 * p.inv_omega_2_2; // slug^0.5/ft^0.5
+    let d_generalized_force_3_d_h_0 = i.c_n_3 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_3_d_h_0 = d_generalized_force_3_d_h_0 * p.inv_omega_3_2; // slug^0.5/ft^0.5
+    let d_c_t_d_h_0 = p.c_t_eta_1 * q.d_eta_static_1_d_h_0
+        + p.c_t_eta_2 * q.d_eta_static_2_d_h_0
+        + p.c_t_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
+    q.d_thrust_d_h_0 = i.c_t * q.d_reference_force_d_h_0
+        + i.reference_force * d_c_t_d_h_0; // lb/ft^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_c_l_d_h_0 = p.c_l_eta_1 * d_eta_static_1_d_h_0
-        + p.c_l_eta_2 * d_eta_static_2_d_h_0
-        + p.c_l_eta_3 * d_eta_static_3_d_h_0; // 1/ft
+    let d_c_l_d_h_0 = p.c_l_eta_1 * q.d_eta_static_1_d_h_0
+        + p.c_l_eta_2 * q.d_eta_static_2_d_h_0
+        + p.c_l_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
     let d_normal_coefficient_d_h_0 = i.sin_alpha * d_c_t_d_h_0 + d_c_l_d_h_0; // 1/ft
     q.d_force_turn_d_h_0 = i.normal_coefficient * d_turn_factor_d_h_0
         + i.turn_factor * d_normal_coefficient_d_h_0; // rad/s/ft
     let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
-    let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_1_d_h_s = d_generalized_force_1_d_h_s * p.inv_omega_1_2; // slug^0.5/ft^0.5
-    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_2_d_h_s = d_generalized_force_2_d_h_s * p.inv_omega_2_2; // slug^0.5/ft^0.5
-    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_static_3_d_h_s = d_generalized_force_3_d_h_s * p.inv_omega_3_2; // slug^0.5/ft^0.5
-    let d_c_t_d_h_s = p.c_t_eta_1 * d_eta_static_1_d_h_s
-        + p.c_t_eta_2 * d_eta_static_2_d_h_s
-        + p.c_t_eta_3 * d_eta_static_3_d_h_s; // 1/ft
+    q.d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
+    let d_generalized_force_1_d_h_s = i.c_n_1 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_1_d_h_s = d_generalized_force_1_d_h_s * p.inv_omega_1_2; // slug^0.5/ft^0.5
+    let d_generalized_force_2_d_h_s = i.c_n_2 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_2_d_h_s = d_generalized_force_2_d_h_s * p.inv_omega_2_2; // slug^0.5/ft^0.5
+    let d_generalized_force_3_d_h_s = i.c_n_3 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_eta_static_3_d_h_s = d_generalized_force_3_d_h_s * p.inv_omega_3_2; // slug^0.5/ft^0.5
+    let d_c_t_d_h_s = p.c_t_eta_1 * q.d_eta_static_1_d_h_s
+        + p.c_t_eta_2 * q.d_eta_static_2_d_h_s
+        + p.c_t_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
+    q.d_thrust_d_h_s = i.c_t * q.d_reference_force_d_h_s
+        + i.reference_force * d_c_t_d_h_s; // lb/ft^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_c_l_d_h_s = p.c_l_eta_1 * d_eta_static_1_d_h_s
-        + p.c_l_eta_2 * d_eta_static_2_d_h_s
-        + p.c_l_eta_3 * d_eta_static_3_d_h_s; // 1/ft
+    let d_c_l_d_h_s = p.c_l_eta_1 * q.d_eta_static_1_d_h_s
+        + p.c_l_eta_2 * q.d_eta_static_2_d_h_s
+        + p.c_l_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
     let d_normal_coefficient_d_h_s = i.sin_alpha * d_c_t_d_h_s + d_c_l_d_h_s; // 1/ft
     q.d_force_turn_d_h_s = i.normal_coefficient * d_turn_factor_d_h_s
         + i.turn_factor * d_normal_coefficient_d_h_s; // rad/s/ft
     q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+    q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
             * (x.velocity
-                - p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
+                - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     q.d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+
+    // Further values
+    q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e = p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
+        + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
+        + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
+    q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e = p
+        .c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e;
+    q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e = p
+        .c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e;
+    q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e = p
+        .c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
+    q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e = q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
+        + q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
+        + q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e;
+    q.reference_force_2 = i.reference_force * i.reference_force;
     q
 }

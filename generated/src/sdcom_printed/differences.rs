@@ -3,7 +3,11 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 #![allow(non_snake_case)]
 
-use super::{Input, Prepared, State, intermediates, noise_terms, sensitivities, slopes};
+use super::{
+    Input, Prepared, State, curvatures, intermediates, noise_slopes, sensitivities,
+    slopes,
+};
+
 use ahv_core::Real;
 
 /// Delta f of (27): the velocity rate of the exact form less that of the printed one, eq. (27). Unit: ft/s^2.
@@ -12,7 +16,9 @@ use ahv_core::Real;
 #[inline(always)]
 pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-    let q = sensitivities(x, u, p, &i);
+    let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -58,7 +64,9 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-    let q = sensitivities(x, u, p, &i);
+    let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -98,7 +106,9 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 #[inline(always)]
 pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-    let q = sensitivities(x, u, p, &i);
+    let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -140,7 +150,9 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 #[inline(always)]
 pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-    let q = sensitivities(x, u, p, &i);
+    let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -182,8 +194,9 @@ pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    let q = sensitivities(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &h);
+    let q = sensitivities(x, u, p, &i, &s, &h);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -229,7 +242,7 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         - d_drag_d_alpha; // lb/ft/rad
     let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
 
-    d_velocity_rate_d_alpha - n.alpha_slope_velocity
+    d_velocity_rate_d_alpha - m.alpha_slope_velocity
 }
 
 /// H of the gamma row in the exact form less that of the printed one, eq. (30). Unit: rad/s/rad.
@@ -239,7 +252,8 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let q = sensitivities(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -289,8 +303,9 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    let q = sensitivities(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &h);
+    let q = sensitivities(x, u, p, &i, &s, &h);
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
@@ -330,7 +345,7 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
         + d_c_l_d_alpha; // 1/rad
     let d_force_turn_d_alpha = i.turn_factor * d_normal_coefficient_d_alpha; // 1/s
 
-    -(d_force_turn_d_alpha + n.alpha_slope_alpha)
+    -(d_force_turn_d_alpha + m.alpha_slope_alpha)
 }
 
 /// H of the pitch_rate row in the exact form less that of the printed one, eq. (34). Unit: rad/s^2/rad.
@@ -340,7 +355,12 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 pub fn delta_H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
+    let h = curvatures(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &h);
+
+    // Strict-feedback form, (34)
+    let alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
+        * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t; // rad/s^2/rad
 
     // Derivatives with respect to alpha
     let d_eta_static_1_d_alpha = s.d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
@@ -366,5 +386,5 @@ pub fn delta_H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.z_t * d_thrust_d_alpha; // lb/rad
     let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
-    d_pitch_acceleration_d_alpha - n.alpha_slope_pitch_rate
+    d_pitch_acceleration_d_alpha - alpha_slope_pitch_rate
 }

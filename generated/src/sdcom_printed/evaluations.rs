@@ -2,7 +2,7 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Input, Prepared, State, intermediates, sensitivities};
+use super::{Input, Prepared, State, curvatures, intermediates, sensitivities, slopes};
 use ahv_core::Real;
 
 /// Air density, eq. (2). Unit: slug/ft^3.
@@ -56,7 +56,9 @@ pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-    let q = sensitivities(x, u, p, &i);
+    let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
     q.generalized_force_1_inv_omega_1_2_plus_chi_1
 }
 
@@ -93,7 +95,9 @@ pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-    let q = sensitivities(x, u, p, &i);
+    let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
     q.generalized_force_2_inv_omega_2_2_plus_chi_2
 }
 
@@ -130,6 +134,8 @@ pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn eta_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-    let q = sensitivities(x, u, p, &i);
+    let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
     q.generalized_force_3_inv_omega_3_2_plus_chi_3
 }

@@ -3,8 +3,8 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
 use super::{
-    Hessian, Input, Intermediates, NoiseSlopes, NoiseTerms, Prepared, Slopes, State,
-    intermediates, noise_slopes, noise_terms, slopes,
+    Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures,
+    intermediates, slopes,
 };
 
 use ahv_core::Real;
@@ -90,20 +90,14 @@ fn hessian_by_velocity<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to velocity
-    let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
-        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * s.d_generalized_force_1_d_velocity
-            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * s.d_generalized_force_2_d_velocity
-            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * s.d_generalized_force_3_d_velocity); // ft^2/s/lb
     let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_generalized_force_2_d_velocity_d_velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_generalized_force_3_d_velocity_d_velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_f_velocity_eta_d_velocity_d_velocity =
-        R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * s.d_dynamic_pressure_d_velocity
+        R::TWO * h.d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * s.d_dynamic_pressure_d_velocity
         + s.slope_of_f_velocity_eta_in_dynamic_pressure * i.density
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_velocity
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_velocity
@@ -143,27 +137,13 @@ fn hessian_by_velocity<R: Real>(
         * d2_gravity_turn_d_velocity_d_velocity;
     let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
         - cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
-
-    // Derivatives with respect to chi_1
-    let d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to velocity
     let d_slope_of_f_alpha_eta_in_turn_factor_d_velocity = -d_slope_of_f_gamma_eta_in_turn_factor_d_velocity;
-    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_1
-        * p.inv_omega_1_2; // rad*s^2/ft^1.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_2
-        * p.inv_omega_2_2; // rad*s^2/ft^1.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity = -d2_gamma_rate_printed_d_velocity_d_chi_3
-        * p.inv_omega_3_2; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity = -h
+        .d2_gamma_rate_printed_d_velocity_d_chi_1 * p.inv_omega_1_2; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity = -h
+        .d2_gamma_rate_printed_d_velocity_d_chi_2 * p.inv_omega_2_2; // rad*s^2/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity = -h
+        .d2_gamma_rate_printed_d_velocity_d_chi_3 * p.inv_omega_3_2; // rad*s^2/ft^1.5/slug^0.5
     let d2_f_alpha_eta_d_velocity_d_velocity =
         s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_velocity
         + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_velocity
@@ -213,27 +193,18 @@ fn hessian_by_velocity<R: Real>(
     hessian.pitch_rate_by_velocity_velocity = d2_pitch_rate_rate_printed_d_velocity_d_velocity;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude_of_velocity.
+/// Entries of [`hessian_values`]: derivatives by altitude in row velocity, altitude in row gamma.
 #[inline(always)]
-fn hessian_by_altitude_of_velocity<R: Real>(
+fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
     hessian: &mut HessianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to velocity
-    let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
-        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
-            * s.d_generalized_force_1_d_velocity
-            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
-                * s.d_generalized_force_2_d_velocity
-            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
-                * s.d_generalized_force_3_d_velocity); // ft^2/s/lb
-
     // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude = p.s_over_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
             * s.d_generalized_force_1_d_altitude
@@ -241,119 +212,38 @@ fn hessian_by_altitude_of_velocity<R: Real>(
                 * s.d_generalized_force_2_d_altitude
             + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
                 * s.d_generalized_force_3_d_altitude); // ft^2/s^2/lb
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     let d2_f_velocity_eta_d_velocity_d_altitude =
-        d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * s.d_dynamic_pressure_d_altitude
-        + s.slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_velocity_d_altitude
+        h.d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * s.d_dynamic_pressure_d_altitude
+        + s.slope_of_f_velocity_eta_in_dynamic_pressure * h.d2_dynamic_pressure_d_velocity_d_altitude
         + s.d_dynamic_pressure_d_velocity * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude
-        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_altitude
-        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_altitude
-        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_altitude; // 1/s/ft
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_velocity_d_altitude
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_velocity_d_altitude
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_velocity_d_altitude;
     let d2_f_velocity_d_velocity_d_altitude = s.slope_of_f_velocity_in_dynamic_pressure
-        * d2_dynamic_pressure_d_velocity_d_altitude
+        * h.d2_dynamic_pressure_d_velocity_d_altitude
         + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
     let d2_g_velocity_d_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
-        * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft
+        * h.d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft
     let d2_velocity_rate_printed_d_velocity_d_altitude =
-        d2_reference_force_d_velocity_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
+        h.d2_reference_force_d_velocity_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d2_f_velocity_d_velocity_d_altitude
         + u.phi * d2_g_velocity_d_velocity_d_altitude; // 1/s/ft
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
-    let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     let d2_f_velocity_eta_d_altitude_d_altitude =
         R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude * s.d_dynamic_pressure_d_altitude
-        + s.slope_of_f_velocity_eta_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
-        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_altitude
-        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_altitude;
+        + s.slope_of_f_velocity_eta_in_dynamic_pressure * h.d2_dynamic_pressure_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_altitude_d_altitude
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_altitude_d_altitude;
     let d2_f_velocity_d_altitude_d_altitude =
-        s.slope_of_f_velocity_in_dynamic_pressure * d2_dynamic_pressure_d_altitude_d_altitude
-        - i.sin_gamma * d2_gravity_d_altitude_d_altitude
+        s.slope_of_f_velocity_in_dynamic_pressure * h.d2_dynamic_pressure_d_altitude_d_altitude
+        - i.sin_gamma * h.d2_gravity_d_altitude_d_altitude
         + d2_f_velocity_eta_d_altitude_d_altitude; // 1/s^2/ft
     let d2_g_velocity_d_altitude_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
+        * h.d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
     let d2_velocity_rate_printed_d_altitude_d_altitude =
-        d2_reference_force_d_altitude_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
+        h.d2_reference_force_d_altitude_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d2_f_velocity_d_altitude_d_altitude
         + u.phi * d2_g_velocity_d_altitude_d_altitude; // 1/s^2/ft
-
-    hessian.velocity_by_altitude_velocity = d2_velocity_rate_printed_d_velocity_d_altitude;
-    hessian.velocity_by_altitude_altitude = d2_velocity_rate_printed_d_altitude_d_altitude;
-}
-
-/// Entries of [`hessian_values`]: derivatives by altitude_of_gamma.
-#[inline(always)]
-fn hessian_by_altitude_of_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
-    let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
-    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude =
-        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_altitude
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_altitude
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_altitude; // rad/ft
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude = i
         .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
         * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
@@ -365,14 +255,14 @@ fn hessian_by_altitude_of_gamma<R: Real>(
         * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
     let d2_f_gamma_eta_d_velocity_d_altitude = s
         .slope_of_f_gamma_eta_in_generalized_force_1
-        * d2_generalized_force_1_d_velocity_d_altitude
+        * h.d2_generalized_force_1_d_velocity_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_velocity_d_altitude
+            * h.d2_generalized_force_2_d_velocity_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_velocity_d_altitude
+            * h.d2_generalized_force_3_d_velocity_d_altitude
         + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
-            * d2_turn_factor_d_velocity_d_altitude
-        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+            * h.d2_turn_factor_d_velocity_d_altitude
+        + s.d_turn_factor_d_velocity * h.d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
         + s.d_generalized_force_1_d_velocity
             * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
         + s.d_generalized_force_2_d_velocity
@@ -380,23 +270,18 @@ fn hessian_by_altitude_of_gamma<R: Real>(
         + s.d_generalized_force_3_d_velocity
             * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
     let d2_f_gamma_d_velocity_d_altitude =
-        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_velocity_d_altitude
-        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude
+        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * h.d2_turn_factor_d_velocity_d_altitude
+        - h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
     let d2_g_gamma_d_velocity_d_altitude = i
         .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
-        * d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
+        * h.d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
     let d2_gamma_rate_printed_d_velocity_d_altitude =
-        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * d2_turn_factor_d_velocity_d_altitude
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * h.d2_turn_factor_d_velocity_d_altitude
         + d2_f_gamma_d_velocity_d_altitude
         + x.alpha * d2_g_gamma_d_velocity_d_altitude; // rad/ft^2
-    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
-        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
-        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
     let d2_f_gamma_eta_d_altitude_d_altitude = s.d_turn_factor_d_altitude
-        * d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
+        * h.d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
         + s.d_generalized_force_1_d_altitude
             * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
         + s.d_generalized_force_2_d_altitude
@@ -404,189 +289,79 @@ fn hessian_by_altitude_of_gamma<R: Real>(
         + s.d_generalized_force_3_d_altitude
             * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_1
-            * d2_generalized_force_1_d_altitude_d_altitude
+            * h.d2_generalized_force_1_d_altitude_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_2
-            * d2_generalized_force_2_d_altitude_d_altitude
+            * h.d2_generalized_force_2_d_altitude_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_3
-            * d2_generalized_force_3_d_altitude_d_altitude
+            * h.d2_generalized_force_3_d_altitude_d_altitude
         + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
-            * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+            * h.d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_gamma_d_altitude_d_altitude =
-        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * d2_turn_factor_d_altitude_d_altitude
-        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude
+        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * h.d2_turn_factor_d_altitude_d_altitude
+        - h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
     let d2_g_gamma_d_altitude_d_altitude = i
         .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
-        * d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
+        * h.d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
     let d2_gamma_rate_printed_d_altitude_d_altitude =
-        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * d2_turn_factor_d_altitude_d_altitude
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * h.d2_turn_factor_d_altitude_d_altitude
         + d2_f_gamma_d_altitude_d_altitude
         + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
 
+    hessian.velocity_by_altitude_velocity = d2_velocity_rate_printed_d_velocity_d_altitude;
+    hessian.velocity_by_altitude_altitude = d2_velocity_rate_printed_d_altitude_d_altitude;
     hessian.gamma_by_altitude_velocity = d2_gamma_rate_printed_d_velocity_d_altitude;
     hessian.gamma_by_altitude_altitude = d2_gamma_rate_printed_d_altitude_d_altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude_of_alpha.
+/// Entries of [`hessian_values`]: derivatives by altitude in row alpha, altitude in row pitch_rate.
 #[inline(always)]
-fn hessian_by_altitude_of_alpha<R: Real>(
+fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
     hessian: &mut HessianEntries<R>,
-    x: &State<R>,
+    u: &Input<R>,
     p: &Prepared<R>,
-    i: &Intermediates<R>,
     s: &Slopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
-    let d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
-            + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
-    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
-        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_altitude =
-        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_altitude
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_altitude
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_altitude; // rad/ft
-    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
-        * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
-        - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-
-    // Derivatives with respect to chi_1
-    let d2_gamma_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to altitude
-    let d_slope_of_f_alpha_eta_in_turn_factor_d_altitude = -d_slope_of_f_gamma_eta_in_turn_factor_d_altitude; // rad/ft
-    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_1
-        * p.inv_omega_1_2; // rad*s/ft^1.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_2
-        * p.inv_omega_2_2; // rad*s/ft^1.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude = -d2_gamma_rate_printed_d_altitude_d_chi_3
-        * p.inv_omega_3_2; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_turn_factor_d_altitude = -h
+        .d_slope_of_f_gamma_eta_in_turn_factor_d_altitude; // rad/ft
+    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude = -h
+        .d2_gamma_rate_printed_d_altitude_d_chi_1 * p.inv_omega_1_2; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude = -h
+        .d2_gamma_rate_printed_d_altitude_d_chi_2 * p.inv_omega_2_2; // rad*s/ft^1.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude = -h
+        .d2_gamma_rate_printed_d_altitude_d_chi_3 * p.inv_omega_3_2; // rad*s/ft^1.5/slug^0.5
     let d2_f_alpha_eta_d_velocity_d_altitude =
-        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_altitude
-        + s.slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * h.d2_generalized_force_1_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_velocity_d_altitude
+        + s.slope_of_f_alpha_eta_in_turn_factor * h.d2_turn_factor_d_velocity_d_altitude
         + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
         + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
         + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
         + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
-    let d2_f_alpha_d_velocity_d_altitude = s.slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_velocity_d_altitude
-        + i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude
+    let d2_f_alpha_d_velocity_d_altitude = s.slope_of_f_alpha_in_turn_factor * h.d2_turn_factor_d_velocity_d_altitude
+        + h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
     let d2_alpha_rate_printed_d_velocity_d_altitude = s
         .slope_of_alpha_rate_printed_in_turn_factor
-        * d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
+        * h.d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
     let d2_f_alpha_eta_d_altitude_d_altitude =
         s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
         + s.d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
         + s.d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
         + s.d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_altitude
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_altitude
-        + s.slope_of_f_alpha_eta_in_turn_factor * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_f_alpha_d_altitude_d_altitude = s.slope_of_f_alpha_in_turn_factor * d2_turn_factor_d_altitude_d_altitude
-        + i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * h.d2_generalized_force_1_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_altitude_d_altitude
+        + s.slope_of_f_alpha_eta_in_turn_factor * h.d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    let d2_f_alpha_d_altitude_d_altitude = s.slope_of_f_alpha_in_turn_factor * h.d2_turn_factor_d_altitude_d_altitude
+        + h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
     let d2_alpha_rate_printed_d_altitude_d_altitude = s
         .slope_of_alpha_rate_printed_in_turn_factor
-        * d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
-
-    hessian.alpha_by_altitude_velocity = d2_alpha_rate_printed_d_velocity_d_altitude;
-    hessian.alpha_by_altitude_altitude = d2_alpha_rate_printed_d_altitude_d_altitude;
-}
-
-/// Entries of [`hessian_values`]: derivatives by altitude_of_pitch_rate_gamma.
-#[inline(always)]
-fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to altitude
-    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
-    // Derivatives with respect to gamma
-    let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-    let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_f_gamma_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-    let d2_f_gamma_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_f_gamma_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-    let d2_f_alpha_d_velocity_d_gamma = s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-    let d2_f_alpha_d_altitude_d_gamma = s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-    let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to altitude
+        * h.d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
         .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
         * s.d_generalized_force_1_d_altitude;
@@ -608,24 +383,24 @@ fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
                         * s.d_generalized_force_2_d_velocity
                     + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                         * s.d_generalized_force_3_d_velocity)
-            + d2_reference_force_d_velocity_d_altitude
+            + h.d2_reference_force_d_velocity_d_altitude
                 * s
                     .sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2)
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_altitude
+            * h.d2_generalized_force_1_d_velocity_d_altitude
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_altitude
+            * h.d2_generalized_force_2_d_velocity_d_altitude
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
+            * h.d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
     let d2_f_pitch_rate_d_velocity_d_altitude = s
         .slope_of_f_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_velocity_d_altitude
+        * h.d2_dynamic_pressure_d_velocity_d_altitude
         + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
     let d2_g_pitch_rate_d_velocity_d_altitude = p
         .slope_of_g_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft^2
+        * h.d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft^2
     let d2_pitch_rate_rate_printed_d_velocity_d_altitude =
-        d2_reference_force_d_velocity_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        h.d2_reference_force_d_velocity_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d2_f_pitch_rate_d_velocity_d_altitude
         + u.delta_e * d2_g_pitch_rate_d_velocity_d_altitude; // rad/s/ft^2
     let d2_f_pitch_rate_eta_d_altitude_d_altitude = p.inv_i_yy
@@ -633,29 +408,57 @@ fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
             * (R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2
                 + R::TWO * d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3)
-            + d2_reference_force_d_altitude_d_altitude
+            + h.d2_reference_force_d_altitude_d_altitude
                 * s
                     .sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2)
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_altitude_d_altitude
+            * h.d2_generalized_force_1_d_altitude_d_altitude
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_altitude_d_altitude
+            * h.d2_generalized_force_2_d_altitude_d_altitude
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
+            * h.d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
     let d2_f_pitch_rate_d_altitude_d_altitude = s
         .slope_of_f_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude
+        * h.d2_dynamic_pressure_d_altitude_d_altitude
         + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
     let d2_g_pitch_rate_d_altitude_d_altitude = p
         .slope_of_g_pitch_rate_in_dynamic_pressure
-        * d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft^2
+        * h.d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft^2
     let d2_pitch_rate_rate_printed_d_altitude_d_altitude =
-        d2_reference_force_d_altitude_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        h.d2_reference_force_d_altitude_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d2_f_pitch_rate_d_altitude_d_altitude
         + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
 
+    hessian.alpha_by_altitude_velocity = d2_alpha_rate_printed_d_velocity_d_altitude;
+    hessian.alpha_by_altitude_altitude = d2_alpha_rate_printed_d_altitude_d_altitude;
     hessian.pitch_rate_by_altitude_velocity = d2_pitch_rate_rate_printed_d_velocity_d_altitude;
     hessian.pitch_rate_by_altitude_altitude = d2_pitch_rate_rate_printed_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by gamma.
+#[inline(always)]
+fn hessian_by_gamma<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    x: &State<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to gamma
+    let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    let d2_f_gamma_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
+    let d2_f_gamma_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    let d2_f_gamma_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    let d2_f_alpha_d_velocity_d_gamma = s.d_gravity_turn_d_velocity
+        * s.d_cos_gamma_d_gamma; // 1/ft
+    let d2_f_alpha_d_altitude_d_gamma = s.d_gravity_turn_d_altitude
+        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+
     hessian.velocity_by_gamma_altitude = d2_f_velocity_d_altitude_d_gamma;
     hessian.velocity_by_gamma_gamma = d2_f_velocity_d_gamma_d_gamma;
     hessian.altitude_by_gamma_velocity = i.cos_gamma;
@@ -668,7 +471,7 @@ fn hessian_by_altitude_of_pitch_rate_gamma<R: Real>(
     hessian.alpha_by_gamma_gamma = d2_f_alpha_d_gamma_d_gamma;
 }
 
-/// Entries of [`hessian_values`]: derivatives by alpha_of_velocity.
+/// Entries of [`hessian_values`]: derivatives by alpha in row velocity.
 #[inline(always)]
 fn hessian_by_alpha_of_velocity<R: Real>(
     hessian: &mut HessianEntries<R>,
@@ -676,6 +479,7 @@ fn hessian_by_alpha_of_velocity<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to alpha
     let d_slope_of_f_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
@@ -689,12 +493,6 @@ fn hessian_by_alpha_of_velocity<R: Real>(
                 * s.d_generalized_force_2_d_alpha
             + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
                 * s.d_generalized_force_3_d_alpha); // ft^3/s^2/lb/rad
-    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_f_velocity_eta_d_velocity_d_alpha = i.reference_force * p.inv_m
         * (s.d_generalized_force_1_d_velocity * p.c_t_eta_1_inv_omega_1_2
             + s.d_generalized_force_2_d_velocity * p.c_t_eta_2_inv_omega_2_2
@@ -703,11 +501,11 @@ fn hessian_by_alpha_of_velocity<R: Real>(
         + s.d_dynamic_pressure_d_velocity
             * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_velocity_d_alpha
+            * h.d2_generalized_force_1_d_velocity_d_alpha
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_velocity_d_alpha
+            * h.d2_generalized_force_2_d_velocity_d_alpha
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/rad
+            * h.d2_generalized_force_3_d_velocity_d_alpha; // 1/s/rad
     let d2_f_velocity_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
         * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
         + d2_f_velocity_eta_d_velocity_d_alpha; // 1/s/rad
@@ -720,12 +518,6 @@ fn hessian_by_alpha_of_velocity<R: Real>(
         s.d_reference_force_d_velocity * p.inv_m * s.sum_of_chi_c_t_eta * s.d_cos_alpha_d_alpha
         + d2_f_velocity_d_velocity_d_alpha
         + u.phi * d2_g_velocity_d_velocity_d_alpha; // 1/s/rad
-    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_f_velocity_eta_d_altitude_d_alpha = i.reference_force * p.inv_m
         * (s.d_generalized_force_1_d_altitude * p.c_t_eta_1_inv_omega_1_2
             + s.d_generalized_force_2_d_altitude * p.c_t_eta_2_inv_omega_2_2
@@ -734,11 +526,11 @@ fn hessian_by_alpha_of_velocity<R: Real>(
         + s.d_dynamic_pressure_d_altitude
             * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_alpha
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d2_generalized_force_1_d_altitude_d_alpha
+            * h.d2_generalized_force_1_d_altitude_d_alpha
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d2_generalized_force_2_d_altitude_d_alpha
+            * h.d2_generalized_force_2_d_altitude_d_alpha
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/rad
+            * h.d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/rad
     let d2_f_velocity_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
         * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
         + d2_f_velocity_eta_d_altitude_d_alpha; // 1/s^2/rad
@@ -752,18 +544,13 @@ fn hessian_by_alpha_of_velocity<R: Real>(
     let d_slope_of_f_velocity_in_cos_alpha_d_alpha = i.reference_force
         * p.c_t_alpha_over_m; // ft/s^2/rad
     let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha = i.reference_force * p.inv_m
-        * (p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
-            + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
-            + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha); // ft/s^2/rad
-    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+        * h.sum_of_c_t_eta_inv_omega_2_times_d_generalized_force_d_alpha; // ft/s^2/rad
     let d2_f_velocity_eta_d_alpha_d_alpha =
         R::TWO * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
         + s.slope_of_f_velocity_eta_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
-        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
-        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha; // ft/s^2/rad^2
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_alpha_d_alpha
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_alpha_d_alpha
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_alpha_d_alpha;
     let d2_f_velocity_d_alpha_d_alpha = R::TWO * d_slope_of_f_velocity_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
         + s.slope_of_f_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d2_f_velocity_eta_d_alpha_d_alpha; // ft/s^2/rad^2
@@ -782,7 +569,7 @@ fn hessian_by_alpha_of_velocity<R: Real>(
     hessian.velocity_by_alpha_alpha = d2_velocity_rate_printed_d_alpha_d_alpha;
 }
 
-/// Entries of [`hessian_values`]: derivatives by alpha_of_gamma.
+/// Entries of [`hessian_values`]: derivatives by alpha in row gamma.
 #[inline(always)]
 fn hessian_by_alpha_of_gamma<R: Real>(
     hessian: &mut HessianEntries<R>,
@@ -790,32 +577,11 @@ fn hessian_by_alpha_of_gamma<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-    n: &NoiseTerms<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s.sum_of_chi_c_t_eta
-        * i.cos_alpha;
     let d_slope_of_f_gamma_in_turn_factor_d_alpha = (i.c_t_phi_phi + p.c_t_0)
         * i.cos_alpha;
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = s.sum_of_generalized_force_inv_omega_2_c_t_eta * i.cos_alpha
-        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_alpha
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_alpha
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = i.turn_factor
         * p.c_t_eta_1_inv_omega_1_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = i.turn_factor
@@ -823,49 +589,46 @@ fn hessian_by_alpha_of_gamma<R: Real>(
     let d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha = i.turn_factor
         * p.c_t_eta_3_inv_omega_3_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
     let d2_f_gamma_eta_d_velocity_d_alpha =
-        s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_alpha
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_alpha
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_alpha
-        + s.d_turn_factor_d_velocity * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * h.d2_generalized_force_1_d_velocity_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_velocity_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_velocity_d_alpha
+        + s.d_turn_factor_d_velocity * h.d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
         + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
         + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha; // 1/ft
     let d2_f_gamma_d_velocity_d_alpha = s.d_turn_factor_d_velocity
         * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_velocity_d_alpha; // 1/ft
     let d2_g_gamma_d_velocity_d_alpha = s.d_turn_factor_d_velocity
-        * n.c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha; // 1/ft/rad
+        * h.d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/ft/rad
     let d2_gamma_rate_printed_d_velocity_d_alpha = s.d_g_gamma_d_velocity
-        + s.d_turn_factor_d_velocity * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
+        + s.d_turn_factor_d_velocity * h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
         + d2_f_gamma_d_velocity_d_alpha
         + x.alpha * d2_g_gamma_d_velocity_d_alpha; // 1/ft
-    let d2_f_gamma_eta_d_altitude_d_alpha = s.d_turn_factor_d_altitude * d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
+    let d2_f_gamma_eta_d_altitude_d_alpha =
+        s.d_turn_factor_d_altitude * h.d_slope_of_f_gamma_eta_in_turn_factor_d_alpha
         + s.d_generalized_force_1_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
         + s.d_generalized_force_3_d_altitude * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
-        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_alpha
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_alpha
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * h.d2_generalized_force_1_d_altitude_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_altitude_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
     let d2_f_gamma_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_altitude_d_alpha; // 1/s/ft
     let d2_g_gamma_d_altitude_d_alpha = s.d_turn_factor_d_altitude
-        * n.c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha; // 1/s/ft/rad
+        * h.d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/s/ft/rad
     let d2_gamma_rate_printed_d_altitude_d_alpha = s.d_g_gamma_d_altitude
-        + s.d_turn_factor_d_altitude * d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
+        + s.d_turn_factor_d_altitude * h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
         + d2_f_gamma_d_altitude_d_alpha
         + x.alpha * d2_g_gamma_d_altitude_d_alpha; // 1/s/ft
-    let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = i.turn_factor
-        * (p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
-            + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
-            + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha); // 1/s
     let d2_f_gamma_eta_d_alpha_d_alpha =
         s.d_generalized_force_1_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha
         + s.d_generalized_force_3_d_alpha * d_slope_of_f_gamma_eta_in_generalized_force_3_d_alpha
-        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d2_generalized_force_1_d_alpha_d_alpha
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * h.d2_generalized_force_1_d_alpha_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_alpha_d_alpha
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_alpha_d_alpha
         + s.slope_of_f_gamma_eta_in_sin_alpha * s.d_cos_alpha_d_alpha
-        + i.cos_alpha * d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s/rad
+        + i.cos_alpha * h.d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s/rad
     let d2_f_gamma_d_alpha_d_alpha = s.slope_of_f_gamma_in_sin_alpha
         * s.d_cos_alpha_d_alpha + d2_f_gamma_eta_d_alpha_d_alpha; // 1/s/rad
     let d2_g_gamma_d_alpha_d_alpha = s.slope_of_g_gamma_in_sin_alpha
@@ -880,71 +643,35 @@ fn hessian_by_alpha_of_gamma<R: Real>(
     hessian.gamma_by_alpha_alpha = d2_gamma_rate_printed_d_alpha_d_alpha;
 }
 
-/// Entries of [`hessian_values`]: derivatives by alpha_of_alpha.
+/// Entries of [`hessian_values`]: derivatives by alpha in row alpha, alpha in row pitch_rate.
 #[inline(always)]
-fn hessian_by_alpha_of_alpha<R: Real>(
+fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
     hessian: &mut HessianEntries<R>,
+    x: &State<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-    m: &NoiseSlopes<R>,
+    h: &Curvatures<R>,
 ) {
     // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s.sum_of_chi_c_t_eta
-        * i.cos_alpha;
-    let d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = s.sum_of_generalized_force_inv_omega_2_c_t_eta * i.cos_alpha
-        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_alpha
-        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_alpha
-        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
-    let d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = i.turn_factor
-        * (p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
-            + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
-            + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha); // 1/s
-
-    // Derivatives with respect to chi_1
-    let d2_gamma_rate_printed_d_alpha_d_chi_1 = i.cos_alpha * i.turn_factor
-        * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_alpha_d_chi_2 = i.cos_alpha * i.turn_factor
-        * p.c_t_eta_2; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_alpha_d_chi_3 = i.cos_alpha * i.turn_factor
-        * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to alpha
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -h
+        .d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_in_turn_factor_d_alpha = -(p.c_l_alpha
         + i.sin_alpha * s.c_t_alpha_plus_c_t_phi_alpha_phi
         + i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
             * i.cos_alpha);
-    let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
-    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_1
-        * p.inv_omega_1_2; // s/ft^0.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_2
-        * p.inv_omega_2_2; // s/ft^0.5/slug^0.5
-    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha = -d2_gamma_rate_printed_d_alpha_d_chi_3
-        * p.inv_omega_3_2; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -h
+        .d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
+    let d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha = -h
+        .d2_gamma_rate_printed_d_alpha_d_chi_1 * p.inv_omega_1_2; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha = -h
+        .d2_gamma_rate_printed_d_alpha_d_chi_2 * p.inv_omega_2_2; // s/ft^0.5/slug^0.5
+    let d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha = -h
+        .d2_gamma_rate_printed_d_alpha_d_chi_3 * p.inv_omega_3_2; // s/ft^0.5/slug^0.5
     let d2_f_alpha_eta_d_velocity_d_alpha =
-        s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_velocity_d_alpha
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_velocity_d_alpha
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_velocity_d_alpha
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * h.d2_generalized_force_1_d_velocity_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_velocity_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_velocity_d_alpha
         + s.d_turn_factor_d_velocity * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
         + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
@@ -958,98 +685,32 @@ fn hessian_by_alpha_of_alpha<R: Real>(
         + s.d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
         + s.d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
-        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_altitude_d_alpha
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_altitude_d_alpha
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * h.d2_generalized_force_1_d_altitude_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_altitude_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
     let d2_f_alpha_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_altitude_d_alpha; // 1/s/ft
     let d2_alpha_rate_printed_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
         + d2_f_alpha_d_altitude_d_alpha; // 1/s/ft
-    let d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha = -d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s
+    let d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha = -h
+        .d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s
     let d2_f_alpha_eta_d_alpha_d_alpha =
         s.d_generalized_force_1_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
         + s.d_generalized_force_3_d_alpha * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
-        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d2_generalized_force_1_d_alpha_d_alpha
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d2_generalized_force_3_d_alpha_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * h.d2_generalized_force_1_d_alpha_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_alpha_d_alpha
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_alpha_d_alpha
         + s.slope_of_f_alpha_eta_in_sin_alpha * s.d_cos_alpha_d_alpha
         + i.cos_alpha * d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha; // 1/s/rad
     let d2_f_alpha_d_alpha_d_alpha = s.slope_of_f_alpha_in_sin_alpha * s.d_cos_alpha_d_alpha
         - s.d_g_gamma_d_alpha
-        + m.d_alpha_slope_alpha_d_alpha
+        + h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
         + d2_f_alpha_eta_d_alpha_d_alpha; // 1/s/rad
     let d2_alpha_rate_printed_d_alpha_d_alpha = s
         .slope_of_alpha_rate_printed_in_sin_alpha * s.d_cos_alpha_d_alpha
         + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad
-
-    hessian.alpha_by_alpha_velocity = d2_alpha_rate_printed_d_velocity_d_alpha;
-    hessian.alpha_by_alpha_altitude = d2_alpha_rate_printed_d_altitude_d_alpha;
-    hessian.alpha_by_alpha_alpha = d2_alpha_rate_printed_d_alpha_d_alpha;
-}
-
-/// Entries of [`hessian_values`]: derivatives by alpha_of_pitch_rate_chi_1.
-#[inline(always)]
-fn hessian_by_alpha_of_pitch_rate_chi_1<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
-    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
-
-    // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
-        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
-        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
-
-    // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
-        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to alpha
-    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-
-    // Derivatives with respect to chi_1
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = i.reference_force
-        * p.c_t_eta_1_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha
-        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1; // ft^0.5/s^2/rad/slug^0.5
-    let d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
-    let d2_gamma_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
-    let d2_gamma_rate_printed_d_alpha_d_chi_1 = i.cos_alpha * i.turn_factor
-        * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -i
-        .sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
-    let d2_alpha_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -i.turn_factor
-        * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_1 = i.cos_alpha
-        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to alpha
     let d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha = p.s_over_i_yy
         * (p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi
             + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha)); // ft^2/s^2/lb
@@ -1059,78 +720,65 @@ fn hessian_by_alpha_of_pitch_rate_chi_1<R: Real>(
         + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
     let d2_f_pitch_rate_eta_d_velocity_d_alpha =
         s.d_reference_force_d_velocity * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_alpha
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_alpha
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_velocity_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_velocity_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
     let d2_f_pitch_rate_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_velocity_d_alpha; // 1/s/ft
-
-    // Derivatives with respect to chi_1
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to alpha
     let d2_f_pitch_rate_eta_d_altitude_d_alpha =
         s.d_reference_force_d_altitude * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_altitude_d_alpha
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_altitude_d_alpha
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/ft
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_altitude_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_altitude_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_altitude_d_alpha;
     let d2_f_pitch_rate_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_altitude_d_alpha; // 1/s^2/ft
-
-    // Derivatives with respect to chi_1
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    // Derivatives with respect to alpha
     let d2_f_pitch_rate_eta_d_alpha_d_alpha =
-        s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_alpha_d_alpha
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_alpha_d_alpha
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
+        s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_alpha_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_alpha_d_alpha
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
     let d2_f_pitch_rate_d_alpha_d_alpha = i.reference_force
         * p.two_c_bar_c_m_alpha_2_over_i_yy + d2_f_pitch_rate_eta_d_alpha_d_alpha; // 1/s^2/rad
 
+    hessian.alpha_by_alpha_velocity = d2_alpha_rate_printed_d_velocity_d_alpha;
+    hessian.alpha_by_alpha_altitude = d2_alpha_rate_printed_d_altitude_d_alpha;
+    hessian.alpha_by_alpha_alpha = d2_alpha_rate_printed_d_alpha_d_alpha;
     hessian.pitch_rate_by_alpha_velocity = d2_f_pitch_rate_d_velocity_d_alpha;
     hessian.pitch_rate_by_alpha_altitude = d2_f_pitch_rate_d_altitude_d_alpha;
     hessian.pitch_rate_by_alpha_alpha = d2_f_pitch_rate_d_alpha_d_alpha;
-    hessian.velocity_by_chi_1_velocity = d2_velocity_rate_printed_d_velocity_d_chi_1;
-    hessian.velocity_by_chi_1_altitude = d2_velocity_rate_printed_d_altitude_d_chi_1;
-    hessian.velocity_by_chi_1_alpha = d2_velocity_rate_printed_d_alpha_d_chi_1;
-    hessian.gamma_by_chi_1_velocity = d2_gamma_rate_printed_d_velocity_d_chi_1;
-    hessian.gamma_by_chi_1_altitude = d2_gamma_rate_printed_d_altitude_d_chi_1;
-    hessian.gamma_by_chi_1_alpha = d2_gamma_rate_printed_d_alpha_d_chi_1;
-    hessian.alpha_by_chi_1_velocity = d2_alpha_rate_printed_d_velocity_d_chi_1;
-    hessian.alpha_by_chi_1_altitude = d2_alpha_rate_printed_d_altitude_d_chi_1;
-    hessian.alpha_by_chi_1_alpha = d2_alpha_rate_printed_d_alpha_d_chi_1;
-    hessian.pitch_rate_by_chi_1_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_1;
-    hessian.pitch_rate_by_chi_1_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_1;
 }
 
-/// Entries of [`hessian_values`]: derivatives by chi_2_chi_3.
+/// Entries of [`hessian_values`]: derivatives by chi_1, chi_2.
 #[inline(always)]
-fn hessian_by_chi_2_chi_3<R: Real>(
+fn hessian_by_chi_1_chi_2<R: Real>(
     hessian: &mut HessianEntries<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
+    h: &Curvatures<R>,
 ) {
+    // Derivatives with respect to chi_1
+    let d2_velocity_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+
     // Derivatives with respect to chi_2
     let d2_velocity_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
         * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d2_velocity_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
-        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    // Derivatives with respect to chi_1
+    let d2_velocity_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_velocity_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
         * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d2_velocity_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
-        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    // Derivatives with respect to chi_1
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = i.reference_force
+        * p.c_t_eta_1_over_m; // ft^0.5/s^2/slug^0.5
+    let d2_velocity_rate_printed_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = i.reference_force
@@ -1138,35 +786,11 @@ fn hessian_by_chi_2_chi_3<R: Real>(
     let d2_velocity_rate_printed_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha
         * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2; // ft^0.5/s^2/rad/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3 = i.reference_force
-        * p.c_t_eta_3_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha
-        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_gamma_rate_printed_d_alpha_d_chi_2 = i.cos_alpha * i.turn_factor
-        * p.c_t_eta_2; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_gamma_rate_printed_d_alpha_d_chi_3 = i.cos_alpha * i.turn_factor
-        * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+    // Derivatives with respect to chi_1
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -i
+        .sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2 = -i
@@ -1174,19 +798,19 @@ fn hessian_by_chi_2_chi_3<R: Real>(
     let d2_alpha_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3 = -i
-        .sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
+    // Derivatives with respect to chi_1
+    let d2_alpha_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_alpha_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d2_alpha_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
+    // Derivatives with respect to chi_1
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -i.turn_factor
+        * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_1 = i.cos_alpha
+        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -i.turn_factor
@@ -1194,45 +818,85 @@ fn hessian_by_chi_2_chi_3<R: Real>(
     let d2_alpha_rate_printed_d_alpha_d_chi_2 = i.cos_alpha
         * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -i.turn_factor
-        * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_3 = i.cos_alpha
-        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
+    // Derivatives with respect to chi_1
+    let d2_pitch_rate_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_pitch_rate_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    // Derivatives with respect to chi_1
+    let d2_pitch_rate_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_pitch_rate_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    // Derivatives with respect to chi_3
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
-        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
+    hessian.velocity_by_chi_1_velocity = d2_velocity_rate_printed_d_velocity_d_chi_1;
+    hessian.velocity_by_chi_1_altitude = d2_velocity_rate_printed_d_altitude_d_chi_1;
+    hessian.velocity_by_chi_1_alpha = d2_velocity_rate_printed_d_alpha_d_chi_1;
+    hessian.gamma_by_chi_1_velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_1;
+    hessian.gamma_by_chi_1_altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_1;
+    hessian.gamma_by_chi_1_alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_1;
+    hessian.alpha_by_chi_1_velocity = d2_alpha_rate_printed_d_velocity_d_chi_1;
+    hessian.alpha_by_chi_1_altitude = d2_alpha_rate_printed_d_altitude_d_chi_1;
+    hessian.alpha_by_chi_1_alpha = d2_alpha_rate_printed_d_alpha_d_chi_1;
+    hessian.pitch_rate_by_chi_1_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_1;
+    hessian.pitch_rate_by_chi_1_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_1;
     hessian.velocity_by_chi_2_velocity = d2_velocity_rate_printed_d_velocity_d_chi_2;
     hessian.velocity_by_chi_2_altitude = d2_velocity_rate_printed_d_altitude_d_chi_2;
     hessian.velocity_by_chi_2_alpha = d2_velocity_rate_printed_d_alpha_d_chi_2;
-    hessian.gamma_by_chi_2_velocity = d2_gamma_rate_printed_d_velocity_d_chi_2;
-    hessian.gamma_by_chi_2_altitude = d2_gamma_rate_printed_d_altitude_d_chi_2;
-    hessian.gamma_by_chi_2_alpha = d2_gamma_rate_printed_d_alpha_d_chi_2;
+    hessian.gamma_by_chi_2_velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_2;
+    hessian.gamma_by_chi_2_altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_2;
+    hessian.gamma_by_chi_2_alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_2;
     hessian.alpha_by_chi_2_velocity = d2_alpha_rate_printed_d_velocity_d_chi_2;
     hessian.alpha_by_chi_2_altitude = d2_alpha_rate_printed_d_altitude_d_chi_2;
     hessian.alpha_by_chi_2_alpha = d2_alpha_rate_printed_d_alpha_d_chi_2;
     hessian.pitch_rate_by_chi_2_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_2;
     hessian.pitch_rate_by_chi_2_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_2;
+}
+
+/// Entries of [`hessian_values`]: derivatives by chi_3.
+#[inline(always)]
+fn hessian_by_chi_3<R: Real>(
+    hessian: &mut HessianEntries<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+    h: &Curvatures<R>,
+) {
+    // Derivatives with respect to chi_3
+    let d2_velocity_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    let d2_velocity_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3 = i.reference_force
+        * p.c_t_eta_3_over_m; // ft^0.5/s^2/slug^0.5
+    let d2_velocity_rate_printed_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3; // ft^0.5/s^2/rad/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3 = -i
+        .sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
+    let d2_alpha_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -i.turn_factor
+        * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d2_alpha_rate_printed_d_alpha_d_chi_3 = i.cos_alpha
+        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
+    let d2_pitch_rate_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitch_rate_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
+        * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+
     hessian.velocity_by_chi_3_velocity = d2_velocity_rate_printed_d_velocity_d_chi_3;
     hessian.velocity_by_chi_3_altitude = d2_velocity_rate_printed_d_altitude_d_chi_3;
     hessian.velocity_by_chi_3_alpha = d2_velocity_rate_printed_d_alpha_d_chi_3;
-    hessian.gamma_by_chi_3_velocity = d2_gamma_rate_printed_d_velocity_d_chi_3;
-    hessian.gamma_by_chi_3_altitude = d2_gamma_rate_printed_d_altitude_d_chi_3;
-    hessian.gamma_by_chi_3_alpha = d2_gamma_rate_printed_d_alpha_d_chi_3;
+    hessian.gamma_by_chi_3_velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_3;
+    hessian.gamma_by_chi_3_altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_3;
+    hessian.gamma_by_chi_3_alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_3;
     hessian.alpha_by_chi_3_velocity = d2_alpha_rate_printed_d_velocity_d_chi_3;
     hessian.alpha_by_chi_3_altitude = d2_alpha_rate_printed_d_altitude_d_chi_3;
     hessian.alpha_by_chi_3_alpha = d2_alpha_rate_printed_d_alpha_d_chi_3;
@@ -1253,19 +917,17 @@ pub fn hessian_values<R: Real>(
 ) -> HessianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    let m = noise_slopes(x, u, p, &i, &s, &n);
+    let h = curvatures(x, u, p, &i, &s);
     let mut hessian = HessianEntries::splat(R::ZERO);
-    hessian_by_velocity(&mut hessian, u, p, &i, &s);
-    hessian_by_altitude_of_velocity(&mut hessian, x, u, p, &i, &s);
-    hessian_by_altitude_of_gamma(&mut hessian, x, p, &i, &s);
-    hessian_by_altitude_of_alpha(&mut hessian, x, p, &i, &s);
-    hessian_by_altitude_of_pitch_rate_gamma(&mut hessian, x, u, p, &i, &s);
-    hessian_by_alpha_of_velocity(&mut hessian, u, p, &i, &s);
-    hessian_by_alpha_of_gamma(&mut hessian, x, p, &i, &s, &n);
-    hessian_by_alpha_of_alpha(&mut hessian, p, &i, &s, &m);
-    hessian_by_alpha_of_pitch_rate_chi_1(&mut hessian, x, p, &i, &s);
-    hessian_by_chi_2_chi_3(&mut hessian, p, &i, &s);
+    hessian_by_velocity(&mut hessian, u, p, &i, &s, &h);
+    hessian_by_altitude_of_velocity_altitude_of_gamma(&mut hessian, x, u, p, &i, &s, &h);
+    hessian_by_altitude_of_alpha_altitude_of_pitch_rate(&mut hessian, u, p, &s, &h);
+    hessian_by_gamma(&mut hessian, x, &i, &s);
+    hessian_by_alpha_of_velocity(&mut hessian, u, p, &i, &s, &h);
+    hessian_by_alpha_of_gamma(&mut hessian, x, p, &i, &s, &h);
+    hessian_by_alpha_of_alpha_alpha_of_pitch_rate(&mut hessian, x, p, &i, &s, &h);
+    hessian_by_chi_1_chi_2(&mut hessian, p, &i, &s, &h);
+    hessian_by_chi_3(&mut hessian, p, &i, &s, &h);
     hessian
 }
 

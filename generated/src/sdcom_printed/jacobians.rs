@@ -144,7 +144,7 @@ fn jacobians_by_velocity<R: Real>(
     state.pitch_rate_by_velocity = d_pitch_rate_rate_printed_d_velocity;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by altitude_gamma.
+/// Entries of [`jacobians_values`]: derivatives by altitude, gamma.
 #[inline(always)]
 fn jacobians_by_altitude_gamma<R: Real>(
     state: &mut StateJacobianEntries<R>,
@@ -231,7 +231,7 @@ fn jacobians_by_altitude_gamma<R: Real>(
     state.alpha_by_gamma = d_f_alpha_d_gamma;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by alpha to delta_e.
+/// Entries of [`jacobians_values`]: derivatives by alpha, chi_1, chi_2, chi_3, pitch_rate, phi, delta_e.
 #[inline(always)]
 fn jacobians_by_alpha_to_delta_e<R: Real>(
     state: &mut StateJacobianEntries<R>,
@@ -369,7 +369,7 @@ fn jacobians_by_delta_c<R: Real>(
     input.pitch_rate_by_delta_c = d_f_pitch_rate_eta_d_delta_c;
 }
 
-/// [`jacobians_values`] from what is computed once.
+/// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
     x: &State<R>,

@@ -3,8 +3,8 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Noise, NoiseDerivatives, Prepared, State, intermediates, noise_slopes,
-    noise_terms, slopes,
+    Input, Noise, NoiseDerivatives, Prepared, State, curvatures, intermediates,
+    noise_slopes, slopes,
 };
 
 use ahv_core::Real;
@@ -40,45 +40,46 @@ pub fn noise_derivatives_values<R: Real>(
 ) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    let m = noise_slopes(x, u, p, &i, &s, &n);
+    let h = curvatures(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &h);
 
     // Derivatives with respect to altitude
-    let d_alpha_slope_velocity_d_altitude = (n
-        .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha)
-        * s.d_reference_force_d_altitude * p.inv_m; // 1/s^2/rad
+    let d_alpha_slope_velocity_d_altitude = (h.d_slope_of_g_gamma_in_turn_factor_d_alpha
+        - p.c_d_alpha) * s.d_reference_force_d_altitude * p.inv_m; // 1/s^2/rad
     let slope_of_alpha_slope_alpha_in_turn_factor = -i
         .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
     let d_alpha_slope_alpha_d_altitude = slope_of_alpha_slope_alpha_in_turn_factor
         * s.d_turn_factor_d_altitude; // 1/s/ft
-    let d_alpha_slope_pitch_rate_d_altitude = (p.c_bar_c_m_alpha
-        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi) * s.d_reference_force_d_altitude
-        * p.inv_i_yy; // 1/s^2/ft
+    let d_alpha_slope_pitch_rate_d_altitude = m
+        .c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t
+        * s.d_reference_force_d_altitude * p.inv_i_yy; // 1/s^2/ft
 
     NoiseDerivativesEntries {
         velocity_by_w_gamma_w_alpha: p.w_alpha_w_gamma
             * d_alpha_slope_velocity_d_altitude * x.velocity,
         velocity_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d_alpha_slope_velocity_d_velocity * n.alpha_slope_velocity
-                + m.d_alpha_slope_velocity_d_alpha * n.alpha_slope_alpha),
+            * (m.d_alpha_slope_velocity_d_velocity * m.alpha_slope_velocity
+                + m.d_alpha_slope_velocity_d_alpha * m.alpha_slope_alpha),
         velocity_by_w_q_w_alpha: p.w_alpha_w_q * m.d_alpha_slope_velocity_d_alpha,
-        altitude_by_w_alpha_w_gamma: p.w_alpha_w_gamma * n.alpha_slope_velocity,
+        altitude_by_w_alpha_w_gamma: p.w_alpha_w_gamma * m.alpha_slope_velocity,
         gamma_by_w_gamma_w_alpha: p.w_alpha_w_gamma * s.d_g_gamma_d_altitude
             * x.velocity,
         gamma_by_w_alpha_w_alpha: p.w_alpha_2
-            * (s.d_g_gamma_d_velocity * n.alpha_slope_velocity
-                + s.d_g_gamma_d_alpha * n.alpha_slope_alpha),
+            * (s.d_g_gamma_d_velocity * m.alpha_slope_velocity
+                + s.d_g_gamma_d_alpha * m.alpha_slope_alpha),
         gamma_by_w_q_w_alpha: p.w_alpha_w_q * s.d_g_gamma_d_alpha,
         alpha_by_w_gamma_w_alpha: p.w_alpha_w_gamma * d_alpha_slope_alpha_d_altitude
             * x.velocity,
         alpha_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d_alpha_slope_alpha_d_velocity * n.alpha_slope_velocity
-                + m.d_alpha_slope_alpha_d_alpha * n.alpha_slope_alpha),
-        alpha_by_w_q_w_alpha: p.w_alpha_w_q * m.d_alpha_slope_alpha_d_alpha,
+            * (m.d_alpha_slope_alpha_d_velocity * m.alpha_slope_velocity
+                + h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
+                    * m.alpha_slope_alpha),
+        alpha_by_w_q_w_alpha: p.w_alpha_w_q
+            * h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha,
         pitch_rate_by_w_gamma_w_alpha: p.w_alpha_w_gamma
             * d_alpha_slope_pitch_rate_d_altitude * x.velocity,
         pitch_rate_by_w_alpha_w_alpha: p.w_alpha_2
-            * m.d_alpha_slope_pitch_rate_d_velocity * n.alpha_slope_velocity,
+            * m.d_alpha_slope_pitch_rate_d_velocity * m.alpha_slope_velocity,
     }
 }
 
@@ -100,21 +101,22 @@ pub fn noise_derivatives<R: Real>(
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    let m = noise_slopes(x, u, p, &i, &s, &n);
+    let h = curvatures(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &h);
     State {
         velocity: p.half_w_alpha_2
-            * (m.d_alpha_slope_velocity_d_velocity * n.alpha_slope_velocity
-                + m.d_alpha_slope_velocity_d_alpha * n.alpha_slope_alpha),
+            * (m.d_alpha_slope_velocity_d_velocity * m.alpha_slope_velocity
+                + m.d_alpha_slope_velocity_d_alpha * m.alpha_slope_alpha),
         altitude: R::ZERO,
         gamma: p.half_w_alpha_2
-            * (s.d_g_gamma_d_velocity * n.alpha_slope_velocity
-                + s.d_g_gamma_d_alpha * n.alpha_slope_alpha),
+            * (s.d_g_gamma_d_velocity * m.alpha_slope_velocity
+                + s.d_g_gamma_d_alpha * m.alpha_slope_alpha),
         alpha: p.half_w_alpha_2
-            * (m.d_alpha_slope_alpha_d_velocity * n.alpha_slope_velocity
-                + m.d_alpha_slope_alpha_d_alpha * n.alpha_slope_alpha),
+            * (m.d_alpha_slope_alpha_d_velocity * m.alpha_slope_velocity
+                + h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
+                    * m.alpha_slope_alpha),
         pitch_rate: p.half_w_alpha_2 * m.d_alpha_slope_pitch_rate_d_velocity
-            * n.alpha_slope_velocity,
+            * m.alpha_slope_velocity,
         chi_1: R::ZERO,
         chi_2: R::ZERO,
         chi_3: R::ZERO,

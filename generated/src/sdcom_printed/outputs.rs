@@ -2,7 +2,10 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{Input, Outputs, Prepared, State, intermediates, sensitivities};
+use super::{
+    Input, Outputs, Prepared, State, curvatures, intermediates, sensitivities, slopes,
+};
+
 use ahv_core::Real;
 
 /// Quantities that people look at, which are not states.
@@ -11,7 +14,9 @@ use ahv_core::Real;
 #[inline(always)]
 pub fn outputs<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Outputs<R> {
     let i = intermediates(x, u, p);
-    let q = sensitivities(x, u, p, &i);
+    let s = slopes(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
 
     // Angles, (1)
     let theta = x.gamma + x.alpha; // rad

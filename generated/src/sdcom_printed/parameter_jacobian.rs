@@ -4,7 +4,7 @@
 
 use super::{
     Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes,
-    State, intermediates, sensitivities, slopes,
+    State, curvatures, intermediates, sensitivities, slopes,
 };
 
 use ahv_core::Real;
@@ -338,9 +338,10 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     parameter.pitch_rate_by_z_t = d_pitch_rate_rate_printed_d_z_t;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by environment_of_velocity.
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment in row velocity, environment in row
+/// gamma.
 #[inline(always)]
-fn parameter_jacobian_by_environment_of_velocity<R: Real>(
+fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     x: &State<R>,
     u: &Input<R>,
@@ -366,64 +367,6 @@ fn parameter_jacobian_by_environment_of_velocity<R: Real>(
             * i.velocity_2
             + R::HALF * u.phi * s.slope_of_g_velocity_in_dynamic_pressure * i.velocity_2)
         + d_f_velocity_d_rho_0; // ft^4/s^2/slug
-    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
-    let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_h_0 = s.slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_0
-        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_0
-        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_0
-        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_0; // 1/s^2
-    let d_f_velocity_d_h_0 = s.slope_of_f_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_0 + d_f_velocity_eta_d_h_0; // 1/s^2
-    let d_g_velocity_d_h_0 = s.slope_of_g_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_0; // 1/s^2
-    let d_velocity_rate_printed_d_h_0 =
-        d_reference_force_d_h_0 * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
-        + d_f_velocity_d_h_0
-        + u.phi * d_g_velocity_d_h_0; // 1/s^2
-    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
-    let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
-    let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_f_velocity_eta_d_h_s = s.slope_of_f_velocity_eta_in_dynamic_pressure * d_dynamic_pressure_d_h_s
-        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_h_s
-        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_h_s
-        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_h_s; // 1/s^2
-    let d_f_velocity_d_h_s = s.slope_of_f_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_s + d_f_velocity_eta_d_h_s; // 1/s^2
-    let d_g_velocity_d_h_s = s.slope_of_g_velocity_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_s; // 1/s^2
-    let d_velocity_rate_printed_d_h_s =
-        d_reference_force_d_h_s * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
-        + d_f_velocity_d_h_s
-        + u.phi * d_g_velocity_d_h_s; // 1/s^2
-
-    parameter.velocity_by_rho_0 = d_velocity_rate_printed_d_rho_0;
-    parameter.velocity_by_h_0 = d_velocity_rate_printed_d_h_0;
-    parameter.velocity_by_h_s = d_velocity_rate_printed_d_h_s;
-    parameter.velocity_by_g = -i.sin_gamma * i.radius_ratio_2;
-    parameter.velocity_by_r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-}
-
-/// Entries of [`parameter_jacobian_values`]: derivatives by environment_of_gamma.
-#[inline(always)]
-fn parameter_jacobian_by_environment_of_gamma<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
-) {
-    // Derivatives with respect to parameters
     let d_f_gamma_eta_d_rho_0 = p.s * i.density_ratio
         * (i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
             * p.half_over_m * x.velocity
@@ -440,56 +383,64 @@ fn parameter_jacobian_by_environment_of_gamma<R: Real>(
             + R::HALF * x.alpha
                 * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
                 * x.velocity) + d_f_gamma_d_rho_0; // rad*ft^3/s/slug
-    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
-    let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
+    let d_f_velocity_eta_d_h_0 = s.slope_of_f_velocity_eta_in_dynamic_pressure * q.d_dynamic_pressure_d_h_0
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_0
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * q.d_generalized_force_2_d_h_0
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * q.d_generalized_force_3_d_h_0; // 1/s^2
+    let d_f_velocity_d_h_0 = s.slope_of_f_velocity_in_dynamic_pressure
+        * q.d_dynamic_pressure_d_h_0 + d_f_velocity_eta_d_h_0; // 1/s^2
+    let d_g_velocity_d_h_0 = s.slope_of_g_velocity_in_dynamic_pressure
+        * q.d_dynamic_pressure_d_h_0; // 1/s^2
+    let d_velocity_rate_printed_d_h_0 =
+        q.d_reference_force_d_h_0 * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
+        + d_f_velocity_d_h_0
+        + u.phi * d_g_velocity_d_h_0; // 1/s^2
     let d_f_gamma_eta_d_h_0 =
-        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * d_turn_factor_d_h_0
-        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * q.d_turn_factor_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_0; // rad/s/ft
     let d_f_gamma_d_h_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        * d_turn_factor_d_h_0 + d_f_gamma_eta_d_h_0; // rad/s/ft
+        * q.d_turn_factor_d_h_0 + d_f_gamma_eta_d_h_0; // rad/s/ft
     let d_g_gamma_d_h_0 = i
         .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
-        * d_turn_factor_d_h_0; // 1/s/ft
-    let d_gamma_rate_printed_d_h_0 = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * d_turn_factor_d_h_0
+        * q.d_turn_factor_d_h_0; // 1/s/ft
+    let d_gamma_rate_printed_d_h_0 = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * q.d_turn_factor_d_h_0
         + d_f_gamma_d_h_0
         + x.alpha * d_g_gamma_d_h_0; // rad/s/ft
-    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
-    let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
-    let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
+    let d_f_velocity_eta_d_h_s = s.slope_of_f_velocity_eta_in_dynamic_pressure * q.d_dynamic_pressure_d_h_s
+        + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_s
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * q.d_generalized_force_2_d_h_s
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * q.d_generalized_force_3_d_h_s; // 1/s^2
+    let d_f_velocity_d_h_s = s.slope_of_f_velocity_in_dynamic_pressure
+        * q.d_dynamic_pressure_d_h_s + d_f_velocity_eta_d_h_s; // 1/s^2
+    let d_g_velocity_d_h_s = s.slope_of_g_velocity_in_dynamic_pressure
+        * q.d_dynamic_pressure_d_h_s; // 1/s^2
+    let d_velocity_rate_printed_d_h_s =
+        q.d_reference_force_d_h_s * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
+        + d_f_velocity_d_h_s
+        + u.phi * d_g_velocity_d_h_s; // 1/s^2
     let d_f_gamma_eta_d_h_s =
-        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * d_turn_factor_d_h_s
-        + s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * q.d_turn_factor_d_h_s
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_s
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_s
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_s; // rad/s/ft
     let d_f_gamma_d_h_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        * d_turn_factor_d_h_s + d_f_gamma_eta_d_h_s; // rad/s/ft
+        * q.d_turn_factor_d_h_s + d_f_gamma_eta_d_h_s; // rad/s/ft
     let d_g_gamma_d_h_s = i
         .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
-        * d_turn_factor_d_h_s; // 1/s/ft
-    let d_gamma_rate_printed_d_h_s = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * d_turn_factor_d_h_s
+        * q.d_turn_factor_d_h_s; // 1/s/ft
+    let d_gamma_rate_printed_d_h_s = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * q.d_turn_factor_d_h_s
         + d_f_gamma_d_h_s
         + x.alpha * d_g_gamma_d_h_s; // rad/s/ft
-    let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * i.radius_ratio
-            * (x.velocity
-                - p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
-            + x.velocity * p.earth_curvature_2
-                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_f_gamma_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    let d_f_gamma_d_r_e = -i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
 
+    parameter.velocity_by_rho_0 = d_velocity_rate_printed_d_rho_0;
+    parameter.velocity_by_h_0 = d_velocity_rate_printed_d_h_0;
+    parameter.velocity_by_h_s = d_velocity_rate_printed_d_h_s;
+    parameter.velocity_by_g = -i.sin_gamma * i.radius_ratio_2;
+    parameter.velocity_by_r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e
+        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
     parameter.gamma_by_rho_0 = d_gamma_rate_printed_d_rho_0;
     parameter.gamma_by_h_0 = d_gamma_rate_printed_d_h_0;
     parameter.gamma_by_h_s = d_gamma_rate_printed_d_h_s;
@@ -497,11 +448,13 @@ fn parameter_jacobian_by_environment_of_gamma<R: Real>(
     parameter.gamma_by_r_e = d_f_gamma_d_r_e;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by environment_of_alpha.
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment in row alpha, environment in row
+/// pitch_rate.
 #[inline(always)]
-fn parameter_jacobian_by_environment_of_alpha<R: Real>(
+fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
     x: &State<R>,
+    u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
@@ -520,64 +473,6 @@ fn parameter_jacobian_by_environment_of_alpha<R: Real>(
         * x.velocity * i.density_ratio + d_f_alpha_eta_d_rho_0; // rad*ft^3/s/slug
     let d_alpha_rate_printed_d_rho_0 = s.slope_of_alpha_rate_printed_in_turn_factor
         * p.half_s_over_m * x.velocity * i.density_ratio + d_f_alpha_d_rho_0; // rad*ft^3/s/slug
-    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
-    let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_f_alpha_eta_d_h_0 = s.slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_h_0
-        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_h_0
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_h_0
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_h_0; // rad/s/ft
-    let d_f_alpha_d_h_0 = s.slope_of_f_alpha_in_turn_factor * d_turn_factor_d_h_0
-        + d_f_alpha_eta_d_h_0; // rad/s/ft
-    let d_alpha_rate_printed_d_h_0 = s.slope_of_alpha_rate_printed_in_turn_factor
-        * d_turn_factor_d_h_0 + d_f_alpha_d_h_0; // rad/s/ft
-    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
-    let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
-    let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_f_alpha_eta_d_h_s = s.slope_of_f_alpha_eta_in_turn_factor * d_turn_factor_d_h_s
-        + s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_h_s
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_h_s
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_h_s; // rad/s/ft
-    let d_f_alpha_d_h_s = s.slope_of_f_alpha_in_turn_factor * d_turn_factor_d_h_s
-        + d_f_alpha_eta_d_h_s; // rad/s/ft
-    let d_alpha_rate_printed_d_h_s = s.slope_of_alpha_rate_printed_in_turn_factor
-        * d_turn_factor_d_h_s + d_f_alpha_d_h_s; // rad/s/ft
-    let d_gravity_turn_d_r_e = p.inv_r_e
-        * (p.earth_curvature * i.radius_ratio
-            * (x.velocity
-                - p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
-            + x.velocity * p.earth_curvature_2
-                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_f_alpha_d_r_e = i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-
-    parameter.alpha_by_rho_0 = d_alpha_rate_printed_d_rho_0;
-    parameter.alpha_by_h_0 = d_alpha_rate_printed_d_h_0;
-    parameter.alpha_by_h_s = d_alpha_rate_printed_d_h_s;
-    parameter.alpha_by_g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.alpha_by_r_e = d_f_alpha_d_r_e;
-}
-
-/// Entries of [`parameter_jacobian_values`]: derivatives by environment_of_pitch_rate.
-#[inline(always)]
-fn parameter_jacobian_by_environment_of_pitch_rate<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
-    // Derivatives with respect to parameters
     let d_f_pitch_rate_eta_d_rho_0 = p.s * i.density_ratio
         * (p.half_over_i_yy
             * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
@@ -595,53 +490,61 @@ fn parameter_jacobian_by_environment_of_pitch_rate<R: Real>(
             * i.velocity_2
             + u.delta_e * p.half_slope_of_g_pitch_rate_in_dynamic_pressure
                 * i.velocity_2) + d_f_pitch_rate_d_rho_0; // rad*ft^3/s^2/slug
-    let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
-    let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
-    let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
-    let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
-    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_f_pitch_rate_eta_d_h_0 = d_reference_force_d_h_0 * p.inv_i_yy
+    let d_f_alpha_eta_d_h_0 = s.slope_of_f_alpha_eta_in_turn_factor * q.d_turn_factor_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_0; // rad/s/ft
+    let d_f_alpha_d_h_0 = s.slope_of_f_alpha_in_turn_factor * q.d_turn_factor_d_h_0
+        + d_f_alpha_eta_d_h_0; // rad/s/ft
+    let d_alpha_rate_printed_d_h_0 = s.slope_of_alpha_rate_printed_in_turn_factor
+        * q.d_turn_factor_d_h_0 + d_f_alpha_d_h_0; // rad/s/ft
+    let d_f_pitch_rate_eta_d_h_0 = q.d_reference_force_d_h_0 * p.inv_i_yy
         * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_h_0
+            * q.d_generalized_force_1_d_h_0
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_h_0
+            * q.d_generalized_force_2_d_h_0
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_h_0; // rad/s^2/ft
+            * q.d_generalized_force_3_d_h_0; // rad/s^2/ft
     let d_f_pitch_rate_d_h_0 = s.slope_of_f_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_0 + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
+        * q.d_dynamic_pressure_d_h_0 + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
     let d_g_pitch_rate_d_h_0 = p.slope_of_g_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_0; // 1/s^2/ft
+        * q.d_dynamic_pressure_d_h_0; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_h_0 =
-        d_reference_force_d_h_0 * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        q.d_reference_force_d_h_0 * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_h_0
         + u.delta_e * d_g_pitch_rate_d_h_0; // rad/s^2/ft
-    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
-    let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
-    let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
-    let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
-    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_f_pitch_rate_eta_d_h_s = d_reference_force_d_h_s * p.inv_i_yy
+    let d_f_alpha_eta_d_h_s = s.slope_of_f_alpha_eta_in_turn_factor * q.d_turn_factor_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_s; // rad/s/ft
+    let d_f_alpha_d_h_s = s.slope_of_f_alpha_in_turn_factor * q.d_turn_factor_d_h_s
+        + d_f_alpha_eta_d_h_s; // rad/s/ft
+    let d_alpha_rate_printed_d_h_s = s.slope_of_alpha_rate_printed_in_turn_factor
+        * q.d_turn_factor_d_h_s + d_f_alpha_d_h_s; // rad/s/ft
+    let d_f_pitch_rate_eta_d_h_s = q.d_reference_force_d_h_s * p.inv_i_yy
         * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * d_generalized_force_1_d_h_s
+            * q.d_generalized_force_1_d_h_s
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * d_generalized_force_2_d_h_s
+            * q.d_generalized_force_2_d_h_s
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * d_generalized_force_3_d_h_s; // rad/s^2/ft
+            * q.d_generalized_force_3_d_h_s; // rad/s^2/ft
     let d_f_pitch_rate_d_h_s = s.slope_of_f_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_s + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
+        * q.d_dynamic_pressure_d_h_s + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
     let d_g_pitch_rate_d_h_s = p.slope_of_g_pitch_rate_in_dynamic_pressure
-        * d_dynamic_pressure_d_h_s; // 1/s^2/ft
+        * q.d_dynamic_pressure_d_h_s; // 1/s^2/ft
     let d_pitch_rate_rate_printed_d_h_s =
-        d_reference_force_d_h_s * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
+        q.d_reference_force_d_h_s * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_h_s
         + u.delta_e * d_g_pitch_rate_d_h_s; // rad/s^2/ft
+    let d_f_alpha_d_r_e = i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
 
+    parameter.alpha_by_rho_0 = d_alpha_rate_printed_d_rho_0;
+    parameter.alpha_by_h_0 = d_alpha_rate_printed_d_h_0;
+    parameter.alpha_by_h_s = d_alpha_rate_printed_d_h_s;
+    parameter.alpha_by_g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha_by_r_e = d_f_alpha_d_r_e;
     parameter.pitch_rate_by_rho_0 = d_pitch_rate_rate_printed_d_rho_0;
     parameter.pitch_rate_by_h_0 = d_pitch_rate_rate_printed_d_h_0;
     parameter.pitch_rate_by_h_s = d_pitch_rate_rate_printed_d_h_s;
@@ -745,26 +648,17 @@ fn parameter_jacobian_by_choices<R: Real>(
                 * u.delta_c); // rad/s^2
     let d_f_velocity_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * i.reference_force
-        * (s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
-            + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c
-                * u.delta_e
-            + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
-                * u.delta_e); // ft/s^2
+        * q
+            .sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft/s^2
     let d_f_velocity_d_canard_slaving = i.reference_force
         * p.c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_canard_slaving; // ft/s^2
     let d_f_gamma_eta_d_canard_slaving = -i.reference_force
         * p.c_l_delta_e_over_c_l_delta_c
-        * (s.slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
-            + s.slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
-            + s.slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c
-                * u.delta_e); // rad/s
+        * q.sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad/s
     let d_f_alpha_eta_d_canard_slaving = -i.reference_force
         * p.c_l_delta_e_over_c_l_delta_c
-        * (s.slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
-            + s.slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
-            + s.slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c
-                * u.delta_e); // rad/s
+        * q.sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad/s
     let d_f_pitch_rate_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * i.reference_force
         * (s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c
@@ -778,7 +672,7 @@ fn parameter_jacobian_by_choices<R: Real>(
             * p.c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c; // rad/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
-            * (p.two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity
+            * (q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity
                 - x.velocity)
             - x.velocity * p.earth_curvature
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
@@ -871,7 +765,7 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter.pitch_rate_by_c_t_eta_3 = d_pitch_rate_rate_printed_d_c_t_eta_3;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_l_c_d.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d.
 #[inline(always)]
 fn parameter_jacobian_by_c_l_c_d<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -883,30 +777,19 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e =
-        s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
-        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
-        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
     let d_f_velocity_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
         * i.reference_force
-        * sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
+        * q
+            .sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_e = i.reference_force
         * p.c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_c_l_delta_e; // ft*rad/s^2
-    let sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e =
-        s.slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
     let d_f_gamma_eta_d_c_l_delta_e = -i.reference_force
         * p.canard_slaving_over_c_l_delta_c
-        * sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
-    let sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e =
-        s.slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
+        * q.sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_alpha_eta_d_c_l_delta_e = -i.reference_force
         * p.canard_slaving_over_c_l_delta_c
-        * sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
+        * q.sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_e_term_1 =
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
@@ -918,15 +801,16 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
             * p.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c; // rad^2/s^2
     let d_f_velocity_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * i.reference_force
-        * sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
+        * q
+            .sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
     let d_f_velocity_d_c_l_delta_c = d_f_velocity_eta_d_c_l_delta_c
         - i.reference_force * p.d_f_velocity_d_c_l_delta_c_constant_1 * u.delta_e; // ft*rad/s^2
     let d_f_gamma_eta_d_c_l_delta_c = i.reference_force
         * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
+        * q.sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_alpha_eta_d_c_l_delta_c = i.reference_force
         * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
+        * q.sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * i.reference_force * d_f_pitch_rate_eta_d_c_l_delta_e_term_1; // rad^2/s^2
     let d_pitch_rate_rate_printed_d_c_l_delta_c = d_f_pitch_rate_eta_d_c_l_delta_c
@@ -976,7 +860,7 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
     parameter.velocity_by_c_d_eta_3 = d_velocity_rate_printed_d_c_d_eta_3;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_1_c_n_2.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_1, c_n_2.
 #[inline(always)]
 fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -1090,7 +974,7 @@ fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
     parameter.pitch_rate_by_c_n_2_0 = d_f_pitch_rate_eta_d_c_n_2_0;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3_c_m.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3, c_m.
 #[inline(always)]
 fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>,
@@ -1185,13 +1069,28 @@ pub fn parameter_jacobian_values<R: Real>(
 ) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let q = sensitivities(x, u, p, &i);
+    let h = curvatures(x, u, p, &i, &s);
+    let q = sensitivities(x, u, p, &i, &s, &h);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
     parameter_jacobian_by_vehicle(&mut parameter, x, u, p, &i, &s);
-    parameter_jacobian_by_environment_of_velocity(&mut parameter, x, u, p, &i, &s, &q);
-    parameter_jacobian_by_environment_of_gamma(&mut parameter, x, p, &i, &s, &q);
-    parameter_jacobian_by_environment_of_alpha(&mut parameter, x, p, &i, &s, &q);
-    parameter_jacobian_by_environment_of_pitch_rate(&mut parameter, x, u, p, &i, &s);
+    parameter_jacobian_by_environment_of_velocity_environment_of_gamma(
+        &mut parameter,
+        x,
+        u,
+        p,
+        &i,
+        &s,
+        &q,
+    );
+    parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate(
+        &mut parameter,
+        x,
+        u,
+        p,
+        &i,
+        &s,
+        &q,
+    );
     parameter_jacobian_by_modes(&mut parameter, x, p, &i, &s);
     parameter_jacobian_by_choices(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_t(&mut parameter, x, u, p, &i, &q);

@@ -502,6 +502,7 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Coloured noise, (23)
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
 
     // Derivatives with respect to velocity
@@ -552,6 +553,8 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
     // Noise of the modes, (16)
     c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
+
+    // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
     c.c_d_delta_e_plus_c_d_delta_c_times_canard_gain = p.c_d_delta_e
@@ -581,12 +584,13 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_c_m_alpha_2 = R::TWO * p.c_m_alpha_2;
     c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy = c.inv_i_yy
         * c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1;
-    c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy = c.inv_i_yy
-        * c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2;
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
+    c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy = c.inv_i_yy
+        * c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2;
     c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy = c.inv_i_yy
         * c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3;
     c.minus_chi_decay_1 = -c.chi_decay_1;

@@ -211,6 +211,7 @@ fn intermediates_part_2<R: Real>(
     u: &Input<R>,
     p: &Prepared<R>,
 ) {
+    // Strict-feedback form, (29)
     i.f_velocity = i.reference_force * p.inv_m
         * (i.cos_alpha * (i.c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
             - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
@@ -586,6 +587,7 @@ fn slopes_part_1<R: Real>(
     s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
     s.d_generalized_force_2_d_alpha = i.reference_force * s.d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+    s.d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 }
 
 /// Fills a part of [`Slopes`].
@@ -597,7 +599,7 @@ fn slopes_part_2<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
 ) {
-    s.d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+    // Derivatives with respect to alpha
     s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_c_t_phi
         * i.reference_force * p.inv_m; // ft/s^2
     s.slope_of_gamma_rate_printed_in_sin_alpha = i.turn_factor * s.sum_of_chi_c_t_eta; // rad/s
@@ -673,6 +675,8 @@ fn slopes_part_2<R: Real>(
     s.d_f_gamma_eta_d_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
+
+    // Further values
     s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi = i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1
         + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
         + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3;
@@ -700,52 +704,314 @@ pub fn slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the diffusion that other functions need.
-    pub struct NoiseTerms<R> {
-        /// `i.cos_alpha * s.c_t_alpha_plus_c_t_phi_alpha_phi`.
-        pub c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha: R,
-        /// H of the velocity row, ft/s^2/rad.
-        pub alpha_slope_velocity: R,
-        /// H of the alpha row, rad/s/rad.
-        pub alpha_slope_alpha: R,
-        /// H of the pitch_rate row, rad/s^2/rad.
-        pub alpha_slope_pitch_rate: R,
+    /// Quantities of the second derivatives that other functions, or several parts of these, need.
+    pub struct Curvatures<R> {
+        /// Derivative of partial derivative of f of the velocity row, flexible part with respect to dynamic pressure
+        /// with respect to velocity, ft^2/s/lb.
+        pub d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity: R,
+        /// Derivative of dynamic pressure with respect to velocity and altitude, lb*s/ft^4.
+        pub d2_dynamic_pressure_d_velocity_d_altitude: R,
+        /// Derivative of dynamic pressure times reference area with respect to velocity and altitude, lb*s/ft^3.
+        pub d2_reference_force_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_1_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 2 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_2_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 3 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
+        pub d2_generalized_force_3_d_velocity_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_1_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_2_d_velocity_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
+        pub d2_generalized_force_3_d_velocity_d_alpha: R,
+        /// `i.density_ratio * inv_h_s`.
+        pub density_ratio_over_h_s: R,
+        /// Derivative of dynamic pressure with respect to altitude and altitude, lb/ft^4.
+        pub d2_dynamic_pressure_d_altitude_d_altitude: R,
+        /// Derivative of acceleration of gravity at altitude with respect to altitude and altitude, 1/s^2/ft.
+        pub d2_gravity_d_altitude_d_altitude: R,
+        /// Derivative of dynamic pressure times reference area with respect to altitude and altitude, lb/ft^3.
+        pub d2_reference_force_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_1_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_2_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
+        pub d2_generalized_force_3_d_altitude_d_altitude: R,
+        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_1_d_altitude_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_2_d_altitude_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
+        pub d2_generalized_force_3_d_altitude_d_alpha: R,
+        /// `c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha + c_t_eta_2_inv_omega_2_2 *
+        /// s.d_generalized_force_2_d_alpha + c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha`.
+        pub sum_of_c_t_eta_inv_omega_2_times_d_generalized_force_d_alpha: R,
+        /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_1_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_2_d_alpha_d_alpha: R,
+        /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
+        pub d2_generalized_force_3_d_alpha_d_alpha: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity and
+        /// altitude, 1/ft^2.
+        pub d2_turn_factor_d_velocity_d_altitude: R,
+        /// Derivative of partial derivative of f of the gamma row, flexible part with respect to turn rate per force
+        /// coefficient across the flight path with respect to altitude, rad/ft.
+        pub d_slope_of_f_gamma_eta_in_turn_factor_d_altitude: R,
+        /// `i.cos_gamma * h.d2_gravity_turn_d_velocity_d_altitude`.
+        pub cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude: R,
+        /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
+        /// coefficient across the flight path with respect to alpha, dimensionless.
+        pub d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha: R,
+        /// Derivative of partial derivative of f of the gamma row, flexible part with respect to turn rate per force
+        /// coefficient across the flight path with respect to alpha, dimensionless.
+        pub d_slope_of_f_gamma_eta_in_turn_factor_d_alpha: R,
+        /// Derivative of partial derivative of g of the gamma row with respect to turn rate per force coefficient
+        /// across the flight path with respect to alpha, 1/rad.
+        pub d_slope_of_g_gamma_in_turn_factor_d_alpha: R,
+        /// Derivative of rate of gamma in the printed form with respect to velocity and chi_1, rad/ft^1.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_velocity_d_chi_1: R,
+        /// Derivative of rate of gamma in the printed form with respect to velocity and chi_2, rad/ft^1.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_velocity_d_chi_2: R,
+        /// Derivative of rate of gamma in the printed form with respect to velocity and chi_3, rad/ft^1.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_velocity_d_chi_3: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude and
+        /// altitude, 1/s/ft^2.
+        pub d2_turn_factor_d_altitude_d_altitude: R,
+        /// `i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude`.
+        pub cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude: R,
+        /// Derivative of rate of gamma in the printed form with respect to altitude and chi_1, rad/s/ft^1.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_altitude_d_chi_1: R,
+        /// Derivative of rate of gamma in the printed form with respect to altitude and chi_2, rad/s/ft^1.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_altitude_d_chi_2: R,
+        /// Derivative of rate of gamma in the printed form with respect to altitude and chi_3, rad/s/ft^1.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_altitude_d_chi_3: R,
+        /// Derivative of partial derivative of f of the gamma row, flexible part with respect to sin of the angle of
+        /// attack with respect to alpha, 1/s.
+        pub d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha: R,
+        /// Derivative of rate of gamma in the printed form with respect to alpha and chi_1, 1/s/ft^0.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_alpha_d_chi_1: R,
+        /// Derivative of rate of gamma in the printed form with respect to alpha and chi_2, 1/s/ft^0.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_alpha_d_chi_2: R,
+        /// Derivative of rate of gamma in the printed form with respect to alpha and chi_3, 1/s/ft^0.5/slug^0.5.
+        pub d2_gamma_rate_printed_d_alpha_d_chi_3: R,
+        /// `i.cos_alpha * h.d_slope_of_f_alpha_in_sin_alpha_d_alpha`.
+        pub cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha: R,
+        /// Derivative of air density over its reference with respect to altitude and altitude, 1/ft^2.
+        pub d2_density_ratio_d_altitude_d_altitude: R,
+        /// Derivative of air density with respect to altitude and altitude, slug/ft^5.
+        pub d2_density_d_altitude_d_altitude: R,
+        /// `i.radius_ratio * i.radius_ratio_2`.
+        pub radius_ratio_3: R,
+        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude and altitude,
+        /// 1/ft^2.
+        pub d2_radius_ratio_d_altitude_d_altitude: R,
+        /// `s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude`.
+        pub power_2_of_d_radius_ratio_d_altitude: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// velocity and altitude, 1/ft^2.
+        pub d2_gravity_turn_d_velocity_d_altitude: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// altitude and altitude, 1/s/ft^2.
+        pub d2_gravity_turn_d_altitude_d_altitude: R,
+        /// Derivative of partial derivative of f of the alpha row with respect to sin of the angle of attack with
+        /// respect to alpha, 1/s.
+        pub d_slope_of_f_alpha_in_sin_alpha_d_alpha: R,
     }
 }
 
-/// Computes [`NoiseTerms`].
+/// Fills a part of [`Curvatures`].
 #[inline(always)]
-pub fn noise_terms<R: Real>(
-    _x: &State<R>,
+fn curvatures_part_1<R: Real>(
+    h: &mut Curvatures<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to velocity
+    h.d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
+        * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
+            * s.d_generalized_force_1_d_velocity
+            + p.inv_omega_2_2 * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2
+                * s.d_generalized_force_2_d_velocity
+            + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
+                * s.d_generalized_force_3_d_velocity); // ft^2/s/lb
+
+    // Derivatives with respect to altitude
+    h.d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    h.d2_reference_force_d_velocity_d_altitude = p.s
+        * h.d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    h.d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    h.d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    h.d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+        * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+
+    // Derivatives with respect to alpha
+    h.d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
+    h.d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s/rad
+    h.d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s/rad
+
+    // Derivatives with respect to altitude
+    h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
+    h.d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    h.d2_density_d_altitude_d_altitude = p.rho_0
+        * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * h.d2_density_d_altitude_d_altitude; // lb/ft^4
+    h.radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * h.radius_ratio_3; // 1/ft^2
+    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
+        * s.d_radius_ratio_d_altitude;
+    h.d2_gravity_d_altitude_d_altitude = p.g
+        * (R::TWO * h.power_2_of_d_radius_ratio_d_altitude
+            + R::TWO * i.radius_ratio * h.d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
+    h.d2_reference_force_d_altitude_d_altitude = p.s
+        * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    h.d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    h.d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    h.d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+        * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+
+    // Derivatives with respect to alpha
+    h.d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_2_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+        * s.d_c_n_3_d_alpha; // slug^0.5/ft^0.5/s^2/rad
+    h.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+
+    // Derivatives with respect to altitude
+    h.d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    h.d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
+        * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    h.d_slope_of_f_gamma_eta_in_turn_factor_d_altitude =
+        i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_altitude
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_altitude
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_altitude; // rad/ft
+}
+
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>,
+    x: &State<R>,
+    p: &Prepared<R>,
+    i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
+    // Derivatives with respect to alpha
+    h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s.sum_of_chi_c_t_eta
+        * i.cos_alpha;
+    h.d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = s.sum_of_generalized_force_inv_omega_2_c_t_eta * i.cos_alpha
+        + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+        + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+        + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
+    h.d_slope_of_g_gamma_in_turn_factor_d_alpha = i.cos_alpha
+        * s.c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
+
+    // Derivatives with respect to chi_1
+    h.d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    h.d2_gamma_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    h.d2_gamma_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^1.5/slug^0.5
+
+    // Derivatives with respect to altitude
+    h.d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
+        * h.d2_density_d_altitude_d_altitude; // 1/s/ft^2
+    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude
+        * i.inv_velocity
+        - x.velocity * p.earth_curvature * h.d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
+
+    // Derivatives with respect to chi_1
+    h.d2_gamma_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    h.d2_gamma_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    h.d2_gamma_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
+        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^1.5/slug^0.5
+
+    // Derivatives with respect to alpha
+    h.sum_of_c_t_eta_inv_omega_2_times_d_generalized_force_d_alpha =
+        p.c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha
+        + p.c_t_eta_2_inv_omega_2_2 * s.d_generalized_force_2_d_alpha
+        + p.c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
+    h.d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha = i.turn_factor
+        * h.sum_of_c_t_eta_inv_omega_2_times_d_generalized_force_d_alpha; // 1/s
+
+    // Derivatives with respect to chi_1
+    h.d2_gamma_rate_printed_d_alpha_d_chi_1 = i.cos_alpha * i.turn_factor * p.c_t_eta_1; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_2
+    h.d2_gamma_rate_printed_d_alpha_d_chi_2 = i.cos_alpha * i.turn_factor * p.c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to chi_3
+    h.d2_gamma_rate_printed_d_alpha_d_chi_3 = i.cos_alpha * i.turn_factor * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+
+    // Derivatives with respect to alpha
+    h.d_slope_of_f_alpha_in_sin_alpha_d_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
+
+    // Further values
+    h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude = i.cos_gamma
+        * h.d2_gravity_turn_d_velocity_d_altitude;
+    h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = i.cos_gamma
+        * h.d2_gravity_turn_d_altitude_d_altitude;
+    h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = i.cos_alpha
+        * h.d_slope_of_f_alpha_in_sin_alpha_d_alpha;
+}
+
+/// Computes [`Curvatures`].
+#[inline(always)]
+pub fn curvatures<R: Real>(
+    x: &State<R>,
     _u: &Input<R>,
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-) -> NoiseTerms<R> {
-    let mut n = NoiseTerms::splat(R::ZERO);
-
-    // Strict-feedback form, (28)
-    n.c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha = i.cos_alpha
-        * s.c_t_alpha_plus_c_t_phi_alpha_phi;
-    n.alpha_slope_velocity = i.reference_force * p.inv_m
-        * (n.c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha); // ft/s^2/rad
-    n.alpha_slope_alpha = -i.g_gamma; // rad/s/rad
-    n.alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
-        * (p.c_bar_c_m_alpha + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi); // rad/s^2/rad
-    n
+) -> Curvatures<R> {
+    let mut h = Curvatures::splat(R::ZERO);
+    curvatures_part_1(&mut h, x, p, i, s);
+    curvatures_part_2(&mut h, x, p, i, s);
+    h
 }
 
 ahv_core::record! {
     /// Quantities of the noise's derivatives that other functions, or several parts of these, need.
     pub struct NoiseSlopes<R> {
+        /// H of the velocity row, ft/s^2/rad.
+        pub alpha_slope_velocity: R,
+        /// H of the alpha row, rad/s/rad.
+        pub alpha_slope_alpha: R,
         /// Derivative of H of the velocity row with respect to velocity, 1/s/rad.
         pub d_alpha_slope_velocity_d_velocity: R,
         /// Derivative of H of the velocity row with respect to alpha, ft/s^2/rad^2.
         pub d_alpha_slope_velocity_d_alpha: R,
         /// Derivative of H of the alpha row with respect to velocity, 1/ft.
         pub d_alpha_slope_alpha_d_velocity: R,
-        /// Derivative of H of the alpha row with respect to alpha, 1/s/rad.
-        pub d_alpha_slope_alpha_d_alpha: R,
+        /// `c_bar_c_m_alpha + z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi`.
+        pub c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t: R,
         /// Derivative of H of the pitch_rate row with respect to velocity, 1/s/ft.
         pub d_alpha_slope_pitch_rate_d_velocity: R,
     }
@@ -759,13 +1025,19 @@ pub fn noise_slopes<R: Real>(
     p: &Prepared<R>,
     i: &Intermediates<R>,
     s: &Slopes<R>,
-    n: &NoiseTerms<R>,
+    h: &Curvatures<R>,
 ) -> NoiseSlopes<R> {
     let mut m = NoiseSlopes::splat(R::ZERO);
 
+    // Strict-feedback form, (28)
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha_minus_c_d_alpha = h
+        .d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha;
+    m.alpha_slope_velocity = i.reference_force * p.inv_m
+        * d_slope_of_g_gamma_in_turn_factor_d_alpha_minus_c_d_alpha; // ft/s^2/rad
+    m.alpha_slope_alpha = -i.g_gamma; // rad/s/rad
+
     // Derivatives with respect to velocity
-    m.d_alpha_slope_velocity_d_velocity = (n
-        .c_t_alpha_plus_c_t_phi_alpha_phi_times_cos_alpha - p.c_d_alpha)
+    m.d_alpha_slope_velocity_d_velocity = d_slope_of_g_gamma_in_turn_factor_d_alpha_minus_c_d_alpha
         * s.d_reference_force_d_velocity * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to alpha
@@ -781,25 +1053,61 @@ pub fn noise_slopes<R: Real>(
     // Derivatives with respect to velocity
     m.d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
         * s.d_turn_factor_d_velocity; // 1/ft
-
-    // Derivatives with respect to alpha
-    let slope_of_alpha_slope_alpha_in_sin_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
-    m.d_alpha_slope_alpha_d_alpha = i.cos_alpha
-        * slope_of_alpha_slope_alpha_in_sin_alpha; // 1/s/rad
-
-    // Derivatives with respect to velocity
-    m.d_alpha_slope_pitch_rate_d_velocity = (p.c_bar_c_m_alpha
-        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi) * s.d_reference_force_d_velocity
-        * p.inv_i_yy; // 1/s/ft
+    m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t = p.c_bar_c_m_alpha
+        + p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi;
+    m.d_alpha_slope_pitch_rate_d_velocity = m
+        .c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t
+        * s.d_reference_force_d_velocity * p.inv_i_yy; // 1/s/ft
     m
 }
 
 ahv_core::record! {
     /// Quantities of the derivatives with respect to parameters that several parts of these need.
     pub struct Sensitivities<R> {
+        /// Derivative of dynamic pressure with respect to h_0, lb/ft^3.
+        pub d_dynamic_pressure_d_h_0: R,
+        /// Derivative of dynamic pressure times reference area with respect to h_0, lb/ft^2.
+        pub d_reference_force_d_h_0: R,
+        /// Derivative of generalized force of mode 1 with respect to h_0, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_1_d_h_0: R,
+        /// Derivative of generalized force of mode 2 with respect to h_0, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_2_d_h_0: R,
+        /// Derivative of generalized force of mode 3 with respect to h_0, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_3_d_h_0: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to h_0, 1/s/ft.
+        pub d_turn_factor_d_h_0: R,
+        /// Derivative of dynamic pressure with respect to h_s, lb/ft^3.
+        pub d_dynamic_pressure_d_h_s: R,
+        /// Derivative of dynamic pressure times reference area with respect to h_s, lb/ft^2.
+        pub d_reference_force_d_h_s: R,
+        /// Derivative of generalized force of mode 1 with respect to h_s, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_1_d_h_s: R,
+        /// Derivative of generalized force of mode 2 with respect to h_s, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_2_d_h_s: R,
+        /// Derivative of generalized force of mode 3 with respect to h_s, slug^0.5/ft^0.5/s^2.
+        pub d_generalized_force_3_d_h_s: R,
+        /// Derivative of turn rate per force coefficient across the flight path with respect to h_s, 1/s/ft.
+        pub d_turn_factor_d_h_s: R,
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
         pub slope_of_radius_ratio_in_earth_curvature: R,
+        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
+        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
+        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
+        /// r_e, 1/s/ft.
+        pub d_gravity_turn_d_r_e: R,
+        /// `s.d_velocity_rate_printed_d_chi_1 * inv_omega_1_2_c_n_1_delta_c * u.delta_e +
+        /// s.d_velocity_rate_printed_d_chi_2 * inv_omega_2_2_c_n_2_delta_c * u.delta_e +
+        /// s.d_velocity_rate_printed_d_chi_3 * inv_omega_3_2_c_n_3_delta_c * u.delta_e`.
+        pub sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e: R,
+        /// `s.slope_of_f_gamma_eta_in_generalized_force_1 * c_n_1_delta_c * u.delta_e +
+        /// s.slope_of_f_gamma_eta_in_generalized_force_2 * c_n_2_delta_c * u.delta_e +
+        /// s.slope_of_f_gamma_eta_in_generalized_force_3 * c_n_3_delta_c * u.delta_e`.
+        pub sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e: R,
+        /// `s.slope_of_f_alpha_eta_in_generalized_force_1 * c_n_1_delta_c * u.delta_e +
+        /// s.slope_of_f_alpha_eta_in_generalized_force_2 * c_n_2_delta_c * u.delta_e +
+        /// s.slope_of_f_alpha_eta_in_generalized_force_3 * c_n_3_delta_c * u.delta_e`.
+        pub sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e: R,
         /// `i.generalized_force_1_inv_omega_1_2 + x.chi_1`.
         pub generalized_force_1_inv_omega_1_2_plus_chi_1: R,
         /// `i.generalized_force_2_inv_omega_2_2 + x.chi_2`.
@@ -813,14 +1121,53 @@ ahv_core::record! {
 #[inline(always)]
 pub fn sensitivities<R: Real>(
     x: &State<R>,
-    _u: &Input<R>,
-    _p: &Prepared<R>,
+    u: &Input<R>,
+    p: &Prepared<R>,
     i: &Intermediates<R>,
+    s: &Slopes<R>,
+    h: &Curvatures<R>,
 ) -> Sensitivities<R> {
     let mut q = Sensitivities::splat(R::ZERO);
 
     // Derivatives with respect to parameters
+    let d_density_d_h_0 = p.rho_0 * h.density_ratio_over_h_s; // slug/ft^4
+    q.d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
+    q.d_reference_force_d_h_0 = p.s * q.d_dynamic_pressure_d_h_0; // lb/ft^2
+    q.d_generalized_force_1_d_h_0 = i.c_n_1 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_generalized_force_2_d_h_0 = i.c_n_2 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_generalized_force_3_d_h_0 = i.c_n_3 * q.d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    q.d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
+    let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
+    let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
+    q.d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
+    q.d_reference_force_d_h_s = p.s * q.d_dynamic_pressure_d_h_s; // lb/ft^2
+    q.d_generalized_force_1_d_h_s = i.c_n_1 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_generalized_force_2_d_h_s = i.c_n_2 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_generalized_force_3_d_h_s = i.c_n_3 * q.d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    q.d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
     q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+    q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
+        * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
+    q.d_gravity_turn_d_r_e = p.inv_r_e
+        * (p.earth_curvature * i.radius_ratio
+            * (x.velocity
+                - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
+            + x.velocity * p.earth_curvature_2
+                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
+
+    // Further values
+    q.sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e =
+        s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
+        + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
+        + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
+    q.sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e =
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
+    q.sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e =
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
     q.generalized_force_1_inv_omega_1_2_plus_chi_1 = i.generalized_force_1_inv_omega_1_2
         + x.chi_1;
     q.generalized_force_2_inv_omega_2_2_plus_chi_2 = i.generalized_force_2_inv_omega_2_2

@@ -3,7 +3,7 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 #![allow(non_snake_case)]
 
-use super::{Input, Prepared, State, intermediates, noise_terms, slopes};
+use super::{Input, Prepared, State, curvatures, intermediates, noise_slopes, slopes};
 use ahv_core::Real;
 
 /// Part of the velocity rate that is left to f, eq. (28). Unit: ft/s^2.
@@ -46,8 +46,9 @@ pub fn h_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    n.alpha_slope_velocity
+    let h = curvatures(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &h);
+    m.alpha_slope_velocity
 }
 
 /// Part of f_V from the static flexible coordinates, eq. (29). Unit: ft/s^2.
@@ -147,8 +148,9 @@ pub fn h_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    n.alpha_slope_alpha
+    let h = curvatures(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &h);
+    m.alpha_slope_alpha
 }
 
 /// Part of f_alpha from the static flexible coordinates, eq. (33). Unit: rad/s.
@@ -200,8 +202,12 @@ pub fn h_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let n = noise_terms(x, u, p, &i, &s);
-    n.alpha_slope_pitch_rate
+    let h = curvatures(x, u, p, &i, &s);
+    let m = noise_slopes(x, u, p, &i, &s, &h);
+
+    // Strict-feedback form, (34)
+    i.reference_force * p.inv_i_yy
+        * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t
 }
 
 /// Part of f_Q from the static flexible coordinates, eq. (35). Unit: rad/s^2.

@@ -10,7 +10,7 @@ use crate::schedule::program::{Function, Program};
 use crate::schedule::stages;
 use crate::schedule::tree::{Body, Source, StageKind};
 use crate::shape::Shape;
-use crate::wording::summary;
+use crate::wording::{summary, wrapped};
 
 /// A function.
 pub(super) struct Text {
@@ -141,7 +141,10 @@ impl Functions<'_> {
             let names = [names, vec![kind.argument.to_owned()]].concat().join(", ");
             calls.push(format!("    {}{name}({names});", self.prefix));
             taken.push(own.clone());
-            let docs = [format!("Fills a part of {}.", kind.type_name)];
+            let docs = [format!(
+                "Computes a part of {}.",
+                own.0.trim_end_matches(" *")
+            )];
             texts.push(Text {
                 is_static: true,
                 lines: trimmed(lines.collect()),
@@ -171,13 +174,13 @@ impl Functions<'_> {
         lines.extend(calls);
         taken.push(own);
         let docs = if is_prepared {
-            "Computes everything that depends on parameters alone.".to_owned()
+            "Computes what depends on parameters alone. Call it once, and again when a parameter changes.".to_owned()
         } else {
-            format!("Computes what several functions need: {}.", lower(kind.doc))
+            format!("Computes the {}.", lower(kind.doc))
         };
         texts.push(Text {
             lines: trimmed(lines),
-            ..self.text(kind.function, "void", &taken, &[docs])
+            ..self.text(kind.function, "void", &taken, &wrapped(&docs))
         });
         texts
     }
@@ -293,7 +296,10 @@ impl Functions<'_> {
         let name = format!("{}_from", function.ir.name);
         let mut call = self.stages(&function.stages);
         call.push(self.call(function, &name, &outputs, true));
-        let about = [format!("{} from what is computed once.", function.ir.name)];
+        let about = [format!(
+            "{}{}, given the quantities that it shares with other functions.",
+            self.prefix, function.ir.name
+        )];
         let taken = [taken, outputs.clone()].concat();
         vec![
             Text {
@@ -427,11 +433,10 @@ impl Functions<'_> {
         }
         let mut arguments = self.taken(|source| body.uses(source), None);
         arguments.extend(self.targets(function, group));
-        let docs = [format!(
+        let docs = wrapped(&format!(
             "Entries of {}: derivatives by {}.",
-            function.ir.name,
-            group.label.replace("_to_", " to ")
-        )];
+            function.ir.name, group.about
+        ));
         Text {
             is_static: true,
             lines: trimmed(lines),
@@ -521,6 +526,15 @@ fn result_name(function: &Function<'_>, output: usize) -> String {
 
 fn documentation(function: &Function<'_>) -> Vec<String> {
     let mut docs = summary(function.ir);
+    let lists = function
+        .shapes
+        .iter()
+        .zip(0..)
+        .filter(|(it, _)| it.is_list());
+    docs.extend(lists.map(|(shape, position)| {
+        let (name, count) = (result_name(function, position), shape.axes[0].names.len());
+        format!("`{name}` holds {count} numbers, one for each mode.")
+    }));
     docs.push(format!("{}.", capitalised(&function.cost.describe())));
     docs
 }

@@ -123,20 +123,27 @@ impl Printer {
     pub(super) fn assignment(self, target: &str, value: &Expr, unit: &str) -> Vec<String> {
         let mut lines = match value {
             Expr::Sum(addends) if addends.len() >= LISTED => {
-                let addends = self.addends(addends).join(&format!("\n{INDENT}{INDENT}"));
-                let text = format!("{INDENT}{target} = {addends};");
-                text.lines().map(str::to_owned).collect()
+                let mut addends = self.addends(addends);
+                addends[0] = format!("{target} = {}", addends[0]);
+                if let Some(last) = addends.last_mut() {
+                    last.push(';');
+                }
+                let depths = std::iter::once(1).chain(std::iter::repeat(2));
+                let lines = addends.iter().zip(depths);
+                lines.flat_map(|(it, depth)| folded(it, depth, 3)).collect()
             }
             value => broken(&format!("{target} = {};", self.expression(value))),
         };
-        // A pure number has no unit to tell.
-        if !matches!(unit, "" | "1")
-            && let Some(last) = lines.last_mut()
-        {
-            let unit = comment(unit);
-            if last.chars().count() + 1 + unit.chars().count() <= WIDTH {
+        // A pure number has no unit to show.
+        if matches!(unit, "" | "1") {
+            return lines;
+        }
+        let unit = comment(unit);
+        match lines.last_mut() {
+            Some(last) if last.chars().count() + 1 + unit.chars().count() <= WIDTH => {
                 *last += &format!(" {unit}");
             }
+            _ => lines.insert(0, format!("{INDENT}{unit}")),
         }
         lines
     }
@@ -156,9 +163,10 @@ pub(super) fn comment(text: &str) -> String {
     format!("/* {} */", harmless(text))
 }
 
-/// A text that neither ends a comment nor begins one.
+/// A text that neither ends a comment nor begins one; in ASCII where it names Itô.
 fn harmless(text: &str) -> String {
-    text.replace("*/", "* /").replace("/*", "/ *")
+    let text = text.replace("*/", "* /").replace("/*", "/ *");
+    text.replace('ô', "o")
 }
 
 /// A comment of several lines.
@@ -171,19 +179,55 @@ pub(super) fn comments(lines: &[String], indent: &str) -> String {
 
 /// A statement in lines that are not too long, indented.
 pub(super) fn broken(statement: &str) -> Vec<String> {
+    folded(statement, 1, 2)
+}
+
+/// A text in lines that are not too long: the first at one depth, the others at another.
+fn folded(text: &str, first: usize, others: usize) -> Vec<String> {
+    let chunks = chunks(text);
     let mut lines = Vec::new();
-    let mut line = INDENT.to_owned();
-    for word in statement.split(' ') {
-        let is_first = line.trim().is_empty();
-        if !is_first && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            lines.push(std::mem::replace(&mut line, INDENT.repeat(2) + word));
+    let (mut rest, mut depth) = (chunks.as_slice(), first);
+    while !rest.is_empty() {
+        let room = WIDTH - INDENT.len() * depth;
+        let mut width = 0;
+        let ends = rest.iter().map(|(chunk, _)| {
+            width += chunk.chars().count() + 1;
+            width - 1
+        });
+        let ends: Vec<usize> = ends.collect();
+        let fitting = ends.iter().take_while(|end| **end <= room).count().max(1);
+        let mut taken = rest.len();
+        if fitting < rest.len() {
+            // Where the formula's parts are largest, but not so early that the line stays empty.
+            let places = (1..=fitting).filter(|it| *it == fitting || ends[*it - 1] > room / 3);
+            let best = places.min_by_key(|it| (rest[*it].1, fitting - it));
+            taken = best.unwrap_or(fitting);
+        }
+        let words: Vec<&str> = rest[..taken].iter().map(|(it, _)| it.as_str()).collect();
+        lines.push(INDENT.repeat(depth) + &words.join(" "));
+        (rest, depth) = (&rest[taken..], others);
+    }
+    lines
+}
+
+/// The parts of a text between which a line may end, each with the rank of the place before it: the deeper in
+/// parentheses, the higher, and higher before a factor than before an addend. An operator begins a part.
+fn chunks(text: &str) -> Vec<(String, usize)> {
+    let mut chunks: Vec<(String, usize)> = Vec::new();
+    let (mut depth, mut operator) = (0_usize, None);
+    for word in text.split(' ') {
+        if matches!(word, "+" | "-" | "*" | "/") {
+            operator = Some(word);
             continue;
         }
-        if !is_first {
-            line.push(' ');
+        let is_factor = matches!(operator, Some("*" | "/"));
+        let rank = 2 * depth + usize::from(is_factor);
+        match (operator.take(), chunks.last_mut()) {
+            (Some(operator), _) => chunks.push((format!("{operator} {word}"), rank)),
+            (None, Some((last, _))) if word == "=" => *last += " =",
+            (None, _) => chunks.push((word.to_owned(), rank)),
         }
-        line += word;
+        depth = (depth + word.matches('(').count()).saturating_sub(word.matches(')').count());
     }
-    lines.push(line);
-    lines
+    chunks
 }

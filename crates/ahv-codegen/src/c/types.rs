@@ -1,8 +1,10 @@
 //! The structs of a model: its vectors, its matrices, what is prepared and computed once.
 
+use super::print::Printer;
 use crate::ir::{self, Basis, capitalised};
 use crate::schedule::given::Stage;
 use crate::schedule::program::Program;
+use crate::schedule::tree::Statement;
 use crate::shape::{Axis, Shape};
 
 /// A struct.
@@ -67,7 +69,7 @@ impl Types {
                 let rows = axes[0].names.iter();
                 found.push(Struct {
                     name,
-                    doc: format!("By {}, then by {}.", axes[0].basis, bases(&axes[1..])),
+                    doc: described(axes),
                     fields: rows
                         .map(|row| (inner.clone(), (*row).to_owned(), String::new()))
                         .collect(),
@@ -97,7 +99,7 @@ impl Types {
                 "Noise",
                 "One value for each independent Wiener process",
             ),
-            vector(Basis::Output, "Outputs", "Quantities that people look at"),
+            vector(Basis::Output, "Outputs", "Quantities that are not states"),
         ];
         let stages = [&program.prepared].into_iter().chain(&program.stages);
         let vectors = vectors.into_iter().filter(|it| !it.fields.is_empty());
@@ -110,8 +112,8 @@ impl Types {
 
     fn stage(&self, stage: &Stage) -> Struct {
         let fields = stage.fields.iter().map(|field| {
-            let about = field.about.clone().unwrap_or_default();
-            (double(), field.name.clone(), about)
+            let about = field.about.clone().or_else(|| formula(stage, &field.name));
+            (double(), field.name.clone(), about.unwrap_or_default())
         });
         Struct {
             name: format!("{}{}", self.own, stage.kind.type_name),
@@ -121,13 +123,37 @@ impl Types {
     }
 }
 
+/// The formula of a field for a reader, where it is short.
+fn formula(stage: &Stage, name: &str) -> Option<String> {
+    let mut statements = stage.parts.iter().flat_map(|part| &part.statements);
+    let value = statements.find_map(|it| match it {
+        Statement::Set { field, value, .. } if field == name => Some(value),
+        _ => None,
+    })?;
+    let printer = Printer { holds_stages: true };
+    let text = printer.expression(value).replace("->", ".");
+    let own = format!("{}.", stage.kind.argument);
+    let words = text.split(' ').map(|word| {
+        let bare = word.trim_start_matches(['(', '-']);
+        let start = &word[..word.len() - bare.len()];
+        let bare = bare.strip_prefix("p.").unwrap_or(bare);
+        format!("{start}{}", bare.strip_prefix(&own).unwrap_or(bare))
+    });
+    let text = words.collect::<Vec<_>>().join(" ");
+    (text.len() < 100).then_some(text)
+}
+
 fn double() -> String {
     "double".to_owned()
 }
 
-fn bases(axes: &[Axis<'_>]) -> String {
+/// What an array over several axes is.
+fn described(axes: &[Axis<'_>]) -> String {
     let bases: Vec<String> = axes.iter().map(|axis| axis.basis.to_string()).collect();
-    bases.join(", then by ")
+    match bases.as_slice() {
+        [row, column] => format!("A matrix: a row for each {row}, a column for each {column}."),
+        bases => format!("An array: by {}.", bases.join(", then by ")),
+    }
 }
 
 /// The name of a type over several axes.

@@ -2,6 +2,7 @@
 
 use super::types::Struct;
 use crate::EmitError;
+use crate::ir::Basis;
 use crate::schedule::program::Program;
 use crate::schedule::tree::{Expr, Statement};
 
@@ -19,8 +20,15 @@ pub(super) fn check(program: &Program<'_>, structs: &[Struct]) -> Result<(), Emi
     let fields = structs.iter().flat_map(|it| &it.fields);
     let fields = fields.map(|(_, name, _)| name.as_str());
     let parameters = program.document.parameters.iter().map(|it| &*it.name);
-    let bodies = program.functions.iter();
-    let statements = bodies.flat_map(|it| &it.body.statements);
+    let arguments = program.model.bases.get(&Basis::Argument);
+    let arguments = arguments.into_iter().flatten().map(|it| &*it.name);
+    let stages = [&program.prepared].into_iter().chain(&program.stages);
+    let bodies = stages.flat_map(|it| &it.parts);
+    let bodies = bodies.chain(program.functions.iter().flat_map(|it| {
+        let pieces = it.pieces.iter().map(|(_, body)| body);
+        pieces.chain([&it.body])
+    }));
+    let statements = bodies.flat_map(|it| &it.statements);
     let named = statements.filter_map(|it| match it {
         Statement::Let { name, .. } => Some(name.as_str()),
         Statement::SinCos {
@@ -29,11 +37,11 @@ pub(super) fn check(program: &Program<'_>, structs: &[Struct]) -> Result<(), Emi
         } => Some(name.as_str()),
         _ => None,
     });
-    let mut names = fields.chain(parameters).chain(named);
+    let mut names = fields.chain(parameters).chain(arguments).chain(named);
     let reserved = |name: &&str| RESERVED.split(' ').any(|word| word == *name);
     match names.find(reserved) {
         Some(name) => Err(EmitError::Mismatch(format!(
-            "`{name}` of model `{}` is a word of C or C++; choose another name, or generate no C",
+            "`{name}` of model `{}` is a word of C or C++; choose another name, or generate Rust (--target rust)",
             program.model.name
         ))),
         None => Ok(()),

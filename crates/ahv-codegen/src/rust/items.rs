@@ -12,7 +12,7 @@ use crate::schedule::pieces::Group;
 use crate::schedule::program::{Function, Program};
 use crate::schedule::tree::{Body, Source, StageKind, Statement};
 use crate::shape::Shape;
-use crate::wording::summary;
+use crate::wording::{summary, wrapped};
 
 /// A struct of entries or a function.
 pub(super) enum Item {
@@ -62,7 +62,10 @@ pub(super) fn functions(program: &Program<'_>, function: &Function<'_>) -> Vec<F
         outputs: vec![(String::new(), call(program, function))],
         name: std::mem::replace(&mut text.name, from),
     };
-    text.docs = vec![format!("[`{}`] from what is computed once.", whole.name)];
+    text.docs = vec![format!(
+        "[`{}`] where its stages are computed already.",
+        whole.name
+    )];
     for &position in &function.stages {
         let kind = program.stages[position].kind;
         let is_used = function.uses(Source::Stage(kind));
@@ -110,11 +113,11 @@ fn piece(
     let taken = taken.map(|(name, of)| format!("{name}: &{of}<R>"));
     FunctionText {
         name: piece_name(function, group),
-        docs: vec![format!(
+        docs: wrapped(&format!(
             "Entries of [`{}`]: derivatives by {}.",
             own_name(function),
-            group.label.replace("_to_", " to ")
-        )],
+            group.about
+        )),
         arguments: targets.chain(taken).collect(),
         result: String::new(),
         statements,

@@ -14,8 +14,10 @@ const WIDTH: usize = 75;
 
 /// The entries of a function that are computed together.
 pub(crate) struct Group {
-    /// By what they are told from the others: the component that they are derivatives by.
+    /// By what they are told from the others, as a part of a name.
     pub(crate) label: String,
+    /// The same in words: the components that they are derivatives by, and of which rows.
+    pub(crate) about: String,
     /// Positions among all entries of the function.
     pub(crate) entries: Vec<usize>,
 }
@@ -55,6 +57,7 @@ pub(super) fn groups(
         let rows = divided(group.entries, |it| row(it).unwrap_or_default());
         groups.extend(rows.into_iter().map(|of_row| Group {
             label: format!("{}_of_{}", group.label, of_row.label),
+            about: format!("{} in row {}", group.label, of_row.label),
             ..of_row
         }));
     }
@@ -69,6 +72,7 @@ fn divided(entries: Vec<usize>, label: impl Fn(&usize) -> String) -> Vec<Group> 
         match groups.iter_mut().find(|it| it.label == label) {
             Some(group) => group.entries.push(entry),
             None => groups.push(Group {
+                about: label.clone(),
                 label,
                 entries: vec![entry],
             }),
@@ -97,6 +101,7 @@ pub(super) fn joined(
         {
             names.extend(labels);
             last.entries.extend(group.entries);
+            last.about += &format!(", {}", group.about);
             last.label = match names.as_slice() {
                 [first, .., last] if names.len() > 2 => format!("{first}_to_{last}"),
                 names => names.join("_"),
@@ -147,17 +152,23 @@ pub(super) fn sliced(statements: Vec<Statement>) -> Vec<Body> {
     if total <= LONGEST {
         return vec![body_of(statements)];
     }
-    let count = total.div_ceil(FULL);
+    let full = total.div_ceil(total.div_ceil(FULL));
     let (mut parts, mut part, mut length) = (Vec::new(), Vec::new(), 0);
+    let mut heading = None;
     let mut rest = statements.into_iter().peekable();
     while let Some(statement) = rest.next() {
         length += lines(&statement);
+        if let Statement::Section(_) = statement {
+            heading = Some(statement.clone());
+        }
         part.push(statement);
-        let full = length >= total.div_ceil(count);
-        let cut = full && rest.peek().is_some() && is_free(&part, rest.clone());
-        if cut {
+        if length >= full && rest.peek().is_some() && is_free(&part, rest.clone()) {
             parts.push(body_of(std::mem::take(&mut part)));
             length = 0;
+            // A part that begins in the middle of a section says which.
+            if !matches!(rest.peek(), Some(Statement::Section(_))) {
+                part.extend(heading.clone());
+            }
         }
     }
     parts.push(body_of(part));

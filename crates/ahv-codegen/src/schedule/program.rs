@@ -46,6 +46,8 @@ pub(crate) struct Function<'a> {
     pub(crate) stages: Vec<usize>,
     /// The operations that its results need, those of the stages among them.
     pub(crate) cost: Cost,
+    /// What it does where it takes no stage.
+    alone: Body,
 }
 
 impl Function<'_> {
@@ -104,10 +106,12 @@ impl<'a> Program<'a> {
                 let given = Given { prepared, stages };
                 body(&mut dag, model, given, &function.name, roots)
             };
+            let alone = write(&[], roots);
             let mut written = Function {
                 ir: function,
                 shapes: shapes.collect::<Result<Vec<_>, _>>()?,
-                cost: write(&[], roots).cost(),
+                cost: alone.cost(),
+                alone,
                 stages: Vec::new(),
                 body: Body::default(),
                 pieces: Vec::new(),
@@ -129,6 +133,7 @@ impl<'a> Program<'a> {
             }
             if matches!(written.shapes.as_slice(), [shape] if shape.axes.is_empty()) {
                 written.body.return_last();
+                written.alone.return_last();
             }
             written.stages = needed(&written, &stages);
             functions.push(written);
@@ -157,6 +162,37 @@ impl<'a> Program<'a> {
             functions,
             coloured,
         })
+    }
+
+    /// The same for a language whose compiler leaves nothing out of what is called: a function that needs less than half of what its
+    /// stages compute takes none, and costs are those of all that is called.
+    pub(crate) fn called(mut self) -> Self {
+        for position in 0..self.functions.len() {
+            let mut cost = self.cost_of_call(&self.functions[position]);
+            let function = &mut self.functions[position];
+            let is_whole = function.parts.is_empty() && function.pieces.is_empty();
+            if is_whole && !function.is_part && 2 * function.cost.total() < cost.total() {
+                function.body = std::mem::take(&mut function.alone);
+                function.stages.clear();
+                cost = function.body.cost();
+            }
+            function.cost = cost;
+        }
+        self
+    }
+
+    /// The operations of a function and of all that it calls.
+    fn cost_of_call(&self, function: &Function<'_>) -> Cost {
+        let mut cost = Cost::default();
+        let parts = function.parts.iter().map(|&part| &self.functions[part]);
+        for it in parts.chain([function]) {
+            cost += it.body.cost();
+            it.pieces.iter().for_each(|(_, body)| cost += body.cost());
+        }
+        let stages = function.stages.iter().map(|&it| &self.stages[it]);
+        let bodies = stages.flat_map(|stage| &stage.parts);
+        bodies.for_each(|body| cost += body.cost());
+        cost
     }
 
     /// The model's name as people write it.

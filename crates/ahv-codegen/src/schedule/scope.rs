@@ -114,12 +114,19 @@ impl<'a> Scope<'a> {
             self.visit(id);
         }
         self.owner = owner.to_owned();
+        if self.target.is_some() && !self.section.is_empty() {
+            self.enter("Further values", "");
+        }
         for &root in roots {
             self.whole = Some(root).filter(|_| roots.len() == 1);
             self.visit(root);
             if self.target.is_some() {
                 self.bind(root);
             }
+        }
+        // A heading of nothing is none.
+        while matches!(self.statements.last(), Some(Statement::Section(_))) {
+            self.statements.pop();
         }
         std::mem::take(&mut self.statements)
     }

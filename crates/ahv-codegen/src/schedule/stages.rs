@@ -42,6 +42,13 @@ const KINDS: [StageKind; 6] = [
         doc: "Quantities of the Jacobians that other functions need",
     },
     StageKind {
+        of: "hessian",
+        function: "curvatures",
+        type_name: "Curvatures",
+        argument: "h",
+        doc: "Quantities of the second derivatives that other functions, or several parts of these, need",
+    },
+    StageKind {
         of: "diffusion",
         function: "noise_terms",
         type_name: "NoiseTerms",
@@ -54,13 +61,6 @@ const KINDS: [StageKind; 6] = [
         type_name: "NoiseSlopes",
         argument: "m",
         doc: "Quantities of the noise's derivatives that other functions, or several parts of these, need",
-    },
-    StageKind {
-        of: "hessian",
-        function: "curvatures",
-        type_name: "Curvatures",
-        argument: "h",
-        doc: "Quantities of the second derivatives that several parts of these need",
     },
     StageKind {
         of: "parameter_jacobian",
@@ -168,20 +168,35 @@ pub(super) fn of(
         let mut needed: HashSet<Id> = others
             .flat_map(|(_, ids)| reached(dag, given, ids, &named))
             .collect();
-        // What is too long for one function is computed in several.
-        let mut once = HashSet::new();
-        let of_group = |group: &Group| group.entries.iter().map(|&it| own[it]).collect();
+        // What is too long for one function is computed in several pieces; what two of these go through is computed once.
+        let of_group =
+            |group: &Group| -> Vec<Id> { group.entries.iter().map(|&it| own[it]).collect() };
         let length = |group: &Group| {
-            let roots: Vec<Id> = of_group(group);
-            length(&super::body(dag, model, given, &function.name, &roots))
+            length(&super::body(
+                dag,
+                model,
+                given,
+                &function.name,
+                &of_group(group),
+            ))
         };
-        for group in groups(function, document, lines, length) {
-            let roots: Vec<Id> = of_group(&group);
-            for id in reached(dag, given, &roots, &named) {
-                if !once.insert(id) {
-                    needed.insert(id);
-                }
+        let groups = groups(function, document, lines, length);
+        let mut times: HashMap<Id, usize> = HashMap::new();
+        for group in &groups {
+            for id in cone(dag, given, &of_group(group)) {
+                *times.entry(id).or_default() += 1;
             }
+        }
+        let shared =
+            |id: Id| times.get(&id).is_some_and(|&count| count > 1) || needed.contains(&id);
+        let shared: Vec<(Id, String)> = named
+            .iter()
+            .filter(|(id, _)| shared(*id))
+            .cloned()
+            .collect();
+        for group in &groups {
+            let found = reached(dag, given, &of_group(group), &shared);
+            needed.extend(found);
         }
         let needed = |(id, _): &&(Id, String)| needed.contains(id);
         let fields: Vec<(Id, String)> = named.iter().filter(needed).cloned().collect();
@@ -191,6 +206,17 @@ pub(super) fn of(
         stages.push(Stage::new(dag, model, given, kind, fields));
     }
     stages
+}
+
+/// All values that the roots need and that are not given.
+fn cone(dag: &mut Dag, given: Given<'_>, roots: &[Id]) -> HashSet<Id> {
+    let (mut seen, mut open) = (HashSet::new(), roots.to_vec());
+    while let Some(id) = open.pop() {
+        if given.find(id).is_none() && seen.insert(id) {
+            open.extend(dag.operands(id));
+        }
+    }
+    seen
 }
 
 /// Which of some values the roots need directly.

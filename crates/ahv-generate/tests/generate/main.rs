@@ -3,6 +3,7 @@
 
 mod again;
 mod bad_tables;
+mod c;
 mod owned;
 mod passes;
 mod process;
