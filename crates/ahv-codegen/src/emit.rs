@@ -184,6 +184,9 @@ pub fn emit_again(
         read.push((table, document, values));
     }
     let modules = modules(read.iter().map(|(table, document, _)| (*table, document)))?;
+    for (table, document, _) in &read {
+        check_choices(table, document)?;
+    }
     let units: BTreeSet<_> = read.iter().map(|(_, d, _)| d.units.in_words()).collect();
     if units.len() > 1 {
         return Err(EmitError::Mismatch(
@@ -491,6 +494,47 @@ fn emit_passes(
     let effects = parallel::map(&models, |model| effect::of(model));
     let effects = effects.into_iter().collect::<Result<Vec<_>, EmitError>>()?;
     docs::emit_passes(models.into_iter().zip(&effects))
+}
+
+/// Types that stand beside those of choices.
+const TYPES: [&str; 24] = [
+    "Bounds",
+    "Curvatures",
+    "Diffusion",
+    "Hessian",
+    "Input",
+    "InputJacobian",
+    "Intermediates",
+    "Model",
+    "Noise",
+    "NoiseClass",
+    "NoiseDerivatives",
+    "NoiseMatrix",
+    "NoiseSlopes",
+    "NoiseTerms",
+    "Outputs",
+    "ParameterJacobian",
+    "Parameters",
+    "Pattern",
+    "Prepared",
+    "Real",
+    "Sensitivities",
+    "Slopes",
+    "State",
+    "Validity",
+];
+
+/// The type of a choice must have a name of its own.
+fn check_choices(table: &Table, document: &Document) -> Result<(), EmitError> {
+    let mut choices = document.choices.iter();
+    let taken = |name: &str| TYPES.contains(&name) || name == "StateJacobian" || name == "Vector";
+    match choices.find(|choice| taken(&choice.type_name)) {
+        Some(choice) => Err(EmitError::Mismatch(format!(
+            "the type `{}` of the choice `{}` of {} has the name of a type that every model has; choose another name",
+            choice.type_name, choice.name, table.file_name
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Crates that every Rust program has.

@@ -221,11 +221,20 @@ pub(crate) fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
     Ok(paths)
 }
 
+/// Where the file of a table's family stands, if that is one beside the table.
+pub(crate) fn family_of(path: &Path, table: &[u8]) -> Option<PathBuf> {
+    let text = std::str::from_utf8(table).ok()?;
+    let table = Table::parse("", text).ok()?;
+    let family = table.text(&["table", "family"])?;
+    let folder = path.parent().filter(|_| family.ends_with(".py"))?;
+    Some(folder.join(family))
+}
+
 /// The file of a family beside a table; empty for one that comes along, which is hashed with the generator. What cannot be
 /// read is the derivation's to refuse.
 fn family_beside(table: &Path, family: &str) -> Vec<u8> {
     let file = table.parent().filter(|_| family.ends_with(".py"));
-    file.and_then(|folder| fs::read(folder.join(family)).ok())
+    file.and_then(|folder| files::read(&folder.join(family)).ok())
         .unwrap_or_default()
 }
 

@@ -17,7 +17,7 @@ const SETTLE: Duration = Duration::from_millis(100);
 /// The same where a table has gone: an editor may put it back.
 const SETTLE_WITHOUT: Duration = Duration::from_secs(1);
 
-/// The tables' files and their bytes; none of a file that cannot be read.
+/// The files of the tables, and of their families beside them, with their bytes; none of a file that cannot be read.
 type Seen = Vec<(PathBuf, Option<Vec<u8>>)>;
 
 /// Generates now and after each change of a table, until a signal.
@@ -37,6 +37,7 @@ pub(crate) fn watch(args: &Args, surroundings: &Surroundings) -> Result<u8, Fail
         let folder = project.shown(&project.tables);
         let _ = writeln!(io::stderr(), "watching {folder}; Ctrl-C ends");
         wait_for_change(&project, seen)?;
+        let _ = writeln!(io::stderr(), "saved: generating ...");
     }
 }
 
@@ -65,10 +66,12 @@ fn wait_for_change(project: &Project, before: Seen) -> Result<(), Failure> {
 }
 
 fn look(project: &Project) -> Seen {
-    let paths = tables::table_files(project).unwrap_or_default();
-    let read = |path: PathBuf| {
+    let mut seen = Seen::new();
+    for path in tables::table_files(project).unwrap_or_default() {
         let bytes = files::read(&path).ok();
-        (path, bytes)
-    };
-    paths.into_iter().map(read).collect()
+        let family = bytes.as_ref().and_then(|it| tables::family_of(&path, it));
+        seen.push((path, bytes));
+        seen.extend(family.map(|path| (path.clone(), files::read(&path).ok())));
+    }
+    seen
 }

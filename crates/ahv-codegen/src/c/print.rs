@@ -2,6 +2,7 @@
 
 use crate::graph::{Call, Kind};
 use crate::schedule::tree::{Binding, Expr, Operation, Sign, Source, Statement};
+use crate::wording::visible;
 
 /// A sum of this many addends is written one a line, so that a new one is one line of a diff.
 const LISTED: usize = 3;
@@ -164,8 +165,10 @@ pub(super) fn comment(text: &str) -> String {
 }
 
 /// A text that neither ends a comment nor begins one; in ASCII where it names Itô.
-fn harmless(text: &str) -> String {
-    let text = text.replace("*/", "* /").replace("/*", "/ *");
+pub(super) fn harmless(text: &str) -> String {
+    let text = visible(text).replace("*/", "* /").replace("/*", "/ *");
+    // Two question marks may begin a trigraph, a backslash may join lines.
+    let text = text.replace("??", "? ?").replace('\\', "/");
     text.replace('ô', "o")
 }
 

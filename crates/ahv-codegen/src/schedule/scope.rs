@@ -8,8 +8,10 @@ use super::tree::{Expr, Source, Statement};
 use crate::graph::{Dag, Id, Node};
 use crate::ir;
 
-/// Arguments of emitted functions: no value may hide one.
-const RESERVED: [&str; 11] = ["x", "u", "p", "dw", "c", "i", "s", "n", "m", "h", "q"];
+/// Arguments and results of emitted functions: no value may hide one.
+const RESERVED: [&str; 13] = [
+    "x", "u", "p", "dw", "c", "i", "s", "n", "m", "h", "q", "result", "entries",
+];
 
 /// The struct that a function fills: its values have their names there.
 pub(super) struct Target<'a> {
