@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 
@@ -51,10 +51,17 @@ def render(table: Table, models: Iterable[Model]) -> str:
 
 def part(m: Model) -> Part:
     """What the IR says of a model."""
-    used = {m.unit(v.name) for basis in m.bases.values() for v in basis}
-    used |= {q.unit for q in m.graph.quantities.values()}
-    used |= {o.unit for f in m.functions for o in f.outputs if o.unit is not None}
-    return Part(_dump(_model(m), 2), frozenset(used))
+    spelling = _spelling(m)
+    return Part(_dump(_model(m, spelling), 2), frozenset(spelling.values()))
+
+
+def _spelling(m: Model) -> dict[str, str]:
+    """How each unit is written: as the table, the vectors and the first quantity have it."""
+    texts = [p.unit for p in m.table.parameters]
+    texts += [m.unit(v.name) for basis in m.bases.values() for v in basis]
+    texts += [q.unit for q in m.graph.quantities.values()]
+    texts += [o.unit for f in m.functions for o in f.outputs if o.unit is not None]
+    return units.spelled(texts)
 
 
 def assemble(table: Table, parts: Iterable[Part]) -> str:
@@ -133,8 +140,8 @@ def _variable(v: Variable, unit: str, basis: str) -> dict[str, object]:
     return {"name": v.name, "symbol": v.symbol, "unit": unit, "doc": v.doc, "validity": interval}
 
 
-def _model(m: Model) -> dict[str, object]:
-    document = _document(m)
+def _model(m: Model, spelling: Mapping[str, str]) -> dict[str, object]:
+    document = _document(m, spelling)
     if m.noise_structure is not None:
         document["noise"] = {
             "columns": [_Line({"name": name, "class": kind}) for name, kind in m.noise_structure.columns],
@@ -143,7 +150,7 @@ def _model(m: Model) -> dict[str, object]:
     return document
 
 
-def _document(m: Model) -> dict[str, object]:
+def _document(m: Model, spelling: Mapping[str, str]) -> dict[str, object]:
     return {
         "name": m.name,
         "title": m.title,
@@ -155,7 +162,7 @@ def _document(m: Model) -> dict[str, object]:
                 {
                     "name": q.name,
                     "symbol": q.symbol,
-                    "unit": q.unit,
+                    "unit": spelling[q.unit],
                     "doc": q.doc,
                     "equation": q.equation,
                     "section": q.section,
@@ -164,7 +171,7 @@ def _document(m: Model) -> dict[str, object]:
             )
             for q in m.graph.quantities.values()
         ],
-        "functions": [_function(f) for f in m.functions],
+        "functions": [_function(f, spelling) for f in m.functions],
     } | _traits(m)
 
 
@@ -209,22 +216,22 @@ def _traits(m: Model) -> dict[str, object]:
     }
 
 
-def _function(f: Function) -> dict[str, object]:
+def _function(f: Function, spelling: Mapping[str, str]) -> dict[str, object]:
     return {
         "name": f.name,
         "group": f.group,
         "doc": f.doc,
         "equation": f.equation,
-        "outputs": [_output(o) for o in f.outputs],
+        "outputs": [_output(o, spelling) for o in f.outputs],
         "compressed": f.compressed,
     }
 
 
-def _output(o: Output) -> dict[str, object]:
+def _output(o: Output, spelling: Mapping[str, str]) -> dict[str, object]:
     return {
         "name": o.name,
         "basis": list(o.basis),
-        "unit": o.unit,
+        "unit": None if o.unit is None else spelling[o.unit],
         "symmetric": o.symmetric,
         "entries": [_Line({"at": list(e.at), "expr": _plain(tree(e.expr))}) for e in o.entries],
     }

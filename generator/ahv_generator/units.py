@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import re
+from collections.abc import Iterable
 from decimal import Decimal, localcontext
 from typing import cast
 
@@ -147,6 +148,12 @@ def dimensions(text: str) -> Dimensions:
     """Exponents of length, mass and time; an angle counts as a pure number."""
     found = _parse(text).dimensionality
     return {str(k): cast("float", v) * 1.0 for k, v in found.items() if str(k) != "[angle]" and v != 0}
+
+
+def spelled(texts: Iterable[str]) -> dict[str, str]:
+    """The spelling of each unit: that in which its like, `ft/s^2` of `ft/s/s`, stands first among `texts`."""
+    first: dict[UnitsContainer, str] = {}
+    return {text: first.setdefault(_parse(text)._units, text) for text in texts}
 
 
 @functools.cache

@@ -205,3 +205,15 @@ def test_the_rates_of_a_table_in_si_are_those_in_si(tmp_path: Path, table: str, 
             if label in ours:
                 slope = ours[label] * factor / units.conversion(column.unit, units.SI)
                 assert theirs[label] == pytest.approx(slope, rel=1e-11, abs=1e-13), label
+
+
+def test_one_unit_has_one_spelling() -> None:
+    texts = ["ft/s^2", "ft/s/s", "(ft*slug)^0.5", "slug^0.5*ft^0.5", "1/rad", "1"]
+    assert list(units.spelled(texts).values()) == [
+        "ft/s^2",
+        "ft/s^2",
+        "(ft*slug)^0.5",
+        "(ft*slug)^0.5",
+        "1/rad",
+        "1",
+    ]

@@ -260,13 +260,13 @@ fn hessian_by_alpha<R: Real>(
     let d2_eta_acceleration_1_d_altitude_d_alpha = -p.psi_1
         * d2_pitch_acceleration_d_altitude_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_eta_acceleration_1_d_alpha_d_alpha = R::TWO * p.n_1_alpha_2
-        - p.psi_1 * d2_pitch_acceleration_d_alpha_d_alpha; // ft^0.5*slug^0.5/s^2/rad^2
+        - p.psi_1 * d2_pitch_acceleration_d_alpha_d_alpha; // (ft*slug)^0.5/s^2/rad^2
     let d2_eta_acceleration_2_d_velocity_d_alpha = -p.psi_2
         * d2_pitch_acceleration_d_velocity_d_alpha; // slug^0.5/ft^0.5/s/rad
     let d2_eta_acceleration_2_d_altitude_d_alpha = -p.psi_2
         * d2_pitch_acceleration_d_altitude_d_alpha; // slug^0.5/ft^0.5/s^2/rad
     let d2_eta_acceleration_2_d_alpha_d_alpha = R::TWO * p.n_2_alpha_2
-        - p.psi_2 * d2_pitch_acceleration_d_alpha_d_alpha; // ft^0.5*slug^0.5/s^2/rad^2
+        - p.psi_2 * d2_pitch_acceleration_d_alpha_d_alpha; // (ft*slug)^0.5/s^2/rad^2
 
     hessian.velocity_by_alpha_velocity = d2_velocity_rate_d_velocity_d_alpha;
     hessian.velocity_by_alpha_altitude = d2_velocity_rate_d_altitude_d_alpha;

@@ -122,15 +122,15 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
         + i.turn_factor * p.c_l_alpha; // 1/s
     let d_pitching_moment_d_alpha = p.z_t * s.d_thrust_d_alpha
         + i.reference_force * p.c_bar * s.d_c_m_d_alpha; // lb/rad
-    let d_generalized_force_1_d_alpha = p.two_n_1_alpha_2 * x.alpha + p.n_1_alpha; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_alpha = p.two_n_2_alpha_2 * x.alpha + p.n_2_alpha; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_1_d_alpha = p.two_n_1_alpha_2 * x.alpha + p.n_1_alpha; // (ft*slug)^0.5/s^2/rad
+    let d_generalized_force_2_d_alpha = p.two_n_2_alpha_2 * x.alpha + p.n_2_alpha; // (ft*slug)^0.5/s^2/rad
     let d_pitch_acceleration_d_alpha = p.inv_effective_inertia
         * (d_pitching_moment_d_alpha - p.psi_1 * d_generalized_force_1_d_alpha
             - p.psi_2 * d_generalized_force_2_d_alpha); // 1/s^2
     let d_eta_acceleration_1_d_alpha = d_generalized_force_1_d_alpha
-        - p.psi_1 * d_pitch_acceleration_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+        - p.psi_1 * d_pitch_acceleration_d_alpha; // (ft*slug)^0.5/s^2/rad
     let d_eta_acceleration_2_d_alpha = d_generalized_force_2_d_alpha
-        - p.psi_2 * d_pitch_acceleration_d_alpha; // ft^0.5*slug^0.5/s^2/rad
+        - p.psi_2 * d_pitch_acceleration_d_alpha; // (ft*slug)^0.5/s^2/rad
 
     state.velocity_by_velocity = d_velocity_rate_d_velocity;
     state.altitude_by_velocity = i.sin_gamma;
@@ -179,17 +179,17 @@ fn jacobians_by_eta_dot_2_to_delta_e<R: Real>(
 ) {
     // Derivatives with respect to phi
     let d_pitch_acceleration_d_phi = p.z_t_over_effective_inertia * i.thrust_phi; // rad/s^2
-    let d_eta_acceleration_1_d_phi = -p.psi_1 * d_pitch_acceleration_d_phi; // ft^0.5*slug^0.5/s^2
-    let d_eta_acceleration_2_d_phi = -p.psi_2 * d_pitch_acceleration_d_phi; // ft^0.5*slug^0.5/s^2
+    let d_eta_acceleration_1_d_phi = -p.psi_1 * d_pitch_acceleration_d_phi; // (ft*slug)^0.5/s^2
+    let d_eta_acceleration_2_d_phi = -p.psi_2 * d_pitch_acceleration_d_phi; // (ft*slug)^0.5/s^2
 
     // Derivatives with respect to delta_e
     let d_alpha_rate_d_delta_e = -i.turn_factor * p.c_l_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_delta_e; // lb/rad
     let d_pitch_acceleration_d_delta_e = p.inv_effective_inertia
         * (d_pitching_moment_d_delta_e - p.psi_2_n_2_delta_e); // 1/s^2
-    let d_eta_acceleration_1_d_delta_e = -p.psi_1 * d_pitch_acceleration_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    let d_eta_acceleration_1_d_delta_e = -p.psi_1 * d_pitch_acceleration_d_delta_e; // (ft*slug)^0.5/s^2/rad
     let d_eta_acceleration_2_d_delta_e = p.n_2_delta_e
-        - p.psi_2 * d_pitch_acceleration_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+        - p.psi_2 * d_pitch_acceleration_d_delta_e; // (ft*slug)^0.5/s^2/rad
 
     state.pitch_rate_by_eta_dot_2 = p.d_pitch_acceleration_d_eta_dot_2;
     state.eta_dot_1_by_eta_dot_2 = p.d_eta_acceleration_1_d_eta_dot_2;

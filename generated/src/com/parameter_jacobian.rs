@@ -395,9 +395,9 @@ fn parameter_jacobian_by_modes_to_n_1<R: Real>(
     let d_eta_acceleration_2_d_omega_2 = d_modal_load_2_d_omega_2
         - p.psi_2 * d_pitch_acceleration_d_omega_2; // ft^0.5*slug^0.5/s/rad
     let d_eta_acceleration_1_d_zeta_1 = -p.omega_1
-        * (R::TWO * x.eta_dot_1 + p.two_psi_1_2_over_effective_inertia * x.eta_dot_1); // ft^0.5*slug^0.5/s^2
+        * (R::TWO * x.eta_dot_1 + p.two_psi_1_2_over_effective_inertia * x.eta_dot_1); // (ft*slug)^0.5/s^2
     let d_eta_acceleration_2_d_zeta_2 = -p.omega_2
-        * (R::TWO * x.eta_dot_2 + p.two_psi_2_2_over_effective_inertia * x.eta_dot_2); // ft^0.5*slug^0.5/s^2
+        * (R::TWO * x.eta_dot_2 + p.two_psi_2_2_over_effective_inertia * x.eta_dot_2); // (ft*slug)^0.5/s^2
     let d_pitch_acceleration_d_psi_1 = p.inv_effective_inertia
         * (i.pitch_acceleration * p.two_psi_1 - i.modal_load_1); // rad/s^2/ft^0.5/slug^0.5
     let d_eta_acceleration_1_d_psi_1 = -(i.pitch_acceleration

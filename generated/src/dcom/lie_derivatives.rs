@@ -6,7 +6,7 @@
 use super::{Input, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
-/// Lie derivative of the velocity along the drift at the held input, eq. (1). Unit: ft/s/s.
+/// Lie derivative of the velocity along the drift at the held input, eq. (1). Unit: ft/s^2.
 ///
 /// 67 operations: 24 additions, 39 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]

@@ -196,15 +196,15 @@ ahv_core::record! {
         pub c_bar_times_d_c_m_d_delta_e: R,
         /// `c_bar * c_m_delta_c * canard_command`.
         pub c_bar_c_m_delta_c_canard_command: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_1_d_delta_e: R,
         /// `c_n_1_delta_c * canard_command`.
         pub c_n_1_delta_c_canard_command: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_2_d_delta_e: R,
         /// `c_n_2_delta_c * canard_command`.
         pub c_n_2_delta_c_canard_command: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_3_d_delta_e: R,
         /// `c_n_3_delta_c * canard_command`.
         pub c_n_3_delta_c_canard_command: R,
@@ -449,9 +449,9 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
     // Derivatives with respect to delta_e
     c.d_c_m_d_delta_e = p.c_m_delta_e + p.c_m_delta_c * c.canard_gain; // 1/rad
-    c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
-    c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
-    c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
+    c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
+    c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
+    c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
 
     // Noise of the modes, (16)
     c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();

@@ -266,29 +266,29 @@ ahv_core::record! {
         pub d_c_m_d_alpha: R,
         /// Derivative of pitch acceleration with respect to alpha, 1/s^2.
         pub d_pitch_acceleration_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_1_d_alpha: R,
         /// Derivative of generalized force of mode 1 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
         pub d_generalized_force_1_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_2_d_alpha: R,
         /// Derivative of generalized force of mode 2 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
         pub d_generalized_force_2_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_3_d_alpha: R,
         /// Derivative of generalized force of mode 3 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
         pub d_generalized_force_3_d_alpha: R,
         /// `i.cos_alpha * c_t_eta_1`.
         pub cos_alpha_c_t_eta_1: R,
-        /// Derivative of coefficient of the force across the flight path with respect to eta_1, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to eta_1, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_eta_1: R,
         /// `i.cos_alpha * c_t_eta_2`.
         pub cos_alpha_c_t_eta_2: R,
-        /// Derivative of coefficient of the force across the flight path with respect to eta_2, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to eta_2, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_eta_2: R,
         /// `i.cos_alpha * c_t_eta_3`.
         pub cos_alpha_c_t_eta_3: R,
-        /// Derivative of coefficient of the force across the flight path with respect to eta_3, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to eta_3, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_eta_3: R,
         /// Derivative of rate of the velocity with respect to phi, ft/s^2.
         pub d_velocity_rate_d_phi: R,
@@ -368,21 +368,21 @@ pub fn slopes<R: Real>(
     let d_pitching_moment_d_alpha = p.c_bar * i.reference_force * s.d_c_m_d_alpha
         + p.z_t * s.d_thrust_d_alpha; // lb/rad
     s.d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
-    s.d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // (ft/slug)^0.5/rad
     s.d_generalized_force_1_d_alpha = i.reference_force * s.d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // (ft/slug)^0.5/rad
     s.d_generalized_force_2_d_alpha = i.reference_force * s.d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // (ft/slug)^0.5/rad
     s.d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to eta_1
-    s.d_normal_coefficient_d_eta_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_eta_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/(ft*slug)^0.5
 
     // Derivatives with respect to eta_2
-    s.d_normal_coefficient_d_eta_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_eta_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/(ft*slug)^0.5
 
     // Derivatives with respect to eta_3
-    s.d_normal_coefficient_d_eta_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_eta_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/(ft*slug)^0.5
 
     // Derivatives with respect to phi
     let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft

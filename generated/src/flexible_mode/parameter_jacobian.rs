@@ -30,8 +30,8 @@ pub fn parameter_jacobian_values<R: Real>(
     // Derivatives with respect to parameters
     let d_eta_acceleration_d_omega = -(x.eta_dot * p.two_zeta + x.eta * p.two_omega); // ft^0.5*slug^0.5/s/rad
     let d_chi_rate_d_omega = -x.chi * p.d_chi_decay_d_omega; // ft^0.5*slug^0.5/rad
-    let d_chi_rate_d_zeta = -x.chi * p.d_chi_decay_d_zeta; // ft^0.5*slug^0.5/s
-    let d_chi_rate_d_moment_matching = -x.chi * p.d_chi_decay_d_moment_matching; // ft^0.5*slug^0.5/s
+    let d_chi_rate_d_zeta = -x.chi * p.d_chi_decay_d_zeta; // (ft*slug)^0.5/s
+    let d_chi_rate_d_moment_matching = -x.chi * p.d_chi_decay_d_moment_matching; // (ft*slug)^0.5/s
 
     ParameterJacobianEntries {
         eta_dot_by_omega: d_eta_acceleration_d_omega,

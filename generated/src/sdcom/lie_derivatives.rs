@@ -6,7 +6,7 @@
 use super::{Input, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
-/// Lie derivative of the velocity along the drift at the held input, eq. (27). Unit: ft/s/s.
+/// Lie derivative of the velocity along the drift at the held input, eq. (27). Unit: ft/s^2.
 ///
 /// 100 operations: 39 additions, 57 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]

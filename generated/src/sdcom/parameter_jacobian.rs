@@ -380,9 +380,9 @@ fn parameter_jacobian_by_modes<R: Real>(
         * i.eta_static_3; // lb*s/rad
     let d_pitch_acceleration_d_omega_3 = d_pitching_moment_d_omega_3 * p.inv_i_yy; // 1/s
     let d_chi_rate_3_d_omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
-    let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // ft^0.5*slug^0.5/s
-    let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // ft^0.5*slug^0.5/s
-    let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // ft^0.5*slug^0.5/s
+    let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // (ft*slug)^0.5/s
+    let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // (ft*slug)^0.5/s
+    let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // (ft*slug)^0.5/s
 
     parameter.velocity_by_omega_1 = d_velocity_rate_d_omega_1;
     parameter.velocity_by_omega_2 = d_velocity_rate_d_omega_2;
@@ -485,9 +485,9 @@ fn parameter_jacobian_by_choices<R: Real>(
             - x.velocity * p.earth_curvature
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-    let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // ft^0.5*slug^0.5/s
-    let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // ft^0.5*slug^0.5/s
-    let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // ft^0.5*slug^0.5/s
+    let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
+    let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
+    let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
 
     parameter.velocity_by_canard_command = d_velocity_rate_d_canard_command;
     parameter.velocity_by_canard_slaving = d_velocity_rate_d_canard_slaving;
@@ -735,7 +735,7 @@ fn parameter_jacobian_by_c_n_1<R: Real>(
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_0 = q.reference_force_2 * p.inv_omega_1_2
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5/ft^1.5
-    let d_velocity_rate_d_c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
+    let d_velocity_rate_d_c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // (ft*slug)^0.5/s^2
     let d_normal_coefficient_d_c_n_1_0 = p.inv_omega_1_2 * i.reference_force
         * s.d_normal_coefficient_d_chi_1; // slug^0.5/ft^0.5
     let d_force_turn_d_c_n_1_0 = i.turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
@@ -824,7 +824,7 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_0 = q.reference_force_2 * p.inv_omega_2_2
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5/ft^1.5
-    let d_velocity_rate_d_c_n_2_0 = d_path_force_d_c_n_2_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
+    let d_velocity_rate_d_c_n_2_0 = d_path_force_d_c_n_2_0 * p.inv_m; // (ft*slug)^0.5/s^2
     let d_normal_coefficient_d_c_n_2_0 = p.inv_omega_2_2 * i.reference_force
         * s.d_normal_coefficient_d_chi_2; // slug^0.5/ft^0.5
     let d_force_turn_d_c_n_2_0 = i.turn_factor * d_normal_coefficient_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
@@ -913,7 +913,7 @@ fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
         * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_0 = q.reference_force_2 * p.inv_omega_3_2
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5/ft^1.5
-    let d_velocity_rate_d_c_n_3_0 = d_path_force_d_c_n_3_0 * p.inv_m; // ft^0.5*slug^0.5/s^2
+    let d_velocity_rate_d_c_n_3_0 = d_path_force_d_c_n_3_0 * p.inv_m; // (ft*slug)^0.5/s^2
     let d_normal_coefficient_d_c_n_3_0 = p.inv_omega_3_2 * i.reference_force
         * s.d_normal_coefficient_d_chi_3; // slug^0.5/ft^0.5
     let d_force_turn_d_c_n_3_0 = i.turn_factor * d_normal_coefficient_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5

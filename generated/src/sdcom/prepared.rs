@@ -180,11 +180,11 @@ ahv_core::record! {
         pub minus_chi_decay_2: R,
         /// `-chi_decay_3`.
         pub minus_chi_decay_3: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_1_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_2_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_3_d_delta_e: R,
         /// `2 * c_d_delta_e_2`.
         pub two_c_d_delta_e_2: R,
@@ -515,9 +515,9 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
 
     // Derivatives with respect to delta_e
-    c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
-    c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
-    c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
+    c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
+    c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
+    c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
 
     // Derivatives with respect to parameters
     let inv_zeta_1_2 = inv_zeta_1 * inv_zeta_1;

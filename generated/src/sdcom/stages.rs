@@ -286,11 +286,11 @@ ahv_core::record! {
         pub d_gamma_rate_d_gamma: R,
         /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
         pub d_cos_alpha_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_1_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_2_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_3_d_alpha: R,
         /// Derivative of thrust coefficient with respect to alpha, 1/rad.
         pub d_c_t_d_alpha: R,
@@ -312,7 +312,7 @@ ahv_core::record! {
         pub cos_alpha_c_t_eta_1: R,
         /// Derivative of rate of the velocity with respect to chi_1, ft^0.5/s^2/slug^0.5.
         pub d_velocity_rate_d_chi_1: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_1, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to chi_1, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_chi_1: R,
         /// Derivative of turn rate by the force across the flight path with respect to chi_1, rad/s/ft^0.5/slug^0.5.
         pub d_force_turn_d_chi_1: R,
@@ -322,7 +322,7 @@ ahv_core::record! {
         pub cos_alpha_c_t_eta_2: R,
         /// Derivative of rate of the velocity with respect to chi_2, ft^0.5/s^2/slug^0.5.
         pub d_velocity_rate_d_chi_2: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_2, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to chi_2, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_chi_2: R,
         /// Derivative of turn rate by the force across the flight path with respect to chi_2, rad/s/ft^0.5/slug^0.5.
         pub d_force_turn_d_chi_2: R,
@@ -332,7 +332,7 @@ ahv_core::record! {
         pub cos_alpha_c_t_eta_3: R,
         /// Derivative of rate of the velocity with respect to chi_3, ft^0.5/s^2/slug^0.5.
         pub d_velocity_rate_d_chi_3: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_3, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to chi_3, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_chi_3: R,
         /// Derivative of turn rate by the force across the flight path with respect to chi_3, rad/s/ft^0.5/slug^0.5.
         pub d_force_turn_d_chi_3: R,
@@ -438,7 +438,7 @@ fn slopes_part_1<R: Real>(
 
     // Derivatives with respect to alpha
     s.d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
-    s.d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // (ft/slug)^0.5/rad
 }
 
 /// Fills a part of [`Slopes`].
@@ -453,10 +453,10 @@ fn slopes_part_2<R: Real>(
     // Derivatives with respect to alpha
     let d_generalized_force_1_d_alpha = i.reference_force * s.d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // (ft/slug)^0.5/rad
     let d_generalized_force_2_d_alpha = i.reference_force * s.d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // (ft/slug)^0.5/rad
     let d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
     let d_c_t_phi_d_alpha = p.three_c_t_phi_alpha_3 * i.alpha_2
@@ -501,7 +501,7 @@ fn slopes_part_2<R: Real>(
     s.cos_alpha_c_t_eta_1 = i.cos_alpha * p.c_t_eta_1;
     let d_path_force_d_chi_1 = i.reference_force * (s.cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     s.d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    s.d_normal_coefficient_d_chi_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/(ft*slug)^0.5
     s.d_force_turn_d_chi_1 = i.turn_factor * s.d_normal_coefficient_d_chi_1; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_1 = i.reference_force
         * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
@@ -511,7 +511,7 @@ fn slopes_part_2<R: Real>(
     s.cos_alpha_c_t_eta_2 = i.cos_alpha * p.c_t_eta_2;
     let d_path_force_d_chi_2 = i.reference_force * (s.cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
     s.d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    s.d_normal_coefficient_d_chi_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/(ft*slug)^0.5
     s.d_force_turn_d_chi_2 = i.turn_factor * s.d_normal_coefficient_d_chi_2; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_2 = i.reference_force
         * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
@@ -521,7 +521,7 @@ fn slopes_part_2<R: Real>(
     s.cos_alpha_c_t_eta_3 = i.cos_alpha * p.c_t_eta_3;
     let d_path_force_d_chi_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     s.d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    s.d_normal_coefficient_d_chi_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/(ft*slug)^0.5
     s.d_force_turn_d_chi_3 = i.turn_factor * s.d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5
     let d_pitching_moment_d_chi_3 = i.reference_force
         * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5

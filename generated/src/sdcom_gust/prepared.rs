@@ -184,11 +184,11 @@ ahv_core::record! {
         pub minus_chi_decay_3: R,
         /// `-inv_gust_time`.
         pub minus_over_gust_time: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_1_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_2_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_3_d_delta_e: R,
         /// `2 * c_d_delta_e_2`.
         pub two_c_d_delta_e_2: R,
@@ -529,9 +529,9 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Derivatives with respect to delta_e
-    c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
-    c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
-    c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
+    c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
+    c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
+    c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
 
     // Derivatives with respect to parameters
     c.inv_zeta_1_2 = c.inv_zeta_1 * c.inv_zeta_1;

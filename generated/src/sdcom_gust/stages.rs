@@ -288,13 +288,13 @@ ahv_core::record! {
         /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
         pub d_cos_alpha_d_alpha: R,
         /// Partial derivative of generalized-force coefficient of mode 1 with respect to angle of attack against the
-        /// air, which moves with the gust, ft^0.5/slug^0.5/rad.
+        /// air, which moves with the gust, (ft/slug)^0.5/rad.
         pub slope_of_c_n_1_in_incidence: R,
         /// Partial derivative of generalized-force coefficient of mode 2 with respect to angle of attack against the
-        /// air, which moves with the gust, ft^0.5/slug^0.5/rad.
+        /// air, which moves with the gust, (ft/slug)^0.5/rad.
         pub slope_of_c_n_2_in_incidence: R,
         /// Partial derivative of generalized-force coefficient of mode 3 with respect to angle of attack against the
-        /// air, which moves with the gust, ft^0.5/slug^0.5/rad.
+        /// air, which moves with the gust, (ft/slug)^0.5/rad.
         pub slope_of_c_n_3_in_incidence: R,
         /// Derivative of thrust coefficient with respect to alpha, 1/rad.
         pub d_c_t_d_alpha: R,
@@ -314,15 +314,15 @@ ahv_core::record! {
         pub d_pitch_acceleration_d_alpha: R,
         /// `i.cos_alpha * c_t_eta_1`.
         pub cos_alpha_c_t_eta_1: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_1, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to chi_1, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_chi_1: R,
         /// `i.cos_alpha * c_t_eta_2`.
         pub cos_alpha_c_t_eta_2: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_2, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to chi_2, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_chi_2: R,
         /// `i.cos_alpha * c_t_eta_3`.
         pub cos_alpha_c_t_eta_3: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_3, 1/ft^0.5/slug^0.5.
+        /// Derivative of coefficient of the force across the flight path with respect to chi_3, 1/(ft*slug)^0.5.
         pub d_normal_coefficient_d_chi_3: R,
         /// Derivative of coefficient of the force across the flight path with respect to alpha_gust, 1/rad.
         pub d_normal_coefficient_d_alpha_gust: R,
@@ -434,15 +434,15 @@ fn slopes_part_2<R: Real>(
     let slope_of_c_t_in_incidence = p.three_c_t_alpha_3 * i.incidence_2
         + p.two_c_t_alpha_2 * i.incidence
         + p.c_t_alpha; // 1/rad
-    s.slope_of_c_n_1_in_incidence = p.two_c_n_1_alpha_2 * i.incidence + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
+    s.slope_of_c_n_1_in_incidence = p.two_c_n_1_alpha_2 * i.incidence + p.c_n_1_alpha; // (ft/slug)^0.5/rad
     let d_generalized_force_1_d_alpha = i.reference_force
         * s.slope_of_c_n_1_in_incidence; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    s.slope_of_c_n_2_in_incidence = p.two_c_n_2_alpha_2 * i.incidence + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
+    s.slope_of_c_n_2_in_incidence = p.two_c_n_2_alpha_2 * i.incidence + p.c_n_2_alpha; // (ft/slug)^0.5/rad
     let d_generalized_force_2_d_alpha = i.reference_force
         * s.slope_of_c_n_2_in_incidence; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_2_d_alpha = d_generalized_force_2_d_alpha * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    s.slope_of_c_n_3_in_incidence = p.two_c_n_3_alpha_2 * i.incidence + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+    s.slope_of_c_n_3_in_incidence = p.two_c_n_3_alpha_2 * i.incidence + p.c_n_3_alpha; // (ft/slug)^0.5/rad
     let d_generalized_force_3_d_alpha = i.reference_force
         * s.slope_of_c_n_3_in_incidence; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_3_d_alpha = d_generalized_force_3_d_alpha * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
@@ -479,13 +479,13 @@ fn slopes_part_2<R: Real>(
     s.d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to chi_1
-    s.d_normal_coefficient_d_chi_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/(ft*slug)^0.5
 
     // Derivatives with respect to chi_2
-    s.d_normal_coefficient_d_chi_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/(ft*slug)^0.5
 
     // Derivatives with respect to chi_3
-    s.d_normal_coefficient_d_chi_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/ft^0.5/slug^0.5
+    s.d_normal_coefficient_d_chi_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/(ft*slug)^0.5
 
     // Derivatives with respect to alpha_gust
     s.d_normal_coefficient_d_alpha_gust = sin_alpha_times_d_c_t_d_alpha + d_c_l_d_alpha; // 1/rad

@@ -245,7 +245,7 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     d_velocity_rate_d_alpha - m.alpha_slope_velocity
 }
 
-/// H of the gamma row in the exact form less that of the printed one, eq. (30). Unit: rad/s/rad.
+/// H of the gamma row in the exact form less that of the printed one, eq. (30). Unit: 1/s.
 ///
 /// 114 operations: 46 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
@@ -296,7 +296,7 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
     d_force_turn_d_alpha - i.g_gamma
 }
 
-/// H of the alpha row in the exact form less that of the printed one, eq. (32). Unit: rad/s/rad.
+/// H of the alpha row in the exact form less that of the printed one, eq. (32). Unit: 1/s.
 ///
 /// 114 operations: 46 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
@@ -348,7 +348,7 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
     -(d_force_turn_d_alpha + m.alpha_slope_alpha)
 }
 
-/// H of the pitch_rate row in the exact form less that of the printed one, eq. (34). Unit: rad/s^2/rad.
+/// H of the pitch_rate row in the exact form less that of the printed one, eq. (34). Unit: 1/s^2.
 ///
 /// 58 operations: 20 additions, 37 multiplications, 1 exp.
 #[inline(always)]
@@ -360,7 +360,7 @@ pub fn delta_H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Strict-feedback form, (34)
     let alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
-        * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t; // rad/s^2/rad
+        * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t; // 1/s^2
 
     // Derivatives with respect to alpha
     let d_eta_static_1_d_alpha = s.d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad

@@ -40,7 +40,7 @@ pub fn diffusion_values_from<R: Real>(
 ) -> DiffusionEntries<R> {
     // Strict-feedback form, (34)
     let alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
-        * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t; // rad/s^2/rad
+        * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t; // 1/s^2
 
     DiffusionEntries {
         velocity_by_w_alpha: m.alpha_slope_velocity * p.w_alpha,
@@ -115,7 +115,7 @@ pub fn noise_increment_from<R: Real>(
 ) -> State<R> {
     // Strict-feedback form, (34)
     let alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
-        * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t; // rad/s^2/rad
+        * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t; // 1/s^2
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {

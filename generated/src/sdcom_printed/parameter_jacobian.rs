@@ -587,9 +587,9 @@ fn parameter_jacobian_by_modes<R: Real>(
     let d_f_pitch_rate_eta_d_omega_3 = s.d_pitch_rate_rate_printed_d_chi_3
         * p.minus_two_over_omega_3 * i.generalized_force_3_inv_omega_3_2; // 1/s
     let d_chi_rate_3_d_omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
-    let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // ft^0.5*slug^0.5/s
-    let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // ft^0.5*slug^0.5/s
-    let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // ft^0.5*slug^0.5/s
+    let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // (ft*slug)^0.5/s
+    let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // (ft*slug)^0.5/s
+    let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // (ft*slug)^0.5/s
 
     parameter.velocity_by_omega_1 = d_f_velocity_eta_d_omega_1;
     parameter.velocity_by_omega_2 = d_f_velocity_eta_d_omega_2;
@@ -678,9 +678,9 @@ fn parameter_jacobian_by_choices<R: Real>(
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
     let d_f_gamma_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     let d_f_alpha_d_spherical_earth = i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-    let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // ft^0.5*slug^0.5/s
-    let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // ft^0.5*slug^0.5/s
-    let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // ft^0.5*slug^0.5/s
+    let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
+    let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
+    let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
 
     parameter.velocity_by_canard_command = d_f_velocity_eta_d_canard_command;
     parameter.velocity_by_canard_slaving = d_f_velocity_d_canard_slaving;
@@ -876,19 +876,19 @@ fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
     let d_f_pitch_rate_eta_d_c_n_1_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_1_alpha = s.d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_1_2 * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_1_alpha = s.d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_1_delta_e = s.d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_1_2 * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_1_delta_e = s.d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_1_delta_c = s.d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * i.canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_1_2 * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_1_delta_c = s.d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_1_0 = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
-        * i.reference_force; // ft^0.5*slug^0.5/s^2
+        * i.reference_force; // (ft*slug)^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_1_0 = s.d_pitch_rate_rate_printed_d_chi_1
         * p.inv_omega_1_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_alpha_2 = s.d_velocity_rate_printed_d_chi_2
@@ -896,19 +896,19 @@ fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
     let d_f_pitch_rate_eta_d_c_n_2_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_alpha = s.d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_2_2 * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_2_alpha = s.d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_delta_e = s.d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_2_2 * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_2_delta_e = s.d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_delta_c = s.d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * i.canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_2_2 * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_2_delta_c = s.d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_2_0 = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
-        * i.reference_force; // ft^0.5*slug^0.5/s^2
+        * i.reference_force; // (ft*slug)^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_2_0 = s.d_pitch_rate_rate_printed_d_chi_2
         * p.inv_omega_2_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
 
@@ -997,19 +997,19 @@ fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
     let d_f_pitch_rate_eta_d_c_n_3_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_alpha = s.d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * x.alpha; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_3_2 * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_3_alpha = s.d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_delta_e = s.d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * u.delta_e; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_3_2 * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_3_delta_e = s.d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_delta_c = s.d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * i.canard_deflection; // ft^0.5*slug^0.5*rad/s^2
+        * p.inv_omega_3_2 * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_3_delta_c = s.d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
     let d_f_velocity_eta_d_c_n_3_0 = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
-        * i.reference_force; // ft^0.5*slug^0.5/s^2
+        * i.reference_force; // (ft*slug)^0.5/s^2
     let d_f_pitch_rate_eta_d_c_n_3_0 = s.d_pitch_rate_rate_printed_d_chi_3
         * p.inv_omega_3_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
 

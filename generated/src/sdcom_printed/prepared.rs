@@ -162,11 +162,11 @@ ahv_core::record! {
         pub minus_chi_decay_2: R,
         /// `-chi_decay_3`.
         pub minus_chi_decay_3: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_1_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_2_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, (ft/slug)^0.5/rad.
         pub d_c_n_3_d_delta_e: R,
         /// `inv_m * c_d_delta_e_plus_c_d_delta_c_times_canard_gain`.
         pub c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m: R,
@@ -513,9 +513,9 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
         .c_m_delta_e_plus_canard_gain_c_m_delta_c * p.c_bar * p.s * c.inv_i_yy; // ft^2/s^2/lb
 
     // Derivatives with respect to delta_e
-    c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
-    c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
-    c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // ft^0.5/slug^0.5/rad
+    c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
+    c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
+    c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
 
     // Derivatives with respect to parameters
     c.inv_zeta_1_2 = c.inv_zeta_1 * c.inv_zeta_1;

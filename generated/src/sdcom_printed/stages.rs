@@ -418,15 +418,15 @@ ahv_core::record! {
         /// Partial derivative of f of the velocity row, flexible part with respect to cos of the angle of attack,
         /// ft/s^2.
         pub slope_of_f_velocity_eta_in_cos_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_1_d_alpha: R,
         /// Derivative of generalized force of mode 1 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
         pub d_generalized_force_1_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_2_d_alpha: R,
         /// Derivative of generalized force of mode 2 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
         pub d_generalized_force_2_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, ft^0.5/slug^0.5/rad.
+        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, (ft/slug)^0.5/rad.
         pub d_c_n_3_d_alpha: R,
         /// Derivative of generalized force of mode 3 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
         pub d_generalized_force_3_d_alpha: R,
@@ -582,11 +582,11 @@ fn slopes_part_1<R: Real>(
         + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
     s.slope_of_f_velocity_eta_in_cos_alpha = i.reference_force * p.inv_m
         * s.sum_of_generalized_force_inv_omega_2_c_t_eta; // ft/s^2
-    s.d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_1_d_alpha = p.two_c_n_1_alpha_2 * x.alpha + p.c_n_1_alpha; // (ft/slug)^0.5/rad
     s.d_generalized_force_1_d_alpha = i.reference_force * s.d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_2_d_alpha = p.two_c_n_2_alpha_2 * x.alpha + p.c_n_2_alpha; // (ft/slug)^0.5/rad
     s.d_generalized_force_2_d_alpha = i.reference_force * s.d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-    s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // ft^0.5/slug^0.5/rad
+    s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // (ft/slug)^0.5/rad
     s.d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
 }
 
@@ -1002,7 +1002,7 @@ ahv_core::record! {
     pub struct NoiseSlopes<R> {
         /// H of the velocity row, ft/s^2/rad.
         pub alpha_slope_velocity: R,
-        /// H of the alpha row, rad/s/rad.
+        /// H of the alpha row, 1/s.
         pub alpha_slope_alpha: R,
         /// Derivative of H of the velocity row with respect to velocity, 1/s/rad.
         pub d_alpha_slope_velocity_d_velocity: R,
@@ -1034,7 +1034,7 @@ pub fn noise_slopes<R: Real>(
         .d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha;
     m.alpha_slope_velocity = i.reference_force * p.inv_m
         * d_slope_of_g_gamma_in_turn_factor_d_alpha_minus_c_d_alpha; // ft/s^2/rad
-    m.alpha_slope_alpha = -i.g_gamma; // rad/s/rad
+    m.alpha_slope_alpha = -i.g_gamma; // 1/s
 
     // Derivatives with respect to velocity
     m.d_alpha_slope_velocity_d_velocity = d_slope_of_g_gamma_in_turn_factor_d_alpha_minus_c_d_alpha
