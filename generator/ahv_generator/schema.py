@@ -208,9 +208,9 @@ class Choice:
     def __post_init__(self) -> None:
         if not self.options or any(len(option.values) != len(self.switches) for option in self.options):
             raise FamilyError(f"every option of `{self.name}` sets all of its switches")
-        faults = [names.fault_of_identifier(option.name) for option in self.options]
-        for fault in filter(None, faults):
-            raise FamilyError(f"an option of `{self.name}`: {fault}")
+        for option in self.options:
+            if not re.fullmatch(r"[a-z][a-z0-9_]*", option.name):
+                raise FamilyError(f"the option `{option.name}` of `{self.name}` is not a lower-case identifier")
         check_texts(self.doc, *(option.doc for option in self.options))
 
 

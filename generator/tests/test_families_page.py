@@ -60,7 +60,8 @@ def test_the_fault_is_the_one_that_is_printed(tmp_path: Path) -> None:
     with pytest.raises(TableError) as caught:
         load(glider(tmp_path, GLIDER.replace('"L", "lb"', '"L", "lb*ft"'))).build()
     (fault,) = caught.value.diagnostics
-    assert f"{fault.file}, line {fault.line}: {fault.message}" in PAGE
+    assert f"error: {fault.message} [family]" in PAGE
+    assert f"{fault.file}:{fault.line}:" in PAGE
 
 
 @pytest.mark.parametrize("module", [family, schema], ids=lambda module: module.__name__)
