@@ -18,6 +18,8 @@ const PLACE: &str = "tests/own-vehicle";
 const CORE: &str = "../../../../crates/ahv-core";
 /// A family in a file of its own.
 const PENDULUM: &str = "generator/tests/pendulum";
+/// The example that `ahv new` starts from; the program has its name.
+const NEW: &str = "winged-cone";
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
 const GENERATE: &str = "ahv generate";
@@ -64,8 +66,34 @@ pub(crate) fn run() -> Result<(), String> {
     let line = "rare --model pendulum --t-end 1 --passes angle=1deg";
     let message = "pendulum has no noise, by which copies part";
     Own::new("pendulum", &place.join("made")).refuses(line, message)?;
+    new_repository(&place)?;
     documented(&place)
 }
+
+/// `ahv new` makes a repository that builds, passes its test and answers as published.
+fn new_repository(place: &Path) -> Result<(), String> {
+    let folder = place.join("made").join(NEW);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(problem("remove", &folder))?;
+    }
+    println!("ahv new {NEW}");
+    let mut make = shell::cargo();
+    make.args(["run", "--quiet", "--package", "ahv-new", "--example", "new"]);
+    make.args(["--", &format!("{PLACE}/made/{NEW}")]);
+    shell::output(make.args(["--example", NEW, "--ahv", "."]))?;
+    let mut test = shell::cargo();
+    test.args(["test", "--quiet", "--target-dir"]);
+    test.arg(shell::target()).current_dir(&folder);
+    let said = shell::messages(&mut test)?;
+    if said.contains("warning:") {
+        return Err(format!("error: {NEW} compiles with warnings\n{said}"));
+    }
+    let own = Own::new(NEW, &folder);
+    own.answers(commands::WINGED_CONE)?;
+    own.does("generate --check --from-ir")?;
+    own.does("generate --check")
+}
+
 
 /// What the documentation tells a stranger to do is what is done here.
 fn documented(place: &Path) -> Result<(), String> {

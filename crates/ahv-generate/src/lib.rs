@@ -31,6 +31,7 @@ mod project;
 mod python;
 mod report;
 mod rules;
+mod settings;
 mod structure;
 mod surroundings;
 mod tables;
@@ -77,9 +78,16 @@ pub fn run(args: &Args) -> u8 {
     }
 }
 
+/// From now on a first SIGINT, SIGTERM or SIGHUP ends a generation in order: it fails, and temporary files are removed.
+///
+/// # Errors
+/// The platform refuses.
+pub fn listen() -> Result<(), Failure> {
+    interrupt::listen().map_err(|error| Failure::new(format!("cannot listen to signals: {error}")))
+}
+
 fn answer(args: &Args) -> Result<u8, Failure> {
-    interrupt::listen()
-        .map_err(|error| Failure::new(format!("cannot listen to signals: {error}")))?;
+    listen()?;
     let surroundings = Surroundings::of_process()?;
     if args.watch {
         watch::watch(args, &surroundings)
@@ -126,14 +134,14 @@ fn print(text: &str) -> Result<(), Failure> {
 /// Bad tables, no usable Python, a signal, or a tree that cannot be written; the tree is then as it was, or the
 /// message names the files that are new.
 pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, Failure> {
-    let project = Project::locate(args, surroundings);
+    let project = Project::locate(args, surroundings)?;
     let tables = Tables::load(&project)?;
     let trusted = if args.derive {
         Trusted::default()
     } else {
         Trusted::of(&project.out, &tables)
     };
-    let made = derive_and_emit(args, surroundings, &tables, trusted)?;
+    let made = derive_and_emit(args, surroundings, &project, &tables, trusted)?;
     let differences = compare::differences(&project.out, &made.tree)?;
     write::apply(&project, &differences)?;
     Ok(Generated::new(
@@ -149,7 +157,7 @@ pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, F
 /// # Errors
 /// Bad tables, no usable Python, an IR of an unknown schema version, or an unreadable tree.
 pub fn check(args: &Args, surroundings: &Surroundings) -> Result<Checked, Failure> {
-    let project = Project::locate(args, surroundings);
+    let project = Project::locate(args, surroundings)?;
     let tables = Tables::load(&project)?;
     let start = Instant::now();
     let (differences, owners, seconds, command) = if args.from_ir {
@@ -160,7 +168,7 @@ pub fn check(args: &Args, surroundings: &Surroundings) -> Result<Checked, Failur
         };
         (differences, owners, seconds, args.mending_command(&project))
     } else {
-        let made = derive_and_emit(args, surroundings, &tables, Trusted::default())?;
+        let made = derive_and_emit(args, surroundings, &project, &tables, Trusted::default())?;
         let differences = compare::differences(&project.out, &made.tree)?;
         let mut command = args.mending_command(&project);
         if !differences.is_empty() && !is_made_by_generate(args, &project, &tables, &made) {
@@ -192,6 +200,7 @@ struct Made {
 fn derive_and_emit(
     args: &Args,
     surroundings: &Surroundings,
+    project: &Project,
     tables: &Tables,
     mut trusted: Trusted,
 ) -> Result<Made, Failure> {
@@ -207,7 +216,7 @@ fn derive_and_emit(
         derive::derive(&python, tables, &known)?
     };
     let after = Instant::now();
-    let tree = emit(args, tables, &irs, trusted)?;
+    let tree = emit(args, project, tables, &irs, trusted)?;
     let seconds = Seconds {
         derive: (after - start).as_secs_f64(),
         emit: after.elapsed().as_secs_f64(),
@@ -226,18 +235,19 @@ fn is_made_by_generate(args: &Args, project: &Project, tables: &Tables, whole: &
     let mut trusted = Trusted::of(&project.out, tables);
     let mut irs = whole.irs.clone();
     irs.extend(std::mem::take(&mut trusted.irs));
-    emit(args, tables, &irs, trusted).is_ok_and(|tree| tree == whole.tree)
+    emit(args, project, tables, &irs, trusted).is_ok_and(|tree| tree == whole.tree)
 }
 
 fn emit(
     args: &Args,
+    project: &Project,
     tables: &Tables,
     irs: &BTreeMap<String, String>,
     trusted: Trusted,
 ) -> Result<Tree, Failure> {
     let options = Options {
-        package: args.package.clone(),
-        core: args.core(),
+        package: project.package.clone(),
+        core: project.core.clone(),
         units: args.units,
         passes: Passes::without(&args.without_pass),
         target: args.target(),
@@ -260,7 +270,7 @@ fn check_from_ir(
     }
     let manifest = manifest::whole(&project.out);
     let stale = compare::stale_irs(manifest.as_ref(), tables);
-    match emit(args, tables, &irs, Trusted::default()) {
+    match emit(args, project, tables, &irs, Trusted::default()) {
         Ok(tree) => {
             let mut found = compare::differences(&project.out, &tree)?;
             let edited = compare::edited_irs(manifest.as_ref(), &tree);
