@@ -16,8 +16,10 @@ use crate::shell;
 const PLACE: &str = "tests/own-vehicle";
 /// Where the packages find `ahv-core`.
 const CORE: &str = "../../../../crates/ahv-core";
-/// A family in a file of its own.
-const PENDULUM: &str = "generator/tests/pendulum";
+/// Families in a file of their own; `tank` is the smallest model that there may be.
+const OWN_FAMILIES: [&str; 2] = ["pendulum", "tank"];
+/// Where they lie, each with its table in a folder of its name.
+const FAMILIES: &str = "generator/tests";
 /// The example that `ahv new` starts from; the program has its name.
 const NEW: &str = "winged-cone";
 /// The page that tells a stranger what to do, and the commands there.
@@ -38,15 +40,9 @@ pub(crate) fn run() -> Result<(), String> {
         write(&folder.join("own.toml"), &text)?;
         generate(&place, package)?;
     }
-    // A family in a file beside its table.
-    for file in ["pendulum.toml", "pendulum.py"] {
-        let text = read(&shell::root().join(PENDULUM).join(file))?;
-        write(
-            &place.join("made/tables-of-pendulum-models").join(file),
-            &text,
-        )?;
+    for family in OWN_FAMILIES {
+        own_family(&place, family)?;
     }
-    generate(&place, "pendulum-models")?;
     build(&place)?;
     for (program, models, questions) in [
         (
@@ -57,6 +53,7 @@ pub(crate) fn run() -> Result<(), String> {
         ("dcom-alone", &["dcom"], commands::DCOM_ALONE),
         ("com-rigid-alone", &["com_rigid"], commands::COM_RIGID_ALONE),
         ("pendulum", &["pendulum"], commands::PENDULUM),
+        ("tank", &["tank"], commands::TANK),
     ] {
         println!("{program}");
         let own = Own::new(program, &place.join("made"));
@@ -94,6 +91,16 @@ fn new_repository(place: &Path) -> Result<(), String> {
     own.does("generate --check")
 }
 
+/// Makes the package of a family in a file beside its table.
+fn own_family(place: &Path, family: &str) -> Result<(), String> {
+    let package = format!("{family}-models");
+    for file in [format!("{family}.toml"), format!("{family}.py")] {
+        let text = read(&shell::root().join(FAMILIES).join(family).join(&file))?;
+        let folder = place.join(format!("made/tables-of-{package}"));
+        write(&folder.join(file), &text)?;
+    }
+    generate(place, &package)
+}
 
 /// What the documentation tells a stranger to do is what is done here.
 fn documented(place: &Path) -> Result<(), String> {

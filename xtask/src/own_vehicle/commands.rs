@@ -147,6 +147,29 @@ pub(super) const PENDULUM: &[Question] = &[
     ),
 ];
 
+/// One state, one input, one output, no curve fit, no noise. 1 m/s flows in, 0.5 /s of the level flows out.
+pub(super) const TANK: &[Question] = &[
+    (
+        "trim --model tank",
+        &["/converged = true", "/state/level = 2.0"],
+    ),
+    ("poles --model tank", &["#/poles = 1", "#/zeros = 0"]),
+    ("linearize --model tank", &["/A = [[-0.5]]", "/B = [[1.0]]"]),
+    (
+        "lqr --model tank --out tank.json",
+        &["#/gain = 1", "#/gain/0 = 1"],
+    ),
+    (
+        "montecarlo --model tank --members 16 --t-end 1 --dt 0.01 --disperse",
+        &["/members = 16", "/lost = 0", "#/mean = 1"],
+    ),
+    ("disperse --model tank --members 30", &["/trimmed = 30"]),
+    (
+        "simulate --model tank --t-end 1 --dt 0.01 --out level.csv",
+        &["/steps = 100", "#/final_state = 1"],
+    ),
+];
+
 /// The published trim of the winged cone: alpha 0.0312 rad, throttle 0.1762, elevator -0.0069 rad.
 pub(super) const WINGED_CONE: &[Question] = &[
     (
