@@ -119,8 +119,7 @@ impl Created {
             text.push_str(&format!("  {file}\n"));
         }
         text.push_str(&format!(
-            "\nNext: cd {dir}; git init && git add . && git commit -m \"New vehicle\"; cargo run --release -- trim\n\
-             README.md explains the repository.\n"
+            "\nREADME.md explains the repository. Next: cd {dir}; git init; git add .; git commit -m \"New vehicle\"; cargo test\n"
         ));
         text
     }

@@ -74,8 +74,12 @@ pub(crate) fn write(
     ahv_generate::generate(&line.args, &inside)?;
 
     let models = models(folder)?;
-    let first = models.first().map_or("", |model| model.name.as_str());
-    words.push(("model", first.to_owned()));
+    let flag = match models.as_slice() {
+        // The only model is the default.
+        [] | [_] => String::new(),
+        [first, ..] => format!(" --model {}", first.name),
+    };
+    words.push(("model-flag", flag));
     let lines = models
         .iter()
         .map(|it| format!("| `{}` | {} |", it.name, it.title));
@@ -121,25 +125,23 @@ fn words(name: &Name, start: &Start, origin: &Origin) -> Vec<(&'static str, Stri
 
 /// A template with its words. What a word stands for is not read again.
 fn filled(template: &str, words: &[(&str, String)]) -> String {
-    let mut parts = template.split('@');
-    let mut text = parts.next().unwrap_or_default().to_owned();
-    let mut after_word = false;
-    for part in parts {
-        match words.iter().find(|(word, _)| !after_word && *word == part) {
-            Some((_, value)) => {
+    let mut text = String::new();
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once('@') {
+        text.push_str(before);
+        let value = |name: &str| words.iter().find(|(word, _)| *word == name);
+        match after.split_once('@') {
+            Some((name, tail)) if let Some((_, value)) = value(name) => {
                 text.push_str(value);
-                after_word = true;
+                rest = tail;
             }
-            None => {
-                // The `@` that ends a word is none of the text.
-                if !after_word {
-                    text.push('@');
-                }
-                text.push_str(part);
-                after_word = false;
+            _ => {
+                text.push('@');
+                rest = after;
             }
         }
     }
+    text.push_str(rest);
     text
 }
 

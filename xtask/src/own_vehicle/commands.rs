@@ -173,7 +173,7 @@ pub(super) const TANK: &[Question] = &[
 /// The published trim of the winged cone: alpha 0.0312 rad, throttle 0.1762, elevator -0.0069 rad.
 pub(super) const WINGED_CONE: &[Question] = &[
     (
-        "trim --model winged_cone --velocity 15060 --altitude 110000",
+        "trim --velocity 15060 --altitude 110000",
         &[
             "/converged = true",
             "/state/alpha ~ 0.031227",
@@ -181,9 +181,9 @@ pub(super) const WINGED_CONE: &[Question] = &[
             "/input/delta_e ~ -0.0069454",
         ],
     ),
-    ("poles --model winged_cone", &["#/poles = 7"]),
+    ("poles", &["#/poles = 7"]),
     (
-        "montecarlo --model winged_cone --members 1000 --t-end 1 --dt 0.01 --disperse",
+        "montecarlo --members 1000 --t-end 1 --dt 0.01 --disperse",
         &["/members = 1000", "/lost = 0", "#/mean = 7"],
     ),
 ];
