@@ -63,6 +63,8 @@ pub(crate) fn run() -> Result<(), String> {
     let line = "rare --model pendulum --t-end 1 --passes angle=1deg";
     let message = "pendulum has no noise, by which copies part";
     Own::new("pendulum", &place.join("made")).refuses(line, message)?;
+    let message = "--state-deviation: tank names no deviation that costs 1";
+    Own::new("tank", &place.join("made")).refuses("lqr --model tank", message)?;
     new_repository(&place)?;
     documented(&place)
 }

@@ -154,9 +154,12 @@ pub(super) const TANK: &[Question] = &[
         &["/converged = true", "/state/level = 2.0"],
     ),
     ("poles --model tank", &["#/poles = 1", "#/zeros = 0"]),
-    ("linearize --model tank", &["/A = [[-0.5]]", "/B = [[1.0]]"]),
     (
-        "lqr --model tank --out tank.json",
+        "linearize --model tank",
+        &["/A = [[-0.5]]", "/B = [[1.0]]", "/C = [[1.0]]"],
+    ),
+    (
+        "lqr --model tank --state-deviation level=0.1 --input-deviation valve=0.1",
         &["#/gain = 1", "#/gain/0 = 1"],
     ),
     (
