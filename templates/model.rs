@@ -46,7 +46,13 @@ pub const {{ bounds }}: {{ v.name }}<Bounds> = {{ v.name }} {
 {%- endif %}
 {%- endfor %}
 
-/// ∂f/∂x: `jacobian.{{ vectors[0].0.fields[0].name }}.{{ vectors[0].0.fields[1].name }}` is the derivative of the first component's rate with respect to the second.
+{%- if let [first, second, ..] = vectors[0].0.fields %}
+
+/// ∂f/∂x: `jacobian.{{ first.name }}.{{ second.name }}` is the derivative of the first component's rate with respect to the second.
+{%- else %}
+
+/// ∂f/∂x.
+{%- endif %}
 pub type StateJacobian<T> = State<State<T>>;
 /// ∂f/∂u, by rows of the state.
 pub type InputJacobian<T> = State<Input<T>>;

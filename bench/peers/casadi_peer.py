@@ -15,7 +15,6 @@ from pathlib import Path
 
 import casadi as ca
 
-from ahv_generator.family import builders
 from ahv_generator.table import load
 from counts import count
 from expansion import Expansion
@@ -89,7 +88,7 @@ def main() -> None:
     counts: dict[str, dict[str, object]] = {}
     for path in arguments.tables:
         table = load(path)
-        for model in (builders()[name](table) for name in table.models):
+        for model in table.build():
             expansion = Expansion(model)
             for name, matrices in timed(expansion):
                 peer = function(name, expansion, matrices)

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 
 import casadi as ca
 
-from ahv_generator.model import Function, Model, Output
+from ahv_generator.function import Function, Output
+from ahv_generator.model import Model
 
 sys.setrecursionlimit(10_000)
 
@@ -59,7 +60,7 @@ class Expansion:
         for j, increment in enumerate(self.model.names("noise")):
             if increment in perturbed:
                 slope = ca.jacobian(self.drift(), self.model.graph.symbols[perturbed[increment]])
-                columns.append(slope * self.model.parameter(increment))
+                columns.append(slope * self.model[increment])
             else:
                 columns.append(given[:, j])
         return ca.horzcat(*columns)

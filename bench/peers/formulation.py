@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import casadi as ca
 
-from ahv_generator.model import Model, Output
+from ahv_generator.function import Output
+from ahv_generator.model import Model
 
 PERTURBED = {"w_gamma": "x.gamma", "w_alpha": "x.alpha", "w_q": "x.pitch_rate"}
 

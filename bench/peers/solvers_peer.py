@@ -20,7 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from ahv_generator.family import builders
 from ahv_generator.table import load
 from expansion import Expansion
 from steps import equation
@@ -170,7 +169,7 @@ def main() -> None:
 
     table = next(table for table in map(load, arguments.tables) if "dcom" in table.models)
     problem = json.loads(sys.stdin.readline())
-    peer = Peer(problem, Expansion(builders()["dcom"](table)), ctypes.CDLL(str(arguments.library)))
+    peer = Peer(problem, Expansion(table.model("dcom")), ctypes.CDLL(str(arguments.library)))
     for line in sys.stdin:
         try:
             answer = peer.answer(json.loads(line))

@@ -21,7 +21,6 @@ from symforce.codegen import CppConfig  # noqa: E402
 from symforce.codegen.codegen_util import print_code  # noqa: E402
 from symforce.values import Values  # noqa: E402
 
-from ahv_generator.family import builders  # noqa: E402
 from ahv_generator.model import Model  # noqa: E402
 from ahv_generator.table import load  # noqa: E402
 from formulation import Algebra, Formulation, leaves  # noqa: E402
@@ -103,7 +102,7 @@ def main() -> None:
     kernels: dict[str, object] = {}
     for path in arguments.tables:
         table = load(path)
-        for model in (builders()[name](table) for name in table.models if name in ("dcom", "sdcom")):
+        for model in (table.model(name) for name in table.models if name in ("dcom", "sdcom")):
             for name, (text, operations) in timed(model).items():
                 functions.append(text)
                 parameters = [parameter.name for parameter in table.parameters]

@@ -14,7 +14,6 @@ from pathlib import Path
 from wrenfold import FunctionDescription, RustGenerator, sym, transpile
 from wrenfold.type_info import MatrixType
 
-from ahv_generator.family import builders
 from ahv_generator.model import Model
 from ahv_generator.table import load
 from formulation import Algebra, Formulation, leaves
@@ -77,7 +76,7 @@ def main() -> None:
     kernels: dict[str, object] = {}
     for path in arguments.tables:
         table = load(path)
-        for model in (builders()[name](table) for name in table.models):
+        for model in table.build():
             for name, text in timed(model).items():
                 functions.append(text)
                 counted = re.search(r"// total: (\d+)", text)

@@ -16,8 +16,12 @@ use crate::shell;
 const PLACE: &str = "tests/own-vehicle";
 /// Where the packages find `ahv-core`.
 const CORE: &str = "../../../../crates/ahv-core";
-/// A family in a file of its own.
-const PENDULUM: &str = "generator/tests/pendulum";
+/// Families in a file of their own; `tank` is the smallest model that there may be.
+const OWN_FAMILIES: [&str; 2] = ["pendulum", "tank"];
+/// Where they lie, each with its table in a folder of its name.
+const FAMILIES: &str = "generator/tests";
+/// The example that `ahv new` starts from; the program has its name.
+const NEW: &str = "winged-cone";
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
 const GENERATE: &str = "ahv generate";
@@ -36,15 +40,9 @@ pub(crate) fn run() -> Result<(), String> {
         write(&folder.join("own.toml"), &text)?;
         generate(&place, package)?;
     }
-    // A family in a file beside its table.
-    for file in ["pendulum.toml", "pendulum.py"] {
-        let text = read(&shell::root().join(PENDULUM).join(file))?;
-        write(
-            &place.join("made/tables-of-pendulum-models").join(file),
-            &text,
-        )?;
+    for family in OWN_FAMILIES {
+        own_family(&place, family)?;
     }
-    generate(&place, "pendulum-models")?;
     build(&place)?;
     for (program, models, questions) in [
         (
@@ -55,6 +53,7 @@ pub(crate) fn run() -> Result<(), String> {
         ("dcom-alone", &["dcom"], commands::DCOM_ALONE),
         ("com-rigid-alone", &["com_rigid"], commands::COM_RIGID_ALONE),
         ("pendulum", &["pendulum"], commands::PENDULUM),
+        ("tank", &["tank"], commands::TANK),
     ] {
         println!("{program}");
         let own = Own::new(program, &place.join("made"));
@@ -64,7 +63,45 @@ pub(crate) fn run() -> Result<(), String> {
     let line = "rare --model pendulum --t-end 1 --passes angle=1deg";
     let message = "pendulum has no noise, by which copies part";
     Own::new("pendulum", &place.join("made")).refuses(line, message)?;
+    let message = "--state-deviation: tank names no deviation that costs 1";
+    Own::new("tank", &place.join("made")).refuses("lqr --model tank", message)?;
+    new_repository(&place)?;
     documented(&place)
+}
+
+/// `ahv new` makes a repository that builds, passes its test and answers as published.
+fn new_repository(place: &Path) -> Result<(), String> {
+    let folder = place.join("made").join(NEW);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).map_err(problem("remove", &folder))?;
+    }
+    println!("ahv new {NEW}");
+    let mut make = shell::cargo();
+    make.args(["run", "--quiet", "--package", "ahv-new", "--example", "new"]);
+    make.args(["--", &format!("{PLACE}/made/{NEW}")]);
+    shell::output(make.args(["--example", NEW, "--ahv", "."]))?;
+    let mut test = shell::cargo();
+    test.args(["test", "--quiet", "--target-dir"]);
+    test.arg(shell::target()).current_dir(&folder);
+    let said = shell::messages(&mut test)?;
+    if said.contains("warning:") {
+        return Err(format!("error: {NEW} compiles with warnings\n{said}"));
+    }
+    let own = Own::new(NEW, &folder);
+    own.answers(commands::WINGED_CONE)?;
+    own.does("generate --check --from-ir")?;
+    own.does("generate --check")
+}
+
+/// Makes the package of a family in a file beside its table.
+fn own_family(place: &Path, family: &str) -> Result<(), String> {
+    let package = format!("{family}-models");
+    for file in [format!("{family}.toml"), format!("{family}.py")] {
+        let text = read(&shell::root().join(FAMILIES).join(family).join(&file))?;
+        let folder = place.join(format!("made/tables-of-{package}"));
+        write(&folder.join(file), &text)?;
+    }
+    generate(place, &package)
 }
 
 /// What the documentation tells a stranger to do is what is done here.

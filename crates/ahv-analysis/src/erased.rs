@@ -92,9 +92,9 @@ pub trait AnyModel: Send + Sync {
     fn trim_problem(&self) -> TrimProblem;
     /// Its modes of motion.
     fn modes(&self) -> &'static [ModeOfMotion];
-    /// Inputs for zeros and gains, where none are asked for.
+    /// Inputs for zeros and gains, where none are asked for; all where the model names none.
     fn default_inputs(&self) -> &'static [&'static str];
-    /// Outputs for zeros and gains, where none are asked for.
+    /// Outputs for zeros and gains, where none are asked for; all states where the model names none.
     fn default_outputs(&self) -> &'static [&'static str];
     /// Deviations of states and inputs that cost 1 in a regulator where none are asked for.
     fn deviations(&self) -> &'static [(&'static str, f64)];

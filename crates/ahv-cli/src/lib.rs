@@ -40,6 +40,8 @@ mod lqr;
 mod monte_carlo;
 mod named;
 mod names;
+#[cfg(feature = "generate")]
+mod new;
 pub mod number;
 pub mod output;
 mod poles;
@@ -75,6 +77,8 @@ struct Cli {
 enum Command {
     #[cfg(feature = "generate")]
     Generate(generate::Arguments),
+    #[cfg(feature = "generate")]
+    New(new::Arguments),
     #[command(flatten)]
     Model(Box<ModelCommand>),
 }
@@ -130,9 +134,11 @@ pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
     }
     let cli = Cli::from_arg_matches_mut(&mut matches);
     match cli.unwrap_or_else(|error| error.exit()).command {
-        // It handles signals itself.
+        // They handle signals themselves.
         #[cfg(feature = "generate")]
         Command::Generate(arguments) => generate::run(&arguments),
+        #[cfg(feature = "generate")]
+        Command::New(arguments) => new::run(&arguments),
         Command::Model(command) => listening(|| command.run()),
     }
 }
@@ -150,7 +156,7 @@ fn answer(asked: &clap::Error) -> ExitCode {
 fn command(extra: &[ExtraCommand]) -> clap::Command {
     let command = Cli::command().subcommands(extra.iter().map(|it| it.command.clone()));
     command.mut_subcommands(|command| match command.get_name() {
-        "generate" => command,
+        "generate" | "new" => command,
         _ => command.display_order(1),
     })
 }

@@ -101,6 +101,13 @@ fn costs(
     let mut costs: Vec<f64> = components.names.iter().map(customary).collect();
     vehicle.units.convert(components, &mut costs);
     given.apply(&mut costs);
+    if !costs.iter().any(|deviation| deviation.is_finite()) {
+        let example = components.names.first().copied().unwrap_or_default();
+        return Err(Failure::Request(format!(
+            "{option}: {} names no deviation that costs 1; give one, such as {example}=VALUE",
+            vehicle.name()
+        )));
+    }
     let mut named = labels.names.iter().zip(&costs);
     match named.find(|(_, deviation)| **deviation <= 0.0) {
         Some((name, value)) => Err(Failure::Request(format!(

@@ -86,8 +86,13 @@ impl clap::Args for VehicleArgs {
             let value = PossibleValue::new(model.name()).help(model.title());
             value.alias(hyphenated(model.name()))
         });
-        let model = Arg::new("model").long("model").required(true);
+        let model = Arg::new("model").long("model");
         let model = model.help("Model").value_name("MODEL");
+        let model = match (models().next(), models().nth(1)) {
+            // A program over one model needs no name for it.
+            (Some(only), None) => model.default_value(only.name()),
+            _ => model.required(true),
+        };
         let table = Arg::new("table").long("table").value_name("FILE");
         let table = table.value_parser(value_parser!(PathBuf)).help(
             "Table whose values, choices, sets and validity box take the place of those that the models were generated with",

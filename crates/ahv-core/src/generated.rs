@@ -55,9 +55,9 @@ pub trait GeneratedModel:
     const TRIM: TrimProblem;
     /// Its modes of motion, by the states that take part in them.
     const MODES: &'static [ModeOfMotion];
-    /// Inputs for zeros and gains, where none are asked for.
+    /// Inputs for zeros and gains, where none are asked for; empty for all.
     const DEFAULT_INPUTS: &'static [&'static str];
-    /// Outputs for zeros and gains, where none are asked for.
+    /// Outputs for zeros and gains, where none are asked for; empty for all states.
     const DEFAULT_OUTPUTS: &'static [&'static str];
     /// Deviations of states and inputs that cost 1 in a regulator where none are asked for. One that is not listed costs
     /// nothing, or is not for the regulator.

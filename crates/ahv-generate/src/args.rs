@@ -6,11 +6,14 @@ use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{Core, Pass, Target};
 
 use crate::failure::Failure;
+use crate::settings::Settings;
 
 const PACKAGE: &str = "ahv-models";
 const CORE_PATH: &str = "../crates/ahv-core";
 
 /// Derive the models from the tables and write them as Rust or C.
+///
+/// `[workspace.metadata.ahv]` of a Cargo.toml may give --tables, --out, --package, --core-path and --core-workspace.
 ///
 /// Exit code: 0 done (or, with --check, tree and tables agree), 1 they differ, 2 bad input.
 #[derive(Debug, Clone, clap::Args)]
@@ -39,13 +42,13 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 
-    /// Name of the generated package; for Rust
-    #[arg(long, value_name = "NAME", default_value = PACKAGE, value_parser = package_name)]
-    pub package: String,
+    /// Name of the generated package; for Rust [default: ahv-models]
+    #[arg(long, value_name = "NAME", value_parser = package_name)]
+    pub package: Option<String>,
 
-    /// Where the generated package finds ahv-core, relative to itself; for Rust
-    #[arg(long, value_name = "PATH", default_value = CORE_PATH)]
-    pub core_path: String,
+    /// Where the generated package finds ahv-core, relative to itself; for Rust [default: ../crates/ahv-core]
+    #[arg(long, value_name = "PATH")]
+    pub core_path: Option<String>,
 
     /// Take ahv-core from the workspace around the generated package, whose Cargo.toml says where it comes from; for Rust
     #[arg(long, conflicts_with = "core_path")]
@@ -93,6 +96,14 @@ impl Language {
             Self::C => "generated/c",
         }
     }
+
+    /// The same below the project's own folder `out`.
+    pub(crate) fn folder_below(self, out: &str) -> String {
+        match self {
+            Self::Rust => out.to_owned(),
+            Self::C => format!("{out}/c"),
+        }
+    }
 }
 
 impl Args {
@@ -107,8 +118,8 @@ impl Args {
     /// Refuses what a C library does not have.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         let of_rust = [
-            ("--package", self.package != PACKAGE),
-            ("--core-path", self.core_path != CORE_PATH),
+            ("--package", self.package.is_some()),
+            ("--core-path", self.core_path.is_some()),
             ("--core-workspace", self.core_workspace),
         ];
         let given = of_rust.into_iter().find(|(_, is_given)| *is_given);
@@ -121,24 +132,30 @@ impl Args {
         }
     }
 
-    /// Where the generated package finds ahv-core.
-    pub(crate) fn core(&self) -> Core {
-        if self.core_workspace {
+    /// Name of the generated package.
+    pub(crate) fn package(&self, settings: &Settings) -> String {
+        let package = self.package.as_ref().or(settings.package.as_ref());
+        package.map_or(PACKAGE, String::as_str).to_owned()
+    }
+
+    /// Where the generated package finds ahv-core. A flag takes precedence over the project's settings.
+    pub(crate) fn core(&self, settings: &Settings) -> Core {
+        let flags = self.core_workspace || self.core_path.is_some();
+        let (by_workspace, path) = if flags {
+            (self.core_workspace, self.core_path.as_deref())
+        } else {
+            (settings.core_workspace, settings.core_path.as_deref())
+        };
+        if by_workspace {
             Core::Workspace
         } else {
-            Core::Path(self.core_path.clone())
+            Core::Path(path.unwrap_or(CORE_PATH).to_owned())
         }
     }
 
-    /// The command that brings the tree up to date, with the flags that this one was given.
-    ///
-    /// The generator of a repository that holds it does not need the models to compile.
-    pub(crate) fn mending_command(&self, holds_generator: bool) -> String {
-        let mut command = String::from(if holds_generator {
-            "cargo xtask generate"
-        } else {
-            "ahv generate"
-        });
+    /// The command that brings the tree up to date: that of the project, with the flags that this one was given.
+    pub(crate) fn mending_command(&self, command: &str) -> String {
+        let mut command = command.to_owned();
         let mut flag = |name: &str, value: &str| {
             command.push_str(&format!(" {name} {}", quoted(value)));
         };
@@ -151,23 +168,23 @@ impl Args {
         if let Some(out) = &self.out {
             flag("--out", &out.to_string_lossy());
         }
-        if self.package != PACKAGE {
-            flag("--package", &self.package);
+        if let Some(package) = &self.package {
+            flag("--package", package);
         }
         if let Some(units) = self.units {
             flag("--units", units.name());
         }
         if self.core_workspace {
             command.push_str(" --core-workspace");
-        } else if self.core_path != CORE_PATH {
-            flag("--core-path", &self.core_path);
+        } else if let Some(path) = &self.core_path {
+            flag("--core-path", path);
         }
         command
     }
 }
 
 /// A name that cargo takes for a package.
-fn package_name(name: &str) -> Result<String, String> {
+pub(crate) fn package_name(name: &str) -> Result<String, String> {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(plain) {
         Ok(name.to_owned())

@@ -31,6 +31,7 @@ mod project;
 mod python;
 mod report;
 mod rules;
+mod settings;
 mod structure;
 mod surroundings;
 mod tables;
@@ -77,9 +78,16 @@ pub fn run(args: &Args) -> u8 {
     }
 }
 
+/// From now on a first SIGINT, SIGTERM or SIGHUP ends a generation in order: it fails, and temporary files are removed.
+///
+/// # Errors
+/// The platform refuses.
+pub fn listen() -> Result<(), Failure> {
+    interrupt::listen().map_err(|error| Failure::new(format!("cannot listen to signals: {error}")))
+}
+
 fn answer(args: &Args) -> Result<u8, Failure> {
-    interrupt::listen()
-        .map_err(|error| Failure::new(format!("cannot listen to signals: {error}")))?;
+    listen()?;
     let surroundings = Surroundings::of_process()?;
     if args.watch {
         watch::watch(args, &surroundings)
@@ -133,7 +141,7 @@ pub fn generate(args: &Args, surroundings: &Surroundings) -> Result<Generated, F
     } else {
         Trusted::of(&project.out, &tables)
     };
-    let made = derive_and_emit(args, surroundings, &tables, trusted)?;
+    let made = derive_and_emit(args, surroundings, &project, &tables, trusted)?;
     let differences = compare::differences(&project.out, &made.tree)?;
     write::apply(&project, &differences)?;
     Ok(Generated::new(
@@ -162,12 +170,12 @@ pub fn check(args: &Args, surroundings: &Surroundings) -> Result<Checked, Failur
             differences,
             owners,
             seconds,
-            args.mending_command(project.holds_generator()),
+            args.mending_command(project.usual_command()),
         )
     } else {
-        let made = derive_and_emit(args, surroundings, &tables, Trusted::default())?;
+        let made = derive_and_emit(args, surroundings, &project, &tables, Trusted::default())?;
         let differences = compare::differences(&project.out, &made.tree)?;
-        let mut command = args.mending_command(project.holds_generator());
+        let mut command = args.mending_command(project.usual_command());
         if !differences.is_empty() && !is_made_by_generate(args, &project, &tables, &made) {
             command.push_str(" --derive");
         }
@@ -197,7 +205,7 @@ struct Made {
 /// The project, where its folder may hold what is asked for.
 fn located(args: &Args, surroundings: &Surroundings) -> Result<Project, Failure> {
     args.check()?;
-    let project = Project::locate(args, surroundings);
+    let project = Project::locate(args, surroundings)?;
     manifest::refuse_other_language(args, &project)?;
     Ok(project)
 }
@@ -205,6 +213,7 @@ fn located(args: &Args, surroundings: &Surroundings) -> Result<Project, Failure>
 fn derive_and_emit(
     args: &Args,
     surroundings: &Surroundings,
+    project: &Project,
     tables: &Tables,
     mut trusted: Trusted,
 ) -> Result<Made, Failure> {
@@ -220,7 +229,7 @@ fn derive_and_emit(
         derive::derive(&python, tables, &known)?
     };
     let after = Instant::now();
-    let tree = emit(args, tables, &irs, trusted)?;
+    let tree = emit(args, project, tables, &irs, trusted)?;
     let seconds = Seconds {
         derive: (after - start).as_secs_f64(),
         emit: after.elapsed().as_secs_f64(),
@@ -239,18 +248,19 @@ fn is_made_by_generate(args: &Args, project: &Project, tables: &Tables, whole: &
     let mut trusted = Trusted::of(&project.out, tables);
     let mut irs = whole.irs.clone();
     irs.extend(std::mem::take(&mut trusted.irs));
-    emit(args, tables, &irs, trusted).is_ok_and(|tree| tree == whole.tree)
+    emit(args, project, tables, &irs, trusted).is_ok_and(|tree| tree == whole.tree)
 }
 
 fn emit(
     args: &Args,
+    project: &Project,
     tables: &Tables,
     irs: &BTreeMap<String, String>,
     trusted: Trusted,
 ) -> Result<Tree, Failure> {
     let options = Options {
-        package: args.package.clone(),
-        core: args.core(),
+        package: project.package.clone(),
+        core: project.core.clone(),
         units: args.units,
         passes: Passes::without(&args.without_pass),
         target: args.target(),
@@ -277,7 +287,7 @@ fn check_from_ir(
         // The IR is of these tables: it says which values they may have.
         rules::check(tables, &irs)?;
     }
-    match emit(args, tables, &irs, Trusted::default()) {
+    match emit(args, project, tables, &irs, Trusted::default()) {
         Ok(tree) => {
             let mut found = compare::differences(&project.out, &tree)?;
             let edited = compare::edited_irs(manifest.as_ref(), &tree);

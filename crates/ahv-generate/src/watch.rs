@@ -25,7 +25,7 @@ type Seen = Vec<(PathBuf, Option<Vec<u8>>)>;
 /// # Errors
 /// [`Failure::Interrupted`]; standard output that cannot be written. Every other failure is shown, and watching goes on.
 pub(crate) fn watch(args: &Args, surroundings: &Surroundings) -> Result<u8, Failure> {
-    let project = Project::locate(args, surroundings);
+    let project = Project::locate(args, surroundings)?;
     loop {
         // Before the generation: what is saved during it is a change.
         let seen = look(&project);

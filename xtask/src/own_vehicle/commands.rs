@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::shell;
 
-/// A command line, and facts of its JSON: `pointer = value`, or `#pointer = length` of a list or an object.
+/// A command line, and facts of its JSON: `pointer = value`, `pointer ~ value` for a number of five digits, or `#pointer = length` of a list or an object.
 type Question = (&'static str, &'static [&'static str]);
 
 /// Two flexible modes and a set `heavy`.
@@ -147,6 +147,50 @@ pub(super) const PENDULUM: &[Question] = &[
     ),
 ];
 
+/// One state, one input, one output, no curve fit, no noise. 1 m/s flows in, 0.5 /s of the level flows out.
+pub(super) const TANK: &[Question] = &[
+    (
+        "trim --model tank",
+        &["/converged = true", "/state/level = 2.0"],
+    ),
+    ("poles --model tank", &["#/poles = 1", "#/zeros = 0"]),
+    (
+        "linearize --model tank",
+        &["/A = [[-0.5]]", "/B = [[1.0]]", "/C = [[1.0]]"],
+    ),
+    (
+        "lqr --model tank --state-deviation level=0.1 --input-deviation valve=0.1",
+        &["#/gain = 1", "#/gain/0 = 1"],
+    ),
+    (
+        "montecarlo --model tank --members 16 --t-end 1 --dt 0.01 --disperse",
+        &["/members = 16", "/lost = 0", "#/mean = 1"],
+    ),
+    ("disperse --model tank --members 30", &["/trimmed = 30"]),
+    (
+        "simulate --model tank --t-end 1 --dt 0.01 --out level.csv",
+        &["/steps = 100", "#/final_state = 1"],
+    ),
+];
+
+/// The published trim of the winged cone: alpha 0.0312 rad, throttle 0.1762, elevator -0.0069 rad.
+pub(super) const WINGED_CONE: &[Question] = &[
+    (
+        "trim --velocity 15060 --altitude 110000",
+        &[
+            "/converged = true",
+            "/state/alpha ~ 0.031227",
+            "/input/beta_command ~ 0.17619",
+            "/input/delta_e ~ -0.0069454",
+        ],
+    ),
+    ("poles", &["#/poles = 7"]),
+    (
+        "montecarlo --members 1000 --t-end 1 --dt 0.01 --disperse",
+        &["/members = 1000", "/lost = 0", "#/mean = 7"],
+    ),
+];
+
 /// A program over models of its own, in a folder for what it writes.
 pub(super) struct Own {
     program: PathBuf,
@@ -238,6 +282,9 @@ fn values<'a>(help: &'a str, flag: &str) -> Vec<&'a str> {
 
 /// Holds a fact against JSON; what was found instead.
 fn holds(json: &Value, fact: &str) -> Result<(), String> {
+    if let Some((pointer, expected)) = fact.split_once(" ~ ") {
+        return is_near(json, pointer, expected);
+    }
     let (pointer, expected) = fact.split_once(" = ").ok_or("no fact")?;
     let found = match pointer.strip_prefix('#') {
         None => json.pointer(pointer).cloned(),
@@ -255,6 +302,19 @@ fn holds(json: &Value, fact: &str) -> Result<(), String> {
     }
 }
 
+/// Compares a number with one that is rounded to five digits.
+fn is_near(json: &Value, pointer: &str, expected: &str) -> Result<(), String> {
+    const TOLERANCE: f64 = 5e-5;
+    let found = json.pointer(pointer).and_then(Value::as_f64);
+    let found = found.ok_or("no number")?;
+    let expected: f64 = expected.parse().map_err(|_| "no fact")?;
+    if (found - expected).abs() <= TOLERANCE * expected.abs() {
+        Ok(())
+    } else {
+        Err(found.to_string())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{holds, values};
@@ -268,6 +328,14 @@ mod tests {
         }
         assert_eq!(holds(&json, "#/a = 3"), Err("2".to_owned()));
         assert_eq!(holds(&json, "/d = 3"), Err("nothing".to_owned()));
+    }
+
+    #[test]
+    fn a_number_is_compared_with_a_rounded_one() {
+        let json = json!({"a": 0.031_227_4});
+        assert_eq!(holds(&json, "/a ~ 0.031227"), Ok(()));
+        assert!(holds(&json, "/a ~ 0.031237").is_err());
+        assert!(holds(&json, "/b ~ 1").is_err());
     }
 
     #[test]

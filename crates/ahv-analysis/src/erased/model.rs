@@ -71,10 +71,16 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
     }
 
     fn default_inputs(&self) -> &'static [&'static str] {
+        if M::DEFAULT_INPUTS.is_empty() {
+            return self.inputs().names;
+        }
         M::DEFAULT_INPUTS
     }
 
     fn default_outputs(&self) -> &'static [&'static str] {
+        if M::DEFAULT_OUTPUTS.is_empty() {
+            return self.states().names;
+        }
         M::DEFAULT_OUTPUTS
     }
 
