@@ -14,6 +14,9 @@ use crate::ir::{self, capitalised};
 use crate::shape::Shape;
 use crate::wording::parameter_doc;
 
+/// A function of so many lines may repeat what a stage computes.
+const SHORT: usize = 60;
+
 /// A model with the bodies of its functions.
 pub(crate) struct Program<'a> {
     pub(crate) model: &'a ir::Model,
@@ -164,14 +167,15 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// The same for a language whose compiler leaves nothing out of what is called: a function that needs less than half of what its
-    /// stages compute takes none, and costs are those of all that is called.
+    /// The same for a language whose compiler leaves nothing out of what is called: a short function that needs less than half of what
+    /// its stages compute takes none, and costs are those of all that is called.
     pub(crate) fn called(mut self) -> Self {
         for position in 0..self.functions.len() {
             let mut cost = self.cost_of_call(&self.functions[position]);
             let function = &mut self.functions[position];
             let is_whole = function.parts.is_empty() && function.pieces.is_empty();
-            if is_whole && !function.is_part && 2 * function.cost.total() < cost.total() {
+            let is_short = length(&function.alone) <= SHORT && !function.is_part;
+            if is_whole && is_short && 2 * function.cost.total() < cost.total() {
                 function.body = std::mem::take(&mut function.alone);
                 function.stages.clear();
                 cost = function.body.cost();
