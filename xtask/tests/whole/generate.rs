@@ -139,7 +139,7 @@ fn bad_tables_have_exit_code_2_and_a_place() {
             "models of two families",
             "\"sdcom_gust\"]",
             "\"com\"]",
-            "models of one family",
+            "`com` is not a model of the family",
         ),
         (
             "models in another order",
