@@ -68,22 +68,30 @@ fn call(model: &str, text: &str) -> String {
         .split_once('<')
         .expect("functions are generic over the scalar");
     let argument = |declared: &str| match declared.split_once(": ").expect("name: Type").1 {
-        "&State<R>" => "&x",
-        "&Input<R>" => "&u",
-        "&Prepared<R>" => "&p",
-        "&Parameters<R>" => "&nominal",
-        "&Noise<R>" => "&unknown()",
-        "R" => "black_box(R::ONE)",
-        values if values.starts_with("&[R; ") => "&black_box([R::ONE; _])",
+        "&State<R>" => "&x".to_owned(),
+        "&Input<R>" => "&u".to_owned(),
+        "&Prepared<R>" => "&p".to_owned(),
+        "&Parameters<R>" => "&nominal".to_owned(),
+        "&Noise<R>" => "&unknown()".to_owned(),
+        "R" => "black_box(R::ONE)".to_owned(),
+        // What several functions share.
         other => {
-            panic!("{model}::{function} has an argument of type {other}: say here how it is called")
+            let stage = other
+                .strip_prefix('&')
+                .and_then(|it| it.strip_suffix("<R>"));
+            let stage = stage.unwrap_or_else(|| {
+                panic!(
+                    "{model}::{function} has an argument of type {other}: say here how it is called"
+                )
+            });
+            format!("&black_box({model}::{stage}::splat(R::ONE))")
         }
     };
     let declared = arguments
         .split(',')
         .map(str::trim)
         .filter(|declared| !declared.is_empty());
-    let given: Vec<&str> = declared.map(argument).collect();
+    let given: Vec<String> = declared.map(argument).collect();
     format!(
         "    black_box({model}::{function}::<R>({}));\n",
         given.join(", ")
