@@ -6,7 +6,7 @@ use ahv_codegen::ir::UnitSystem;
 use ahv_codegen::{Core, Pass, Target};
 
 use crate::failure::Failure;
-use crate::settings::Settings;
+use crate::settings::{Settings, package_name};
 
 const PACKAGE: &str = "ahv-models";
 const CORE_PATH: &str = "../crates/ahv-core";
@@ -180,16 +180,6 @@ impl Args {
             flag("--core-path", path);
         }
         command
-    }
-}
-
-/// A name that cargo takes for a package.
-pub(crate) fn package_name(name: &str) -> Result<String, String> {
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(plain) {
-        Ok(name.to_owned())
-    } else {
-        Err("a package name starts with a letter and holds letters, digits, - and _".to_owned())
     }
 }
 

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use toml_edit::{Document, Item, TableLike};
 
-use crate::args::package_name;
 use crate::failure::Failure;
 
 const FILE: &str = "Cargo.toml";
@@ -103,6 +102,16 @@ impl Settings {
             return Err("`core-path` and `core-workspace` exclude each other".to_owned());
         }
         Ok(settings)
+    }
+}
+
+/// A name that cargo takes for a package.
+pub(crate) fn package_name(name: &str) -> Result<String, String> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(plain) {
+        Ok(name.to_owned())
+    } else {
+        Err("a package name starts with a letter and holds letters, digits, - and _".to_owned())
     }
 }
 
