@@ -4,10 +4,9 @@ use toml_edit::Item;
 
 use crate::entries::{Entries, shown};
 use crate::fault::{is_printable, suggestion};
-use crate::reader::{GENERATE, Reader, SOURCES};
+use crate::reader::{GENERATE, HEADER, Reader, SI, SOURCES};
 use crate::{Checked, Family, Fault, Text, names};
 
-pub(crate) const HEADER: &str = "table";
 const KEYS: [&str; 8] = [
     "name",
     "family",
@@ -20,7 +19,6 @@ const KEYS: [&str; 8] = [
 ];
 
 pub(crate) const FOOT_SLUG: &str = "ft-slug-s-rad";
-pub(crate) const SI: &str = "si";
 
 /// Checks the table for the family of the models that it lists.
 pub(crate) fn check(text: &Text, families: &[Family]) -> Result<Checked, Vec<Fault>> {

@@ -5,10 +5,11 @@ use toml_edit::Item;
 
 use crate::entries::{Entries, shown};
 use crate::fault::{shortened, suggestion};
-use crate::header::{HEADER, SI};
 use crate::monomial::powers;
 use crate::{Checked, Family, Fault, Quantity, Set, unit};
 
+pub(crate) const HEADER: &str = "table";
+pub(crate) const SI: &str = "si";
 pub(crate) const SOURCES: &str = "sources";
 const CHOICES: &str = "choices";
 const VALIDITY: &str = "validity";
