@@ -12,6 +12,7 @@ mod instructions;
 mod names;
 mod no_panic;
 mod own_vehicle;
+mod packages;
 mod plot;
 mod python;
 mod shell;
@@ -56,6 +57,8 @@ enum Task {
     },
     /// Generate models of other tables than this repository's, and run an `ahv` of their own over each
     OwnVehicle,
+    /// Package the library crates as for a registry, and build each from its package
+    Package,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
     /// List the values of the generated code whose names only say whose part they are, each with the reason
@@ -93,6 +96,7 @@ fn main() -> ExitCode {
         Task::Determinism => determinism::run(),
         Task::C { all } => c::run(all),
         Task::OwnVehicle => own_vehicle::run(),
+        Task::Package => packages::run(true),
         Task::Vectors => vectors::run(),
         Task::Names => names::run(),
         Task::Bench { peers } => bench::run(peers),
