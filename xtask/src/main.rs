@@ -7,6 +7,7 @@ mod book;
 mod c;
 mod demo;
 mod determinism;
+mod examples;
 mod firmware;
 mod instructions;
 mod names;
@@ -17,6 +18,7 @@ mod python;
 mod shell;
 mod steps;
 mod trajectory;
+mod tutorial;
 mod vectors;
 
 use std::process::ExitCode;
@@ -56,6 +58,14 @@ enum Task {
     },
     /// Generate models of other tables than this repository's, and run an `ahv` of their own over each
     OwnVehicle,
+    /// Generate the packages that are checked in with the examples
+    Examples {
+        /// Write nothing, and fail where one is not what its tables give
+        #[arg(long)]
+        check: bool,
+    },
+    /// Run the commands of docs/tutorial.md, and compare what they print with what stands there
+    Tutorial,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
     /// List the values of the generated code whose names only say whose part they are, each with the reason
@@ -93,6 +103,8 @@ fn main() -> ExitCode {
         Task::Determinism => determinism::run(),
         Task::C { all } => c::run(all),
         Task::OwnVehicle => own_vehicle::run(),
+        Task::Examples { check } => examples::run(check),
+        Task::Tutorial => tutorial::run(),
         Task::Vectors => vectors::run(),
         Task::Names => names::run(),
         Task::Bench { peers } => bench::run(peers),

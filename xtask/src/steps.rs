@@ -4,7 +4,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::{
-    audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, python, shell,
+    audit, book, c, determinism, examples, firmware, instructions, no_panic, own_vehicle, python,
+    shell,
 };
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.
@@ -37,7 +38,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 23] = [
+const STEPS: [Step; 25] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK[..2], &[])
@@ -73,6 +74,9 @@ const STEPS: [Step; 23] = [
         module(&["pytest", "--quiet", "--numprocesses", "2"])
     }),
     ("generate --check", generate_check),
+    ("generate --check of examples", || {
+        examples::run(true).map(|()| Outcome::Passed)
+    }),
     ("cargo test", || {
         cargo(&["test", "--workspace"], &FEATURES, &[])
     }),
@@ -90,6 +94,7 @@ const STEPS: [Step; 23] = [
     ("own vehicle", || {
         own_vehicle::run().map(|()| Outcome::Passed)
     }),
+    ("tutorial", || tutorial::run().map(|()| Outcome::Passed)),
     ("no panic path", || {
         bare_metal(|| no_panic::run(BARE_METAL).map(|()| Outcome::Passed))
     }),

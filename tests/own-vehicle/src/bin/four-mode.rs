@@ -1,5 +1,5 @@
-//! An `ahv` over the decoupled model alone.
+//! An `ahv` over a table of four flexible modes: `dcom` alone.
 
 fn main() -> std::process::ExitCode {
-    ahv_cli::run::<dcom_alone::Models>(&[])
+    ahv_cli::run::<four_mode_models::Models>(&[])
 }
