@@ -1,50 +1,60 @@
 //! The examples whose generated packages are checked in: those with a `Cargo.toml`, which says what is read and written.
 
-use std::fs;
 use std::path::PathBuf;
+use std::{env, fs};
 
-use ahv_generate::{Args, Surroundings};
-use clap::Parser as _;
+use ahv_generate::{AGREES, Args, DIFFERS, FAILED, Failure, Surroundings};
 
 use crate::shell;
 
 const FOLDER: &str = "examples";
+/// With these the command line is about all that is checked in, and not about another folder or another form.
+const OF_ALL: [&str; 3] = ["--check", "--from-ir", "--derive"];
 
-/// The command line of `ahv generate`.
-#[derive(clap::Parser)]
-struct GenerateLine {
-    #[command(flatten)]
-    args: Args,
+/// Generates the models of this repository, or checks them, and then those of the examples; returns the exit code.
+pub(crate) fn generate(args: &Args) -> u8 {
+    match ahv_generate::run(args) {
+        AGREES if is_of_all() => each(args).unwrap_or_else(|problem| {
+            eprintln!("{problem}");
+            FAILED
+        }),
+        code => code,
+    }
 }
 
-/// Generates every such package, or only checks that it is what its tables give.
-pub(crate) fn run(check: bool) -> Result<(), String> {
+fn is_of_all() -> bool {
+    // The name of the program, and that of the command.
+    let mut flags = env::args().skip(2);
+    let at_root = env::current_dir().is_ok_and(|it| it == shell::root());
+    at_root && flags.all(|flag| OF_ALL.contains(&flag.as_str()))
+}
+
+fn each(args: &Args) -> Result<u8, String> {
+    let failed = |failure: Failure| failure.render();
     for folder in folders()? {
-        println!("{}", folder.display());
-        let surroundings = Surroundings::of_process().map_err(|it| it.to_string())?;
+        println!("{}:", folder.display());
         let surroundings = Surroundings {
             current_dir: folder,
-            ..surroundings
+            ..Surroundings::of_process().map_err(failed)?
         };
-        let line = ["generate"].into_iter().chain(check.then_some("--check"));
-        let args = GenerateLine::parse_from(line).args;
-        if check {
-            let checked = ahv_generate::check(&args, &surroundings).map_err(|it| it.to_string())?;
+        if args.check {
+            let checked = ahv_generate::check(args, &surroundings).map_err(failed)?;
+            print!("{}", checked.text());
             if !checked.agrees() {
-                return Err(checked.text());
+                return Ok(DIFFERS);
             }
         } else {
-            ahv_generate::generate(&args, &surroundings).map_err(|it| it.to_string())?;
+            let generated = ahv_generate::generate(args, &surroundings).map_err(failed)?;
+            print!("{}", generated.text());
         }
     }
-    Ok(())
+    Ok(AGREES)
 }
 
 fn folders() -> Result<Vec<PathBuf>, String> {
     let unreadable = |error| format!("error: cannot read {FOLDER}: {error}");
-    let entries = fs::read_dir(shell::root().join(FOLDER)).map_err(unreadable)?;
     let mut folders = Vec::new();
-    for entry in entries {
+    for entry in fs::read_dir(shell::root().join(FOLDER)).map_err(unreadable)? {
         let folder = entry.map_err(unreadable)?.path();
         if folder.join("Cargo.toml").is_file() {
             folders.push(folder);

@@ -58,12 +58,6 @@ enum Task {
     },
     /// Generate models of other tables than this repository's, and run an `ahv` of their own over each
     OwnVehicle,
-    /// Generate the packages that are checked in with the examples
-    Examples {
-        /// Write nothing, and fail where one is not what its tables give
-        #[arg(long)]
-        check: bool,
-    },
     /// Run the commands of docs/tutorial.md, and compare what they print with what stands there
     Tutorial,
     /// Draw and compute the reference vectors of the tests again
@@ -96,14 +90,13 @@ enum Task {
 
 fn main() -> ExitCode {
     let done = match Task::parse() {
-        Task::Generate(args) => return ahv_generate::run(&args).into(),
+        Task::Generate(args) => return examples::generate(&args).into(),
         Task::Setup => python::set_up(),
         Task::Test { all } => steps::run(all),
         Task::Audit { points, seeds } => audit::run(points, seeds),
         Task::Determinism => determinism::run(),
         Task::C { all } => c::run(all),
         Task::OwnVehicle => own_vehicle::run(),
-        Task::Examples { check } => examples::run(check),
         Task::Tutorial => tutorial::run(),
         Task::Vectors => vectors::run(),
         Task::Names => names::run(),

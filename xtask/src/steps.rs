@@ -4,8 +4,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::{
-    audit, book, c, determinism, examples, firmware, instructions, no_panic, own_vehicle, python,
-    shell,
+    audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, python, shell,
 };
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.
@@ -38,7 +37,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 25] = [
+const STEPS: [Step; 24] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK[..2], &[])
@@ -74,9 +73,6 @@ const STEPS: [Step; 25] = [
         module(&["pytest", "--quiet", "--numprocesses", "2"])
     }),
     ("generate --check", generate_check),
-    ("generate --check of examples", || {
-        examples::run(true).map(|()| Outcome::Passed)
-    }),
     ("cargo test", || {
         cargo(&["test", "--workspace"], &FEATURES, &[])
     }),
