@@ -7,6 +7,7 @@ mod book;
 mod c;
 mod demo;
 mod determinism;
+mod examples;
 mod firmware;
 mod instructions;
 mod names;
@@ -18,6 +19,7 @@ mod python;
 mod shell;
 mod steps;
 mod trajectory;
+mod tutorial;
 mod vectors;
 
 use std::process::ExitCode;
@@ -59,6 +61,8 @@ enum Task {
     OwnVehicle,
     /// Package the library crates as for a registry, and build each from its package
     Package,
+    /// Run the commands of docs/tutorial.md, and compare what they print with what stands there
+    Tutorial,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
     /// List the values of the generated code whose names only say whose part they are, each with the reason
@@ -89,7 +93,7 @@ enum Task {
 
 fn main() -> ExitCode {
     let done = match Task::parse() {
-        Task::Generate(args) => return ahv_generate::run(&args).into(),
+        Task::Generate(args) => return examples::generate(&args).into(),
         Task::Setup => python::set_up(),
         Task::Test { all } => steps::run(all),
         Task::Audit { points, seeds } => audit::run(points, seeds),
@@ -97,6 +101,7 @@ fn main() -> ExitCode {
         Task::C { all } => c::run(all),
         Task::OwnVehicle => own_vehicle::run(),
         Task::Package => packages::run(true),
+        Task::Tutorial => tutorial::run(),
         Task::Vectors => vectors::run(),
         Task::Names => names::run(),
         Task::Bench { peers } => bench::run(peers),

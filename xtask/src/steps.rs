@@ -38,7 +38,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 24] = [
+const STEPS: [Step; 25] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK[..2], &[])
@@ -94,6 +94,7 @@ const STEPS: [Step; 24] = [
     ("packages", || {
         packages::run(false).map(|()| Outcome::Passed)
     }),
+    ("tutorial", || tutorial::run().map(|()| Outcome::Passed)),
     ("no panic path", || {
         bare_metal(|| no_panic::run(BARE_METAL).map(|()| Outcome::Passed))
     }),
