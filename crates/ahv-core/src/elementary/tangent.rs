@@ -30,8 +30,8 @@ fn kernel(x: f64, low: f64) -> (Pair, Pair) {
     let square = Pair::product(x, x);
     let x_2 = square.high;
     let x_4 = x_2 * x_2;
-    let sin = (x * x_2) * cubic_pairs(&SIN, x_2, x_4) + low;
     let half = 0.5 * x_2;
+    let sin = (x * x_2) * cubic_pairs(&SIN, x_2, x_4) + (low - low * half);
     let main = Pair::ordered_sum(1.0, -half);
     let cos = main.low + (x_4 * cubic_pairs(&COS, x_2, x_4) - (x * low + 0.5 * square.low));
     (Pair::ordered_sum(x, sin), Pair::ordered_sum(main.high, cos))
