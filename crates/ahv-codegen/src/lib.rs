@@ -23,7 +23,6 @@ mod c;
 mod call;
 mod docs;
 mod emit;
-mod evaluate;
 mod graph;
 pub mod ir;
 mod manifest;

@@ -1,7 +1,6 @@
 //! The documentation of the generated package: Markdown with formulas, and pictures, from IR and table values.
 
 mod audit;
-mod differences;
 mod equations;
 mod functions;
 mod index;
@@ -10,7 +9,6 @@ mod lines;
 mod model_page;
 mod noise;
 mod passes_page;
-mod search;
 mod sparsity;
 mod subject;
 mod symbol;
