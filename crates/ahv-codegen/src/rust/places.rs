@@ -92,7 +92,11 @@ fn renamed(expr: &Expr, own: &BTreeMap<&str, &str>) -> Expr {
         Expr::Call(call, part) => Expr::Call(*call, boxed(part)),
         Expr::Sum(addends) => {
             let addends = addends.iter();
-            Expr::Sum(addends.map(|(sign, it)| (*sign, renamed(it, own))).collect())
+            Expr::Sum(
+                addends
+                    .map(|(sign, it)| (*sign, renamed(it, own)))
+                    .collect(),
+            )
         }
         Expr::Product(factors) => {
             let factors = factors.iter();
