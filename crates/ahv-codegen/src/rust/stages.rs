@@ -10,7 +10,7 @@ use crate::graph::Kind;
 use crate::schedule::Cost;
 use crate::schedule::given::Stage;
 use crate::schedule::pieces::sliced;
-use crate::schedule::program::Program;
+use crate::schedule::program::{Program, taken};
 use crate::schedule::stages;
 use crate::schedule::tree::{Body, Expr, Source, StageKind, Statement};
 use crate::template::render;
@@ -168,16 +168,15 @@ fn stage_text(
     };
     let parts = filling.iter().zip(statements).zip(1..);
     let parts = parts.map(|((part, statements), number)| {
-        let taken = items::taken(|source| part.uses(source), all).into_iter();
-        let taken: Vec<(String, String)> =
-            taken.filter(|(name, _)| name != kind.argument).collect();
+        let taken = items::named(&taken(|source| part.uses(source), all)).into_iter();
+        let taken: Vec<_> = taken.filter(|(name, _)| *name != kind.argument).collect();
         let name = format!("{}_part_{number}", kind.function);
         let types = taken.iter().map(|(name, of)| {
-            let of = if name == "p" { parameters } else { of };
+            let of = if *name == "p" { parameters } else { of };
             format!("{name}: &{of}<R>")
         });
         let own = format!("{}: &mut {}<R>", kind.argument, kind.type_name);
-        let names = taken.iter().map(|(name, _)| name.clone());
+        let names = taken.iter().map(|(name, _)| (*name).to_owned());
         let names: Vec<String> = [format!("&mut {}", kind.argument)]
             .into_iter()
             .chain(names)
