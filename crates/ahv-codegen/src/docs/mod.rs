@@ -28,6 +28,9 @@ use crate::ir::Model;
 use crate::schedule::effect::Effect;
 use crate::{EmitError, Tree};
 
+/// Under this name stands, beside the IRs of the tables, the audit of the printed equations.
+pub const AUDIT: &str = "audit";
+
 /// The texts of the templates, for the manifest.
 pub(crate) const TEMPLATES: [&str; 5] = [
     audit::TEMPLATE,
