@@ -22,6 +22,8 @@ const OWN_FAMILIES: [&str; 2] = ["pendulum", "tank"];
 const FAMILIES: &str = "generator/tests";
 /// The example that `ahv new` starts from; the program has its name.
 const NEW: &str = "winged-cone";
+/// The same in turbulence: the example's README joins a gust, and the program has this name.
+const GUSTY: &str = "gusty-cone";
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
 const GENERATE: &str = "ahv generate";
@@ -43,6 +45,11 @@ pub(crate) fn run() -> Result<(), String> {
     for family in OWN_FAMILIES {
         own_family(&place, family)?;
     }
+    gusty(&place)?;
+    // The tank's table leaves them out.
+    if place.join("made/tank-models/src/tank/hessian.rs").exists() {
+        return Err("error: second derivatives of the tank were emitted".to_owned());
+    }
     build(&place)?;
     for (program, models, questions) in [
         (
@@ -54,6 +61,7 @@ pub(crate) fn run() -> Result<(), String> {
         ("com-rigid-alone", &["com_rigid"], commands::COM_RIGID_ALONE),
         ("pendulum", &["pendulum"], commands::PENDULUM),
         ("tank", &["tank"], commands::TANK),
+        (GUSTY, &["winged_cone", "gusty_cone"], commands::GUSTY_CONE),
     ] {
         println!("{program}");
         let own = Own::new(program, &place.join("made"));
@@ -101,6 +109,21 @@ fn own_family(place: &Path, family: &str) -> Result<(), String> {
         let folder = place.join(format!("made/tables-of-{package}"));
         write(&folder.join(file), &text)?;
     }
+    generate(place, &package)
+}
+
+/// Makes the package of the example with the gust that its README joins.
+fn gusty(place: &Path) -> Result<(), String> {
+    let example = shell::root().join("examples").join(NEW);
+    let package = format!("{GUSTY}-models");
+    let folder = place.join(format!("made/tables-of-{package}"));
+    let table = tables::joined(
+        &read(&example.join("winged_cone.toml"))?,
+        &read(&example.join("README.md"))?,
+    )?;
+    write(&folder.join("winged_cone.toml"), &table)?;
+    let family = read(&example.join("winged_cone.py"))?;
+    write(&folder.join("winged_cone.py"), &family)?;
     generate(place, &package)
 }
 
