@@ -30,6 +30,8 @@ const PACKAGES: [(&str, &str); 5] = [
 const NEW: &str = "wang-stengel";
 /// The example whose package is checked in.
 const CHECKED_IN: &str = "winged-cone";
+/// It in turbulence: its example's README joins a gust, and the program has this name.
+const GUSTY: &str = "gusty-cone";
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
 const GENERATE: &str = "ahv generate";
@@ -44,6 +46,11 @@ pub(crate) fn run() -> Result<(), String> {
     let com = tables::com_rigid_alone(&com)?;
     write(&tables_of(&place, "com-rigid-alone").join("own.toml"), &com)?;
     generate(&place, "com-rigid-alone")?;
+    gusty(&place)?;
+    // The tank's table leaves them out.
+    if place.join("made/tank-models/src/tank/hessian.rs").exists() {
+        return Err("error: second derivatives of the tank were emitted".to_owned());
+    }
     build(&place)?;
     let answers = Answers::load()?;
     for (program, models, questions) in [
@@ -57,6 +64,7 @@ pub(crate) fn run() -> Result<(), String> {
         ("parker-canard", &["parker_canard"], commands::PARKER_CANARD),
         ("pendulum", &["pendulum"], commands::PENDULUM),
         ("tank", &["tank"], commands::TANK),
+        (GUSTY, &["winged_cone", "gusty_cone"], commands::GUSTY_CONE),
     ] {
         println!("{program}");
         let own = Own::new(program, &place.join("made"));
@@ -125,6 +133,21 @@ fn extension(path: &Path) -> Option<&str> {
 /// Where the tables of a package are.
 fn tables_of(place: &Path, package: &str) -> PathBuf {
     place.join(format!("made/tables-of-{package}"))
+}
+
+/// Makes the package of the example with the gust that its README joins.
+fn gusty(place: &Path) -> Result<(), String> {
+    let example = shell::root().join("examples").join(CHECKED_IN);
+    let package = format!("{GUSTY}-models");
+    let folder = tables_of(place, &package);
+    let table = tables::joined(
+        &read(&example.join("winged_cone.toml"))?,
+        &read(&example.join("README.md"))?,
+    )?;
+    write(&folder.join("winged_cone.toml"), &table)?;
+    let family = read(&example.join("winged_cone.py"))?;
+    write(&folder.join("winged_cone.py"), &family)?;
+    generate(place, &package)
 }
 
 /// What the documentation tells a stranger to do is what is done here.

@@ -27,6 +27,8 @@ pub struct Document {
     pub units: Units,
     /// What a user chooses by name.
     pub choices: Vec<Choice>,
+    /// What `[parts]` and `[joined]` say: section, name, key, and the text that stands there.
+    pub joins: Vec<[String; 4]>,
     /// Sets of parameters; the first is the table's own and replaces nothing.
     pub sets: Vec<ParameterSet>,
     /// Parameters and coefficients, in the order of the table.
