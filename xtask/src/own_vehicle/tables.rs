@@ -21,7 +21,9 @@ pub(super) fn com_rigid_alone(com: &str) -> Result<String, String> {
 /// A table with the parts that a page joins in its block of TOML: `models` of the header, entries of `[validity]`, and
 /// sections of their own.
 pub(super) fn joined(table: &str, page: &str) -> Result<String, String> {
-    let block = page.split_once("```toml\n").and_then(|(_, it)| it.split_once("```"));
+    let block = page
+        .split_once("```toml\n")
+        .and_then(|(_, it)| it.split_once("```"));
     let (block, _) = block.ok_or("error: the page has no block of TOML")?;
     let (mut table, block) = (read(table)?, read(block)?);
     for (name, item) in block.iter() {
