@@ -13,7 +13,7 @@ pub use table::{
 };
 
 /// The schema that this crate reads.
-pub const SCHEMA_VERSION: u64 = 3;
+pub const SCHEMA_VERSION: u64 = 4;
 
 /// The models of one table.
 #[derive(Debug, Deserialize)]
