@@ -51,6 +51,7 @@ pub(crate) fn run() -> Result<(), String> {
     if place.join("made/tank-models/src/tank/hessian.rs").exists() {
         return Err("error: second derivatives of the tank were emitted".to_owned());
     }
+    println!("building {PLACE}");
     build(&place)?;
     let answers = Answers::load()?;
     for (program, models, questions) in [
@@ -108,7 +109,7 @@ fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
 fn checked_in(answers: &Answers) -> Result<(), String> {
     let folder = shell::root().join("examples").join(CHECKED_IN);
     println!("examples/{CHECKED_IN}");
-    built(&folder, &["build", "--quiet", "--locked"])?;
+    build(&folder)?;
     let own = Own::new(CHECKED_IN, &shell::target().join("debug"));
     own.answers(commands::WINGED_CONE)?;
     answers.compare(CHECKED_IN, &own)
@@ -189,12 +190,11 @@ fn generate(place: &Path, package: &str) -> Result<(), String> {
     done.map(drop).map_err(|failure| failure.to_string())
 }
 
-/// Builds all programs, of the versions that the workspace is locked to.
-fn build(place: &Path) -> Result<(), String> {
-    let lock = place.join("Cargo.lock");
+/// Builds a workspace, of the versions that that of this repository is locked to.
+fn build(workspace: &Path) -> Result<(), String> {
+    let lock = workspace.join("Cargo.lock");
     fs::copy(shell::root().join("Cargo.lock"), &lock).map_err(problem("write", &lock))?;
-    println!("building {PLACE}");
-    built(place, &["build", "--quiet"])
+    built(workspace, &["build", "--quiet"])
 }
 
 /// Runs cargo in a workspace of its own; what it compiles must give no warning.
