@@ -14,7 +14,7 @@ from .model import Model
 from .schema import Choice, Rule, Variable
 from .table import Table, TableParameter
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 
 
 class _Line:

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use crate::EmitError;
 
 /// The schema that this crate reads.
-pub const SCHEMA_VERSION: u64 = 3;
+pub const SCHEMA_VERSION: u64 = 4;
 
 /// The models of one table.
 #[derive(Debug, Deserialize)]
