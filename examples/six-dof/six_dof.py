@@ -7,6 +7,8 @@ Position and attitude are relative to axes north, east, down that turn about the
 are fixed to the Earth. In a steady turn they turn with the vehicle: so a turn is a state of rest, and has poles.
 """
 
+from math import pi
+
 from ahv_generator.modelling import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -20,10 +22,11 @@ from ahv_generator.modelling import (
     Rule,
     Sought,
     Variable,
+    asin,
+    atan2,
     cos,
     exp,
     sin,
-    sqrt,
 )
 
 velocity = Variable("velocity", "V", "m/s", "airspeed")
@@ -217,10 +220,12 @@ def six_dof(model: Model) -> None:
         rotation = rotation_rates(model, moment)
         model.motion({**model_rates, **attitude, **rotation})
     with model.section("Outputs"):
-        level = sqrt(downward[1] ** 2 + downward[2] ** 2)
-        bank = model.define("bank", downward[1] / level, r"\phi", "1", "sine of the bank angle")
+        bank = model.define("bank", atan2(downward[1], downward[2]), r"\phi", "rad", "bank angle")
+        pitch = model.define("pitch", asin(-downward[0]), r"\theta", "rad", "pitch angle")
+        heading = model.define("heading", atan2(to_east[0], to_north[0]), r"\psi", "rad", "heading")
         load = model.define("load_factor", -force[2] / (model[m] * model[g]), "n_z", "1", "load factor")
-    model.outputs(bank, climb, load, mach, "dynamic_pressure", "lift", "drag", "side_force", "thrust", "norm_squared")
+    forces_and_norm = ("lift", "drag", "side_force", "thrust", "norm_squared")
+    model.outputs(bank, pitch, heading, climb, load, mach, "dynamic_pressure", *forces_and_norm)
     describe(model)
 
 
@@ -231,9 +236,9 @@ def describe(model: Model) -> None:
         given=[
             Given(velocity, 1500.0, above=0.0),
             Given(altitude, 25000.0),
-            Given("bank", 0.0, above=-1.0, below=1.0),
+            Given("bank", 0.0, above=-pi / 2, below=pi / 2),
             Given("climb_rate", 0.0),
-            Given(beta, 0.0, above=-1.5, below=1.5),
+            Given(beta, 0.0, above=-pi / 2, below=pi / 2),
         ],
         sought=[
             Sought(alpha, 0.05, 0.1),

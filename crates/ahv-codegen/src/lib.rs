@@ -7,11 +7,11 @@
 //! use std::fs::read_to_string;
 //! use ahv_codegen::{AUDIT, Options, Table, emit};
 //!
-//! let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-//! let table = Table::parse("com.toml", &read_to_string(format!("{root}/generator/tables/com.toml"))?)?;
+//! let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/example");
+//! let table = Table::parse("com.toml", &read_to_string(format!("{folder}/com.toml"))?)?;
 //! let ir = |name: &str| Ok::<_, std::io::Error>((
 //!     name.to_owned(),
-//!     read_to_string(format!("{root}/generated/ir/{name}.json"))?,
+//!     read_to_string(format!("{folder}/{name}.json"))?,
 //! ));
 //! let tree = emit(&[table], &[ir("com")?, ir(AUDIT)?].into(), &Options::default())?;
 //! assert!(tree["src/com/drift.rs"].contains("pub fn drift"));

@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use super::dense::Zeros;
-use super::print::{expression, section, statement, value_of};
+use super::dense::{EntriesText, Zeros};
+use super::places::placed;
+use super::print::{statement, value_of};
 use super::wording::{arguments, tuple, values_name};
 use crate::graph::Kind;
 use crate::ir::capitalised;
 use crate::schedule::given::Stage;
 use crate::schedule::pieces::Group;
 use crate::schedule::program::{Function, Program};
-use crate::schedule::tree::{Body, Source, StageKind, Statement};
+use crate::schedule::tree::{Body, Expr, Source, StageKind, Statement};
 use crate::shape::Shape;
 use crate::wording::{summary, wrapped};
 
@@ -46,8 +47,12 @@ pub(super) fn functions(program: &Program<'_>, function: &Function<'_>) -> Vec<F
         .map(|(group, body)| piece(program, function, group, body))
         .collect();
     let Some(from) = from(function) else {
-        let stages = stage_lines(program, &function.stages);
-        text.statements.splice(0..0, stages);
+        if let Some(value) = field_of_stage(program, function) {
+            text.outputs = vec![(String::new(), value)];
+        } else {
+            let stages = stage_lines(program, &function.stages);
+            text.statements.splice(0..0, stages);
+        }
         items.push(text);
         return items;
     };
@@ -99,14 +104,9 @@ fn piece(
     group: &Group,
     body: &Body,
 ) -> FunctionText {
-    let mut statements: Vec<String> = body.statements.iter().map(statement).collect();
-    if !statements.is_empty() {
-        statements.push(section(""));
-    }
-    for (entry, value) in group.entries.iter().zip(&body.results) {
-        let field = place(function, *entry);
-        statements.push(format!("{field} = {};", value_of(value)));
-    }
+    let places = group.entries.iter();
+    let places: Vec<_> = places.map(|it| Some(place(function, *it))).collect();
+    let statements = placed(body, &places).statements;
     let targets = targets(function, group).into_iter();
     let targets = targets.map(|(name, of)| format!("{name}: &mut {of}<R>"));
     let taken = taken(|source| body.uses(source), &program.stages).into_iter();
@@ -120,7 +120,7 @@ fn piece(
         )),
         arguments: targets.chain(taken).collect(),
         result: String::new(),
-        statements,
+        statements: statements.iter().map(statement).collect(),
         is_public: false,
         sets_result_off: false,
         zeros: Zeros::new(),
@@ -156,12 +156,11 @@ fn result_name(function: &Function<'_>, output: usize) -> String {
     }
 }
 
-/// An entry of a function as a field of the struct that it returns.
+/// An entry of a function in the struct that it returns.
 fn place(function: &Function<'_>, entry: usize) -> String {
     let (output, position) = function.locate(entry);
-    let name = function.shapes[output].entry_names().nth(position);
-    let name = name.unwrap_or_default();
-    format!("{}.{name}", result_name(function, output))
+    let entry = &function.shapes[output].output.entries[position];
+    format!("{}.{}", result_name(function, output), entry.at.join("."))
 }
 
 /// The argument that holds a stage.
@@ -171,18 +170,36 @@ pub(super) fn stage_argument(kind: &StageKind, is_used: bool) -> String {
 }
 
 /// The statements that compute stages.
-pub(super) fn stage_lines(program: &Program<'_>, positions: &[usize]) -> Vec<String> {
+fn stage_lines(program: &Program<'_>, positions: &[usize]) -> Vec<String> {
     let line = |&position: &usize| {
-        let stage = &program.stages[position];
-        let mut call = format!("{}(x, u, p", stage.kind.function);
-        for earlier in &program.stages[..position] {
-            if stage.uses(Source::Stage(earlier.kind)) {
-                call += &format!(", &{}", earlier.kind.argument);
-            }
-        }
-        format!("let {} = {call});", stage.kind.argument)
+        let argument = program.stages[position].kind.argument;
+        format!("let {argument} = {};", call_of_stage(program, position))
     };
     positions.iter().map(line).collect()
+}
+
+fn call_of_stage(program: &Program<'_>, position: usize) -> String {
+    let stage = &program.stages[position];
+    let mut call = format!("{}(x, u, p", stage.kind.function);
+    for earlier in &program.stages[..position] {
+        if stage.uses(Source::Stage(earlier.kind)) {
+            call += &format!(", &{}", earlier.kind.argument);
+        }
+    }
+    call + ")"
+}
+
+/// The value of a function that is a field of its only stage.
+fn field_of_stage(program: &Program<'_>, function: &Function<'_>) -> Option<String> {
+    let ([position], [], [Expr::Component(Source::Stage(_), field)]) = (
+        &*function.stages,
+        &*function.body.statements,
+        &*function.body.results,
+    ) else {
+        return None;
+    };
+    let is_scalar = function.shapes.iter().all(|shape| shape.axes.is_empty());
+    is_scalar.then(|| format!("{}.{field}", call_of_stage(program, *position)))
 }
 
 fn public_arguments(program: &Program<'_>, function: &Function<'_>) -> Vec<String> {
@@ -266,57 +283,30 @@ fn composed(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
 
 /// A function with a body or pieces, without what it takes from stages.
 fn own(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
-    let Function {
-        ir, shapes, body, ..
-    } = function;
-    let mut statements: Vec<String> = body.statements.iter().map(statement).collect();
-    let sets_result_off = !matches!(body.statements.last(), None | Some(Statement::Section(_)));
-    let mut zeros = Zeros::new();
-    let (mut outputs, mut results) = (Vec::new(), Vec::new());
-    let mut remaining = body.results.as_slice();
-    for (position, (output, shape)) in ir.outputs.iter().zip(shapes).enumerate() {
-        let (result, value) = match shape.entries().filter(|_| ir.compressed) {
-            Some(entries) if !function.pieces.is_empty() => {
-                let name = result_name(function, position);
-                statements.push(format!(
-                    "let mut {name} = {}::splat(R::ZERO);",
-                    entries.name
-                ));
-                (format!("{}<R>", entries.name), name)
-            }
-            entries => {
-                let (values, rest) = remaining.split_at(output.entries.len());
-                remaining = rest;
-                match entries {
-                    Some(entries) => {
-                        let fields = shape.entry_names().zip(values);
-                        let fields =
-                            fields.map(|(name, value)| format!("{name}: {}", expression(value)));
-                        let fields: Vec<String> = fields.collect();
-                        let literal = if fields.is_empty() {
-                            format!("{}::splat(R::ZERO)", entries.name)
-                        } else {
-                            format!("{} {{ {} }}", entries.name, fields.join(", "))
-                        };
-                        (format!("{}<R>", entries.name), literal)
-                    }
-                    None => {
-                        let value = match values {
-                            [value] if shape.axes.is_empty() => value_of(value),
-                            _ => shape.dense(values, &mut zeros),
-                        };
-                        (shape.result(), value)
-                    }
-                }
-            }
+    let Function { ir, shapes, .. } = function;
+    let mut statements = Vec::new();
+    let (mut results, mut places) = (Vec::new(), Vec::new());
+    for (position, shape) in shapes.iter().enumerate() {
+        let entries = shape.entries().filter(|_| ir.compressed);
+        let here = places.len()..places.len() + shape.output.entries.len();
+        let Some(EntriesText { name: of, .. }) = entries else {
+            places.extend(here.map(|_| None));
+            results.push(shape.result());
+            continue;
         };
-        results.push(result);
-        outputs.push((output.name.clone(), value));
+        let name = result_name(function, position);
+        let mutable = if here.is_empty() { "" } else { "mut " };
+        statements.push(format!("let {mutable}{name} = {of}::splat(R::ZERO);"));
+        places.extend(here.map(|entry| Some(place(function, entry))));
+        results.push(format!("{of}<R>"));
     }
-    if !function.pieces.is_empty() {
-        let pieces = function.pieces.iter();
-        statements
-            .extend(pieces.map(|(group, body)| call_of_piece(program, function, group, body)));
+    let body = placed(&function.body, &places);
+    statements.extend(body.statements.iter().map(statement));
+    let pieces = function.pieces.iter();
+    statements.extend(pieces.map(|(group, body)| call_of_piece(program, function, group, body)));
+    let mut zeros = Zeros::new();
+    let mut outputs = values(function, &body.results, &mut zeros);
+    if ir.compressed {
         let names: Vec<String> = outputs.into_iter().map(|(_, value)| value).collect();
         outputs = vec![(String::new(), tuple(&names))];
     }
@@ -324,7 +314,9 @@ fn own(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
     let by_stages = is_whole && !function.stages.is_empty();
     let used =
         |kind: Kind| (by_stages && kind != Kind::Noise) || function.uses(Source::Argument(kind));
-    let scalars = body.scalars().into_iter().map(|name| format!("{name}: R"));
+    let scalars = function.body.scalars().into_iter();
+    let scalars = scalars.map(|name| format!("{name}: R"));
+    let is_set_off = !matches!(body.statements.last(), None | Some(Statement::Section(_)));
     FunctionText {
         name: own_name(function),
         docs: documentation(function),
@@ -332,10 +324,34 @@ fn own(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
         result: tuple(&results),
         statements,
         is_public: true,
-        sets_result_off,
+        sets_result_off: is_set_off && !ir.compressed,
         zeros,
         outputs,
     }
+}
+
+/// The outputs of a function, each by name: a struct of entries, or the dense form of what has none.
+fn values(
+    function: &Function<'_>,
+    mut results: &[Expr],
+    zeros: &mut Zeros,
+) -> Vec<(String, String)> {
+    let mut outputs = Vec::new();
+    for (position, shape) in function.shapes.iter().enumerate() {
+        let output = &function.ir.outputs[position];
+        if function.ir.compressed && shape.entries().is_some() {
+            outputs.push((output.name.clone(), result_name(function, position)));
+            continue;
+        }
+        let (values, rest) = results.split_at(output.entries.len());
+        results = rest;
+        let value = match values {
+            [value] if shape.axes.is_empty() => value_of(value),
+            _ => shape.dense(values, zeros),
+        };
+        outputs.push((output.name.clone(), value));
+    }
+    outputs
 }
 
 /// The call of a piece. Stages are at hand by value, or as arguments by reference.

@@ -6,7 +6,10 @@ pub(crate) mod filters;
 pub(crate) mod format;
 pub(crate) mod home;
 mod items;
+mod layout;
+mod places;
 mod print;
+mod records;
 mod wording;
 
 use askama::Template;
@@ -15,15 +18,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::EmitError;
 use crate::ir::{self, Basis, Variable};
 use crate::schedule::Cost;
+use crate::graph::Kind;
 use crate::schedule::given::Stage;
+use crate::schedule::pieces::sliced;
 use crate::schedule::program::Program;
 use crate::schedule::stages;
-use crate::schedule::tree::{Source, StageKind, Statement};
+use crate::schedule::tree::{Body, Expr, Source, StageKind, Statement};
 use crate::template::render;
 use crate::wording::wrapped;
 use items::Item;
 use print::statement;
-use wording::{arguments, formula, vector_impl};
+use records::{Copied, Field};
+use wording::arguments;
+
+/// How what is said of a derivative begins; its name says it too.
+const DERIVATIVE: &str = "Derivative of ";
 
 #[derive(Template)]
 #[template(path = "model.rs")]
@@ -37,7 +46,7 @@ struct ModelTemplate<'a> {
     has_choices: bool,
     /// What the home of the table shares.
     shared: Vec<String>,
-    /// Vectors, each with its implementation.
+    /// Vectors, each with its definition.
     vectors: Vec<(Vector<'a>, String)>,
     /// States that decay by themselves, each with its rate as a field of `Prepared`.
     coloured: &'a [(String, String)],
@@ -112,16 +121,18 @@ struct Vector<'a> {
 
 #[derive(Template)]
 #[template(path = "stages.rs")]
-struct StagesTemplate<'a> {
+struct StagesTemplate {
     about: String,
     imports: Vec<&'static str>,
-    stages: Vec<StageText<'a>>,
+    stages: Vec<StageText>,
 }
 
-struct StageText<'a> {
+struct StageText {
     kind: &'static StageKind,
     docs: Vec<String>,
-    fields: Vec<(&'a str, Vec<String>)>,
+    record: String,
+    /// Its first value: nothing is filled in yet.
+    start: &'static str,
     arguments: String,
     /// Whether it is a part of every function that calls it.
     is_inline: bool,
@@ -197,8 +208,9 @@ fn module(program: &Program<'_>) -> Result<String, EmitError> {
     let vectors = vectors(model);
     let mut lists = Vec::new();
     for vector in &vectors {
-        let fields = vector.fields.iter().map(|v| (&v.name, &v.unit));
-        lists.push(vector_impl(vector.name, fields, &document.units)?);
+        let about = format!("{} of {}.", vector.doc, program.label());
+        let fields = vector.fields.iter().map(|it| (&*it.name, it.described(), &*it.unit));
+        lists.push(records::vector(&about, vector.name, fields, &document.units)?);
     }
     render(&ModelTemplate {
         model,
@@ -243,7 +255,7 @@ fn prepared(program: &Program<'_>) -> Result<String, EmitError> {
     let docs = docs.map(str::to_owned).into_iter();
     let text = StageText {
         docs: docs.chain([format!("{}.", cost.describe())]).collect(),
-        ..stage_text(stage, &[], "Parameters")
+        ..stage_text(stage, &[], "Parameters", program.document)
     };
     render(&StagesTemplate {
         about: format!(
@@ -258,7 +270,7 @@ fn prepared(program: &Program<'_>) -> Result<String, EmitError> {
 /// What functions share.
 fn stages(program: &Program<'_>) -> Result<String, EmitError> {
     let stages = program.stages.iter();
-    let stages = stages.map(|stage| stage_text(stage, &program.stages, "Prepared"));
+    let stages = stages.map(|stage| stage_text(stage, &program.stages, "Prepared", program.document));
     render(&StagesTemplate {
         about: format!(
             "What functions of {} share. Units are {}.",
@@ -270,26 +282,65 @@ fn stages(program: &Program<'_>) -> Result<String, EmitError> {
     })
 }
 
-/// A stage; `p` are values of this type.
-fn stage_text<'a>(stage: &'a Stage, all: &[Stage], parameters: &str) -> StageText<'a> {
-    let kind = stage.kind;
-    let values = stage.parts.iter().flat_map(|part| &part.statements);
-    let value = |name: &str| {
-        values.clone().find_map(|it| match it {
-            Statement::Set { field, value, .. } if field == name => Some(value),
-            _ => None,
-        })
+/// The statements that fill a stage, part by part, and the parameters that it takes over as they are.
+fn filling<'a>(stage: &'a Stage, document: &'a ir::Document) -> (Vec<Body>, Copied<'a>) {
+    let mut copied = Copied {
+        of: "Parameters",
+        groups: Vec::new(),
     };
-    let fields = stage.fields.iter().map(|field| {
-        let formula = || {
-            format!(
-                "`{}`.",
-                value(&field.name).map_or_else(String::new, formula)
-            )
-        };
-        let about = field.about.clone().unwrap_or_else(formula);
-        (&*field.name, wrapped(&about))
+    if *stage.kind != stages::PREPARED {
+        return (stage.parts.clone(), copied);
+    }
+    let (mut statements, mut heading) = (Vec::new(), None);
+    let mut section = None;
+    for statement in stage.parts.iter().flat_map(|part| &part.statements) {
+        match statement {
+            Statement::Set {
+                field,
+                value: Expr::Component(Source::Argument(Kind::Parameter), name),
+                ..
+            } if field == name => {
+                let parameter = document.parameters.iter().find(|it| it.name == *name);
+                let of = parameter.map(|it| &it.path.0);
+                match copied.groups.last_mut().filter(|_| of == section) {
+                    Some(group) => group.push(field),
+                    None => copied.groups.push(vec![field]),
+                }
+                section = of;
+            }
+            // A part that goes on with a section has its heading again.
+            Statement::Section(text) if heading == Some(text) => {}
+            Statement::Section(text) => {
+                heading = Some(text);
+                statements.push(statement.clone());
+            }
+            other => statements.push(other.clone()),
+        }
+    }
+    (sliced(statements), copied)
+}
+
+/// A stage; `p` are values of this type.
+fn stage_text(
+    stage: &Stage,
+    all: &[Stage],
+    parameters: &str,
+    document: &ir::Document,
+) -> StageText {
+    let kind = stage.kind;
+    let (filling, copied) = filling(stage, document);
+    let is_own = |name: &str| !copied.groups.iter().flatten().any(|it| *it == name);
+    let fields = stage.fields.iter().filter(|field| is_own(&field.name));
+    let fields = fields.map(|field| Field {
+        name: &field.name,
+        about: field.about.clone().filter(|it| !it.starts_with(DERIVATIVE)),
     });
+    let about = format!(
+        "{}. A field without a description is what its name says: its formula and unit stand in [`{}`].",
+        kind.doc, kind.function
+    );
+    let fields: Vec<Field<'_>> = fields.collect();
+    let record = records::record(&wrapped(&about), kind.type_name, &fields, &copied);
     let arguments = if parameters == "Parameters" {
         format!("p: &{parameters}<R>")
     } else {
@@ -299,8 +350,8 @@ fn stage_text<'a>(stage: &'a Stage, all: &[Stage], parameters: &str) -> StageTex
         arguments.extend(earlier.map(|kind| items::stage_argument(kind, true)));
         arguments.join(", ")
     };
-    let is_whole = stage.parts.len() == 1;
-    let mut statements = stage.parts.iter();
+    let is_whole = filling.len() == 1;
+    let mut statements = filling.iter();
     let mut statements: Vec<Vec<String>> = statements
         .by_ref()
         .map(|part| part.statements.iter().map(statement).collect())
@@ -310,7 +361,7 @@ fn stage_text<'a>(stage: &'a Stage, all: &[Stage], parameters: &str) -> StageTex
     } else {
         Vec::new()
     };
-    let parts = stage.parts.iter().zip(statements).zip(1..);
+    let parts = filling.iter().zip(statements).zip(1..);
     let parts = parts.map(|((part, statements), number)| {
         let taken = items::taken(|source| part.uses(source), all).into_iter();
         let taken: Vec<(String, String)> =
@@ -340,7 +391,12 @@ fn stage_text<'a>(stage: &'a Stage, all: &[Stage], parameters: &str) -> StageTex
     StageText {
         kind,
         docs: vec![format!("Computes [`{}`].", kind.type_name)],
-        fields: fields.collect(),
+        record,
+        start: if copied.groups.is_empty() {
+            "splat(R::ZERO)"
+        } else {
+            "copied(p)"
+        },
         arguments,
         is_inline: *kind != stages::PREPARED,
         parts: if is_whole {
