@@ -6,17 +6,30 @@ numbers as well, so that `along` differentiates by a complex step, without cance
 """
 
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigvals
 from scipy.optimize import root
 
 Vector = NDArray[Any]
 Numbers = Mapping[str, float]
 CONTROLS = ("throttle", "delta_e", "delta_a", "delta_r")
+STATES = (
+    *("velocity", "alpha", "beta", "roll_rate", "pitch_rate", "yaw_rate"),
+    *("q_0", "q_1", "q_2", "q_3", "north", "east", "altitude"),
+)
+"""The states of the family, in the order of `converted`."""
+
+BANKS = (0, 30, -50)
+"""Bank angles of the trims, in deg."""
+
+END, STEP = 1.0, 0.001
+"""Duration and step of a flight, in s."""
 
 
 def table_numbers(table: Path) -> dict[str, dict[str, float]]:
@@ -109,7 +122,7 @@ class Textbook:
             velocity = speed * np.array([np.cos(alpha), 0, np.sin(alpha)])
             # Like the family's trim it flies north.
             along = to_body(bank, pitch, 0.0).T @ velocity
-            yaw = -np.arctan2(along[1], along[0])
+            yaw = -np.arctan(along[1] / along[0])
             state = np.concatenate([velocity, rates, [bank, pitch, yaw, 0, 0, altitude]])
             return state, dict(zip(CONTROLS, unknowns[3:], strict=True))
 
@@ -119,8 +132,24 @@ class Textbook:
 
         guess = [0.06, 0.06, 9.8 * np.tan(bank) / speed, 0.3, 0.0, 0.0, 0.0]
         found = root(residual, guess, tol=1e-13)
-        assert np.max(np.abs(residual(found.x))) < 1e-9, found.message
-        return (*point(found.x), float(found.x[2]))
+        if not np.max(np.abs(residual(found.x))) < 1e-9:
+            raise ValueError(f"no trim: {found.message}")
+        unknowns = found.x
+        for _ in range(3):
+            unknowns = unknowns - np.linalg.solve(slopes(residual, unknowns), residual(unknowns))
+        return (*point(unknowns), float(unknowns[2]))
+
+    def poles(self, x: Vector, controls: Numbers, turn: float) -> list[complex]:
+        """The eigenvalues about a trim, in axes that turn with it."""
+
+        def short(y: Vector) -> Vector:
+            """Without heading and position, on which nothing depends."""
+            whole = np.concatenate([y[:8], [x[8], 0.0, 0.0], y[8:]])
+            return self.drift(whole, controls)[[*range(8), 11]]
+
+        found = eigvals(slopes(short, np.concatenate([x[:8], x[11:]])))
+        # The norm of a quaternion returns at 2 k; the heading rests; the position turns with the axes.
+        return [*map(complex, found), complex(-2 * self.table["kinematics"]["k_norm"]), 0j, 1j * turn, -1j * turn]
 
 
 def converted(x: Vector) -> Vector:
@@ -140,3 +169,27 @@ def along(function: Callable[[Vector], Vector], x: Vector, direction: Vector) ->
 def slopes(function: Callable[[Vector], Vector], x: Vector) -> Vector:
     """The Jacobian, by complex steps."""
     return np.column_stack([along(function, x, unit) for unit in np.eye(len(x))])
+
+
+def questions(table: Path) -> Iterator[tuple[str, dict[str, object]]]:
+    """What a program over the family must answer: arguments, and values by JSON pointer."""
+    textbook = Textbook(table)
+    for bank in BANKS:
+        x, controls, turn = textbook.trim(1500.0, 25000.0, np.radians(bank))
+        state = dict(zip(STATES, map(float, converted(x)), strict=True))
+        inputs = {name: float(value) for name, value in controls.items()} | {"turn_rate": turn}
+        answers: dict[str, object] = {f"/state/{name}": value for name, value in state.items()}
+        answers |= {f"/input/{name}": value for name, value in inputs.items()}
+        answers |= {"/outputs/bank": float(x[6]), "/outputs/pitch": float(x[7]), "/outputs/heading": float(x[8])}
+        yield f"trim --bank {bank}", answers
+        yield f"poles --bank {bank}", {"/poles": [[p.real, p.imag] for p in textbook.poles(x, controls, turn)]}
+    # Off the last trim, over an Earth that does not turn.
+    state |= {"alpha": state["alpha"] + 0.01, "beta": 0.01, "roll_rate": 0.05}
+    speed, alpha, beta = state["velocity"], state["alpha"], state["beta"]
+    velocity = [np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta)]
+    start = np.concatenate([speed * np.array(velocity), [0.05], x[4:]])
+    accuracy = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-13}
+    end = converted(solve_ivp(lambda _, x: textbook.drift(x, controls), (0.0, END), start, **accuracy).y[:, -1])
+    arguments = f"simulate --bank {BANKS[-1]} --input turn_rate=0rad/s --t-end {END} --dt {STEP} --out flight.csv"
+    arguments += f" --initial alpha={alpha!r}rad,beta={beta!r}rad,roll_rate=0.05rad/s"
+    yield arguments, {f"/final_state/{name}": float(value) for name, value in zip(STATES, end, strict=True)}

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 from ahv_generator.reference import columns, expanded, labels
 from ahv_generator.table import load
-from ahv_oracle.six_dof import CONTROLS, Numbers, Textbook, Vector, along, converted, slopes, table_numbers
+from ahv_oracle.six_dof import CONTROLS, Numbers, Textbook, Vector, along, converted, table_numbers
 
 TABLE = Path(__file__).parents[2] / "examples" / "six-dof" / "six_dof.toml"
 
@@ -102,17 +102,8 @@ def test_a_turn_is_a_state_of_rest_with_the_poles_of_the_textbook(generated: Gen
     assert rates.pop("north") == pytest.approx(1500.0, rel=1e-12)
     assert max(map(abs, rates.values())) < 1e-9, rates
 
-    def short(y: Vector) -> Vector:
-        """Without heading and position, on which nothing depends."""
-        whole = np.concatenate([y[:8], [x[8], 0.0, 0.0], y[8:]])
-        return textbook.drift(whole, controls)[[*range(8), 11]]
-
-    expected = list(np.linalg.eigvals(slopes(short, np.concatenate([x[:8], x[11:]]))))
-    # The norm returns at 2 k; the heading rests; the position turns with the axes.
-    k_norm = generated.parameters["k_norm"]
-    expected += [-2 * k_norm, 0.0, 1j * turn, -1j * turn]
     found = list(np.linalg.eigvals(generated.slopes(converted(x), inputs)))
-    for pole in expected:
+    for pole in textbook.poles(x, controls, turn):
         nearest = min(found, key=lambda other: abs(other - pole))
         # Heading and position in straight flight are one pole of order two: rounding moves it by its root.
         assert abs(nearest - pole) < (1e-5 if abs(pole) < 1e-9 else 1e-8), (pole, nearest)

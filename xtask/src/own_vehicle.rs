@@ -28,8 +28,11 @@ const PACKAGES: [(&str, &str); 5] = [
 ];
 /// The example of which `ahv new` makes a repository; the program has its name.
 const NEW: &str = "wang-stengel";
-/// The example whose package is checked in.
-const CHECKED_IN: &str = "winged-cone";
+/// The examples whose packages are checked in.
+const CHECKED_IN: [(&str, &[commands::Question]); 2] = [
+    ("six-dof", commands::SIX_DOF),
+    ("winged-cone", commands::WINGED_CONE),
+];
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
 const GENERATE: &str = "ahv generate";
@@ -73,7 +76,9 @@ pub(crate) fn run() -> Result<(), String> {
     let message = "--state-deviation: tank names no deviation that costs 1";
     Own::new("tank", &place.join("made")).refuses("lqr --model tank", message)?;
     new_repository(&place, &answers)?;
-    checked_in(&answers)?;
+    for (example, questions) in CHECKED_IN {
+        checked_in(example, questions, &answers)?;
+    }
     documented(&place)
 }
 
@@ -96,14 +101,18 @@ fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
     own.does("generate --check")
 }
 
-/// The example that is checked in with its package builds as it is, and answers as published.
-fn checked_in(answers: &Answers) -> Result<(), String> {
-    let folder = shell::root().join("examples").join(CHECKED_IN);
-    println!("examples/{CHECKED_IN}");
+/// An example that is checked in with its package builds as it is, and answers as published.
+fn checked_in(
+    example: &str,
+    questions: &[commands::Question],
+    answers: &Answers,
+) -> Result<(), String> {
+    let folder = shell::root().join("examples").join(example);
+    println!("examples/{example}");
     built(&folder, &["build", "--quiet", "--locked"])?;
-    let own = Own::new(CHECKED_IN, &shell::target().join("debug"));
-    own.answers(commands::WINGED_CONE)?;
-    answers.compare(CHECKED_IN, &own)
+    let own = Own::new(example, &shell::target().join("debug"));
+    own.answers(questions)?;
+    answers.compare(example, &own)
 }
 
 /// Makes the package of the tables and families in a folder.

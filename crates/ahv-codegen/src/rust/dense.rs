@@ -3,8 +3,8 @@
 use crate::schedule::tree::Expr;
 use crate::shape::{Shape, words};
 
-use super::records;
 use super::print::{expression, literal};
+use super::records;
 
 /// Zeros that a result needs, by name, each with the vector type that it is a splat of and its component.
 pub(crate) type Zeros = Vec<(String, &'static str, String)>;

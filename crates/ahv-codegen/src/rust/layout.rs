@@ -30,11 +30,18 @@ fn is_item(code: &str) -> bool {
     let is_path = |text: &str| {
         let parts = text.split("::");
         let is_name = |c: char| c.is_alphanumeric() || c == '_';
-        parts.fold(!text.is_empty(), |all, part| all && !part.is_empty() && part.chars().all(is_name))
+        parts.fold(!text.is_empty(), |all, part| {
+            all && !part.is_empty() && part.chars().all(is_name)
+        })
     };
-    let of_field = |text: &str| text.split_once(": ").is_some_and(|(a, b)| is_path(a) && is_path(b));
+    let of_field = |text: &str| {
+        text.split_once(": ")
+            .is_some_and(|(a, b)| is_path(a) && is_path(b))
+    };
     code.strip_suffix('(').is_some_and(is_path)
-        || code.strip_suffix(" {").is_some_and(|text| text == "Self" || of_field(text))
+        || code
+            .strip_suffix(" {")
+            .is_some_and(|text| text == "Self" || of_field(text))
 }
 
 /// The number of the first lines that may be joined, as the formatter broke them.
@@ -61,7 +68,11 @@ pub(super) fn length(lines: &[&str]) -> usize {
             line.len() > indent && line[indent..].starts_with([')', '}']) && line.trim().len() < 3
         });
         end.map_or(1, |end| end + 1)
-    } else if code.ends_with(')') && lines.get(1).is_some_and(|line| line.trim().starts_with('.')) {
+    } else if code.ends_with(')')
+        && lines
+            .get(1)
+            .is_some_and(|line| line.trim().starts_with('.'))
+    {
         2
     } else {
         1
@@ -73,7 +84,11 @@ pub(super) fn laid_out(lines: &[&str], comment: &str) -> Option<String> {
     let first = lines.first()?;
     let indent = &first[..first.len() - first.trim_start().len()];
     let code = joined(lines);
-    let most = if comment.is_empty() { WIDTH } else { WIDTH_BEFORE_UNIT };
+    let most = if comment.is_empty() {
+        WIDTH
+    } else {
+        WIDTH_BEFORE_UNIT
+    };
     let text = if let Some((start, addends)) = code.split_once(ADDENDS) {
         sum(indent, start, addends, most)
     } else if width(indent) + width(&code) <= most {

@@ -16,9 +16,9 @@ use askama::Template;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::EmitError;
+use crate::graph::Kind;
 use crate::ir::{self, Basis, Variable};
 use crate::schedule::Cost;
-use crate::graph::Kind;
 use crate::schedule::given::Stage;
 use crate::schedule::pieces::sliced;
 use crate::schedule::program::Program;
@@ -209,8 +209,16 @@ fn module(program: &Program<'_>) -> Result<String, EmitError> {
     let mut lists = Vec::new();
     for vector in &vectors {
         let about = format!("{} of {}.", vector.doc, program.label());
-        let fields = vector.fields.iter().map(|it| (&*it.name, it.described(), &*it.unit));
-        lists.push(records::vector(&about, vector.name, fields, &document.units)?);
+        let fields = vector
+            .fields
+            .iter()
+            .map(|it| (&*it.name, it.described(), &*it.unit));
+        lists.push(records::vector(
+            &about,
+            vector.name,
+            fields,
+            &document.units,
+        )?);
     }
     render(&ModelTemplate {
         model,
@@ -270,7 +278,8 @@ fn prepared(program: &Program<'_>) -> Result<String, EmitError> {
 /// What functions share.
 fn stages(program: &Program<'_>) -> Result<String, EmitError> {
     let stages = program.stages.iter();
-    let stages = stages.map(|stage| stage_text(stage, &program.stages, "Prepared", program.document));
+    let stages =
+        stages.map(|stage| stage_text(stage, &program.stages, "Prepared", program.document));
     render(&StagesTemplate {
         about: format!(
             "What functions of {} share. Units are {}.",

@@ -89,10 +89,16 @@ fn renamed(expr: &Expr, own: &BTreeMap<&str, &str>) -> Expr {
         ),
         Expr::Negative(part) => Expr::Negative(boxed(part)),
         Expr::Reciprocal(part) => Expr::Reciprocal(boxed(part)),
-        Expr::Call(call, part) => Expr::Call(*call, boxed(part)),
+        Expr::Call(call, parts) => {
+            Expr::Call(*call, parts.iter().map(|it| renamed(it, own)).collect())
+        }
         Expr::Sum(addends) => {
             let addends = addends.iter();
-            Expr::Sum(addends.map(|(sign, it)| (*sign, renamed(it, own))).collect())
+            Expr::Sum(
+                addends
+                    .map(|(sign, it)| (*sign, renamed(it, own)))
+                    .collect(),
+            )
         }
         Expr::Product(factors) => {
             let factors = factors.iter();

@@ -71,7 +71,10 @@ pub(super) fn entries(about: &str, head: &str, entries: &[&[String]]) -> String 
     lines.push(format!("    {head} {{"));
     for (row, others) in rows(entries) {
         let items = items(&others);
-        let one = format!("        {row} {{ {} }}", items.join(" ").trim_end_matches(','));
+        let one = format!(
+            "        {row} {{ {} }}",
+            items.join(" ").trim_end_matches(',')
+        );
         if one.chars().count() <= WIDTH {
             lines.push(one);
         } else {
