@@ -3,9 +3,9 @@
 ``python -m ahv_oracle flights --table T --out F`` writes SciPy's flights, ``python -m ahv_oracle riccati --out F`` its
 solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`` its trims, poles and zeros,
 ``python -m ahv_oracle elementary --out F`` values of sine, cosine and exponential, ``transcendental`` those of tangent,
-logarithm, powers and inverses, ``python -m ahv_oracle normals --out F`` keyed normal numbers, ``python -m ahv_oracle
-zeros --tables D --out F`` SLICOT's invariant zeros (see there), ``python -m ahv_oracle answers --tables ../examples
---out F`` what the programs of the examples must answer.
+logarithm, powers and inverses, ``python -m ahv_oracle normals --out F`` keyed normal numbers,
+``python -m ahv_oracle zeros --tables D --out F`` SLICOT's invariant zeros (see there),
+``python -m ahv_oracle answers --tables ../examples --out F`` what the programs of the examples must answer.
 ``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
 """
 

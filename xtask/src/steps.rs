@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::{
     audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, packages, python,
-    shell,
+    shell, tutorial,
 };
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.

@@ -89,8 +89,9 @@ fn renamed(expr: &Expr, own: &BTreeMap<&str, &str>) -> Expr {
         ),
         Expr::Negative(part) => Expr::Negative(boxed(part)),
         Expr::Reciprocal(part) => Expr::Reciprocal(boxed(part)),
-        Expr::Call(call, parts) => {
-            Expr::Call(*call, parts.iter().map(|it| renamed(it, own)).collect())
+        Expr::Call(call, arguments) => {
+            let arguments = arguments.iter();
+            Expr::Call(*call, arguments.map(|it| renamed(it, own)).collect())
         }
         Expr::Sum(addends) => {
             let addends = addends.iter();

@@ -8,11 +8,7 @@ use ahv_core::Real;
 /// [`drift`] where its stages are computed already.
 #[inline(always)]
 pub fn drift_from<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> State<R> {
     // Motion, (4)
     let gamma_rate = (i.lift + s.thrust_sin_alpha) * p.inv_m * i.inv_velocity

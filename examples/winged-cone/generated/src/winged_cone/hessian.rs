@@ -2,72 +2,36 @@
 
 //! Functions of WINGED_CONE. Units are foot, slug, second and radian.
 
-use super::{
-    Hessian, Input, Intermediates, Prepared, Slopes, State, intermediates, slopes,
-};
-
+use super::{Hessian, Input, Intermediates, Prepared, Slopes, State, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Hessian`].
-    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
-        velocity_by_velocity_velocity: velocity.velocity.velocity,
-        velocity_by_altitude_velocity: velocity.altitude.velocity,
-        velocity_by_altitude_altitude: velocity.altitude.altitude,
-        velocity_by_gamma_altitude: velocity.gamma.altitude,
-        velocity_by_gamma_gamma: velocity.gamma.gamma,
-        velocity_by_alpha_velocity: velocity.alpha.velocity,
-        velocity_by_alpha_altitude: velocity.alpha.altitude,
-        velocity_by_alpha_alpha: velocity.alpha.alpha,
-        velocity_by_beta_velocity: velocity.beta.velocity,
-        velocity_by_beta_altitude: velocity.beta.altitude,
-        velocity_by_beta_alpha: velocity.beta.alpha,
-        altitude_by_gamma_velocity: altitude.gamma.velocity,
-        altitude_by_gamma_gamma: altitude.gamma.gamma,
-        gamma_by_velocity_velocity: gamma.velocity.velocity,
-        gamma_by_altitude_velocity: gamma.altitude.velocity,
-        gamma_by_altitude_altitude: gamma.altitude.altitude,
-        gamma_by_gamma_velocity: gamma.gamma.velocity,
-        gamma_by_gamma_altitude: gamma.gamma.altitude,
-        gamma_by_gamma_gamma: gamma.gamma.gamma,
-        gamma_by_alpha_velocity: gamma.alpha.velocity,
-        gamma_by_alpha_altitude: gamma.alpha.altitude,
-        gamma_by_alpha_alpha: gamma.alpha.alpha,
-        gamma_by_beta_velocity: gamma.beta.velocity,
-        gamma_by_beta_altitude: gamma.beta.altitude,
-        gamma_by_beta_alpha: gamma.beta.alpha,
-        alpha_by_velocity_velocity: alpha.velocity.velocity,
-        alpha_by_altitude_velocity: alpha.altitude.velocity,
-        alpha_by_altitude_altitude: alpha.altitude.altitude,
-        alpha_by_gamma_velocity: alpha.gamma.velocity,
-        alpha_by_gamma_altitude: alpha.gamma.altitude,
-        alpha_by_gamma_gamma: alpha.gamma.gamma,
-        alpha_by_alpha_velocity: alpha.alpha.velocity,
-        alpha_by_alpha_altitude: alpha.alpha.altitude,
-        alpha_by_alpha_alpha: alpha.alpha.alpha,
-        alpha_by_beta_velocity: alpha.beta.velocity,
-        alpha_by_beta_altitude: alpha.beta.altitude,
-        alpha_by_beta_alpha: alpha.beta.alpha,
-        pitch_rate_by_velocity_velocity: pitch_rate.velocity.velocity,
-        pitch_rate_by_altitude_velocity: pitch_rate.altitude.velocity,
-        pitch_rate_by_altitude_altitude: pitch_rate.altitude.altitude,
-        pitch_rate_by_alpha_velocity: pitch_rate.alpha.velocity,
-        pitch_rate_by_alpha_altitude: pitch_rate.alpha.altitude,
-        pitch_rate_by_alpha_alpha: pitch_rate.alpha.alpha,
-        pitch_rate_by_pitch_rate_velocity: pitch_rate.pitch_rate.velocity,
-        pitch_rate_by_pitch_rate_altitude: pitch_rate.pitch_rate.altitude,
-        pitch_rate_by_pitch_rate_alpha: pitch_rate.pitch_rate.alpha,
+    pub struct HessianEntries in hessian_entries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        velocity {
+            velocity { velocity } altitude { velocity, altitude } gamma { altitude, gamma }
+            alpha { velocity, altitude, alpha } beta { velocity, altitude, alpha }
+        }
+        altitude { gamma { velocity, gamma } }
+        gamma {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha } beta { velocity, altitude, alpha }
+        }
+        alpha {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha } beta { velocity, altitude, alpha }
+        }
+        pitch_rate {
+            velocity { velocity } altitude { velocity, altitude } alpha { velocity, altitude, alpha }
+            pitch_rate { velocity, altitude, alpha }
+        }
     }
 }
 
 /// Entries of [`hessian_values`]: derivatives by velocity, altitude.
 #[inline(always)]
 fn hessian_by_velocity_altitude<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to velocity
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^2
@@ -75,27 +39,23 @@ fn hessian_by_velocity_altitude<R: Real>(
 
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^2
+    let d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^2
     let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
-    let d2_thrust_d_velocity_d_altitude = i.c_t
-        * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
+    let d2_thrust_d_velocity_d_altitude = i.c_t * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
     let d2_gravity_d_altitude_d_altitude = R::from_f64(6.0) * i.gravity * i.inv_radius_2; // 1/s^2/ft
     let d2_density_d_altitude_d_altitude = i.density * p.inv_h_s_2; // slug/ft^5
     let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^2
+    let d2_reference_force_d_altitude_d_altitude = p.s * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^2
     let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
-    let d2_thrust_d_altitude_d_altitude = i.c_t
-        * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
+    let d2_thrust_d_altitude_d_altitude = i.c_t * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
 
     // Derivatives with respect to velocity
     let d2_lift_d_velocity_d_velocity = i.c_l * p.s * i.density; // lb*s^2/ft^2
     let d_slope_of_gamma_rate_in_thrust_d_velocity = -s.slope_of_gamma_rate_in_thrust
         * i.inv_velocity; // rad/lb/ft
     let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
-    let d2_gamma_rate_d_velocity_d_velocity = s.slope_of_gamma_rate_in_thrust
+    hessian.gamma.velocity.velocity = s.slope_of_gamma_rate_in_thrust
         * (d2_thrust_d_velocity_d_velocity - i.inv_velocity * s.d_thrust_d_velocity)
         + p.inv_m
             * (d2_lift_d_velocity_d_velocity * i.inv_velocity
@@ -107,7 +67,7 @@ fn hessian_by_velocity_altitude<R: Real>(
 
     // Derivatives with respect to altitude
     let d2_lift_d_velocity_d_altitude = i.c_l * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
-    let d2_gamma_rate_d_velocity_d_altitude =
+    hessian.gamma.altitude.velocity =
         s.slope_of_gamma_rate_in_thrust * (d2_thrust_d_velocity_d_altitude - i.inv_velocity * s.d_thrust_d_altitude)
         + p.inv_m * (d2_lift_d_velocity_d_altitude * i.inv_velocity - s.inv_velocity_2 * s.d_lift_d_altitude)
         + i.cos_gamma * (s.inv_velocity_2 * s.d_gravity_d_altitude - i.inv_radius_2); // rad/ft^2
@@ -115,7 +75,8 @@ fn hessian_by_velocity_altitude<R: Real>(
     let d_slope_of_gamma_rate_in_radius_d_altitude = R::TWO * i.cos_gamma * x.velocity
         * inv_radius_3; // rad/s/ft^2
     let d2_lift_d_altitude_d_altitude = i.c_l * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
-    let d2_gamma_rate_d_altitude_d_altitude = s.slope_of_gamma_rate_in_gravity * d2_gravity_d_altitude_d_altitude
+    hessian.gamma.altitude.altitude =
+        s.slope_of_gamma_rate_in_gravity * d2_gravity_d_altitude_d_altitude
         + s.slope_of_gamma_rate_in_thrust * d2_thrust_d_altitude_d_altitude
         + d_slope_of_gamma_rate_in_radius_d_altitude
         + d2_lift_d_altitude_d_altitude * p.inv_m * i.inv_velocity; // rad/s/ft^2
@@ -136,37 +97,25 @@ fn hessian_by_velocity_altitude<R: Real>(
     let d2_pitching_moment_d_altitude_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_altitude_d_altitude; // lb/ft
 
-    hessian.velocity_by_velocity_velocity = p.inv_m
-        * (i.cos_alpha * d2_thrust_d_velocity_d_velocity
-            - d2_drag_d_velocity_d_velocity);
-    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
-    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
-    hessian.pitch_rate_by_velocity_velocity = d2_pitching_moment_d_velocity_d_velocity
-        * p.inv_i_yy;
-    hessian.velocity_by_altitude_velocity = p.inv_m
-        * (i.cos_alpha * d2_thrust_d_velocity_d_altitude
-            - d2_drag_d_velocity_d_altitude);
-    hessian.velocity_by_altitude_altitude = p.inv_m
-        * (i.cos_alpha * d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude)
-        - i.sin_gamma * d2_gravity_d_altitude_d_altitude;
-    hessian.gamma_by_altitude_velocity = d2_gamma_rate_d_velocity_d_altitude;
-    hessian.gamma_by_altitude_altitude = d2_gamma_rate_d_altitude_d_altitude;
-    hessian.alpha_by_altitude_velocity = -d2_gamma_rate_d_velocity_d_altitude;
-    hessian.alpha_by_altitude_altitude = -d2_gamma_rate_d_altitude_d_altitude;
-    hessian.pitch_rate_by_altitude_velocity = d2_pitching_moment_d_velocity_d_altitude
-        * p.inv_i_yy;
-    hessian.pitch_rate_by_altitude_altitude = d2_pitching_moment_d_altitude_d_altitude
-        * p.inv_i_yy;
+    hessian.velocity.velocity.velocity = p.inv_m
+        * (i.cos_alpha * d2_thrust_d_velocity_d_velocity - d2_drag_d_velocity_d_velocity);
+    hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
+    hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy;
+    hessian.velocity.altitude.velocity = p.inv_m
+        * (i.cos_alpha * d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude);
+    hessian.velocity.altitude.altitude = p.inv_m
+        * (i.cos_alpha * d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude) - i.sin_gamma
+        * d2_gravity_d_altitude_d_altitude;
+    hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
+    hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
+    hessian.pitch_rate.altitude.velocity = d2_pitching_moment_d_velocity_d_altitude * p.inv_i_yy;
+    hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy;
 }
 
 /// Entries of [`hessian_values`]: derivatives by gamma, alpha.
 #[inline(always)]
 fn hessian_by_gamma_alpha<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to alpha
     let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft/rad
@@ -174,31 +123,28 @@ fn hessian_by_gamma_alpha<R: Real>(
     let d2_drag_d_alpha_d_alpha = i.reference_force * p.two_c_d_alpha_2; // lb/rad^2
 
     // Derivatives with respect to gamma
-    let d2_gamma_rate_d_velocity_d_gamma = -(i.gravity * s.inv_velocity_2 + i.inv_radius)
-        * i.sin_gamma; // 1/ft
+    hessian.gamma.gamma.velocity = -(i.gravity * s.inv_velocity_2 + i.inv_radius) * i.sin_gamma; // 1/ft
 
     // Derivatives with respect to alpha
     let d2_lift_d_velocity_d_alpha = s.d_reference_force_d_velocity * p.c_l_alpha; // lb*s/ft/rad
     let d_slope_of_gamma_rate_in_thrust_d_alpha = i.cos_alpha * p.inv_m * i.inv_velocity; // 1/s/lb
-    let d2_gamma_rate_d_velocity_d_alpha = d_slope_of_gamma_rate_in_thrust_d_alpha
+    hessian.gamma.alpha.velocity = d_slope_of_gamma_rate_in_thrust_d_alpha
         * (s.d_thrust_d_velocity - i.thrust * i.inv_velocity)
         + p.inv_m
             * (d2_lift_d_velocity_d_alpha * i.inv_velocity
                 - p.c_l_alpha * s.inv_velocity_2 * i.reference_force); // 1/ft
 
     // Derivatives with respect to gamma
-    let d_slope_of_gamma_rate_in_radius_d_gamma = x.velocity * i.inv_radius_2
-        * i.sin_gamma; // 1/s/ft
+    let d_slope_of_gamma_rate_in_radius_d_gamma = x.velocity * i.inv_radius_2 * i.sin_gamma; // 1/s/ft
     let d_slope_of_gamma_rate_in_gravity_d_gamma = i.sin_gamma * i.inv_velocity; // s/ft
-    let d2_gamma_rate_d_altitude_d_gamma = d_slope_of_gamma_rate_in_radius_d_gamma
+    hessian.gamma.gamma.altitude = d_slope_of_gamma_rate_in_radius_d_gamma
         + s.d_gravity_d_altitude * d_slope_of_gamma_rate_in_gravity_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
     let d2_lift_d_altitude_d_alpha = s.d_reference_force_d_altitude * p.c_l_alpha; // lb/ft/rad
-    let d2_gamma_rate_d_altitude_d_alpha = s.d_thrust_d_altitude
-        * d_slope_of_gamma_rate_in_thrust_d_alpha
+    hessian.gamma.alpha.altitude = s.d_thrust_d_altitude * d_slope_of_gamma_rate_in_thrust_d_alpha
         + d2_lift_d_altitude_d_alpha * p.inv_m * i.inv_velocity; // 1/s/ft
-    let d2_gamma_rate_d_alpha_d_alpha = -i.thrust * s.slope_of_gamma_rate_in_thrust; // 1/s/rad
+    hessian.gamma.alpha.alpha = -i.thrust * s.slope_of_gamma_rate_in_thrust; // 1/s/rad
     let d2_c_m_d_velocity_d_alpha = -i.q_hat * i.inv_velocity
         * s.two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat; // s/ft/rad
     let d2_pitching_moment_d_velocity_d_alpha = p.c_bar
@@ -206,49 +152,32 @@ fn hessian_by_gamma_alpha<R: Real>(
             + i.reference_force * d2_c_m_d_velocity_d_alpha); // lb*s/rad
     let d2_pitching_moment_d_altitude_d_alpha = s.d_reference_force_d_altitude * p.c_bar
         * s.d_c_m_d_alpha; // lb/rad
-    let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2
-        + i.q_hat * p.two_c_m_alpha_2_q_hat; // 1/rad^2
-    let d2_pitching_moment_d_alpha_d_alpha = i.reference_force * p.c_bar
-        * d2_c_m_d_alpha_d_alpha; // ft*lb/rad^2
+    let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2 + i.q_hat * p.two_c_m_alpha_2_q_hat; // 1/rad^2
+    let d2_pitching_moment_d_alpha_d_alpha = i.reference_force * p.c_bar * d2_c_m_d_alpha_d_alpha; // ft*lb/rad^2
 
-    hessian.velocity_by_gamma_altitude = -s.d_gravity_d_altitude * i.cos_gamma;
-    hessian.velocity_by_gamma_gamma = i.gravity * i.sin_gamma;
-    hessian.altitude_by_gamma_velocity = i.cos_gamma;
-    hessian.altitude_by_gamma_gamma = -x.velocity * i.sin_gamma;
-    hessian.gamma_by_gamma_velocity = d2_gamma_rate_d_velocity_d_gamma;
-    hessian.gamma_by_gamma_altitude = d2_gamma_rate_d_altitude_d_gamma;
-    hessian.gamma_by_gamma_gamma = i
-        .gravity_over_velocity_minus_velocity_over_radius_times_cos_gamma;
-    hessian.alpha_by_gamma_velocity = -d2_gamma_rate_d_velocity_d_gamma;
-    hessian.alpha_by_gamma_altitude = -d2_gamma_rate_d_altitude_d_gamma;
-    hessian.alpha_by_gamma_gamma = -i
-        .gravity_over_velocity_minus_velocity_over_radius_times_cos_gamma;
-    hessian.velocity_by_alpha_velocity = -p.inv_m
-        * (s.d_thrust_d_velocity * i.sin_alpha + d2_drag_d_velocity_d_alpha);
-    hessian.velocity_by_alpha_altitude = -p.inv_m
-        * (s.d_thrust_d_altitude * i.sin_alpha + d2_drag_d_altitude_d_alpha);
-    hessian.velocity_by_alpha_alpha = -p.inv_m
-        * (i.thrust * i.cos_alpha + d2_drag_d_alpha_d_alpha);
-    hessian.gamma_by_alpha_velocity = d2_gamma_rate_d_velocity_d_alpha;
-    hessian.gamma_by_alpha_altitude = d2_gamma_rate_d_altitude_d_alpha;
-    hessian.gamma_by_alpha_alpha = d2_gamma_rate_d_alpha_d_alpha;
-    hessian.alpha_by_alpha_velocity = -d2_gamma_rate_d_velocity_d_alpha;
-    hessian.alpha_by_alpha_altitude = -d2_gamma_rate_d_altitude_d_alpha;
-    hessian.alpha_by_alpha_alpha = -d2_gamma_rate_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_velocity = d2_pitching_moment_d_velocity_d_alpha
-        * p.inv_i_yy;
-    hessian.pitch_rate_by_alpha_altitude = d2_pitching_moment_d_altitude_d_alpha
-        * p.inv_i_yy;
-    hessian.pitch_rate_by_alpha_alpha = d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy;
+    hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma;
+    hessian.velocity.gamma.gamma = i.gravity * i.sin_gamma;
+    hessian.altitude.gamma.velocity = i.cos_gamma;
+    hessian.altitude.gamma.gamma = -x.velocity * i.sin_gamma;
+    hessian.gamma.gamma.gamma = i.gravity_over_velocity_minus_velocity_over_radius_times_cos_gamma;
+    hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
+    hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
+    hessian.alpha.gamma.gamma = -i.gravity_over_velocity_minus_velocity_over_radius_times_cos_gamma;
+    hessian.velocity.alpha.velocity = -p.inv_m * (s.d_thrust_d_velocity * i.sin_alpha + d2_drag_d_velocity_d_alpha);
+    hessian.velocity.alpha.altitude = -p.inv_m * (s.d_thrust_d_altitude * i.sin_alpha + d2_drag_d_altitude_d_alpha);
+    hessian.velocity.alpha.alpha = -p.inv_m * (i.thrust * i.cos_alpha + d2_drag_d_alpha_d_alpha);
+    hessian.alpha.alpha.velocity = -hessian.gamma.alpha.velocity;
+    hessian.alpha.alpha.altitude = -hessian.gamma.alpha.altitude;
+    hessian.alpha.alpha.alpha = -hessian.gamma.alpha.alpha;
+    hessian.pitch_rate.alpha.velocity = d2_pitching_moment_d_velocity_d_alpha * p.inv_i_yy;
+    hessian.pitch_rate.alpha.altitude = d2_pitching_moment_d_altitude_d_alpha * p.inv_i_yy;
+    hessian.pitch_rate.alpha.alpha = d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy;
 }
 
 /// Entries of [`hessian_values`]: derivatives by beta, pitch_rate.
 #[inline(always)]
 fn hessian_by_beta_pitch_rate<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to beta
     let d2_thrust_d_velocity_d_beta = s.d_reference_force_d_velocity * p.c_t_beta; // lb*s/ft
@@ -258,12 +187,11 @@ fn hessian_by_beta_pitch_rate<R: Real>(
     let d_slope_of_gamma_rate_in_thrust_d_alpha = i.cos_alpha * p.inv_m * i.inv_velocity; // 1/s/lb
 
     // Derivatives with respect to beta
-    let d2_gamma_rate_d_velocity_d_beta = s.slope_of_gamma_rate_in_thrust
-        * d2_thrust_d_velocity_d_beta - s.d_gamma_rate_d_beta * i.inv_velocity; // rad/ft
-    let d2_gamma_rate_d_altitude_d_beta = s.slope_of_gamma_rate_in_thrust
-        * d2_thrust_d_altitude_d_beta; // rad/s/ft
-    let d2_gamma_rate_d_alpha_d_beta = d_slope_of_gamma_rate_in_thrust_d_alpha
-        * i.reference_force * p.c_t_beta; // 1/s
+    hessian.gamma.beta.velocity = s.slope_of_gamma_rate_in_thrust * d2_thrust_d_velocity_d_beta
+        - s.d_gamma_rate_d_beta * i.inv_velocity; // rad/ft
+    hessian.gamma.beta.altitude = s.slope_of_gamma_rate_in_thrust * d2_thrust_d_altitude_d_beta; // rad/s/ft
+    hessian.gamma.beta.alpha = d_slope_of_gamma_rate_in_thrust_d_alpha * i.reference_force
+        * p.c_t_beta; // 1/s
 
     // Derivatives with respect to pitch_rate
     let d2_c_m_d_velocity_d_pitch_rate = i
@@ -272,31 +200,22 @@ fn hessian_by_beta_pitch_rate<R: Real>(
     let d2_pitching_moment_d_velocity_d_pitch_rate = p.c_bar
         * (s.d_reference_force_d_velocity * s.d_c_m_d_pitch_rate
             + i.reference_force * d2_c_m_d_velocity_d_pitch_rate); // lb*s^2/rad
-    let d2_pitching_moment_d_altitude_d_pitch_rate = s.d_reference_force_d_altitude
-        * p.c_bar * s.d_c_m_d_pitch_rate; // lb*s/rad
+    let d2_pitching_moment_d_altitude_d_pitch_rate = s.d_reference_force_d_altitude * p.c_bar
+        * s.d_c_m_d_pitch_rate; // lb*s/rad
     let d2_c_m_d_alpha_d_pitch_rate = s.two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat
         * p.half_c_bar * i.inv_velocity; // s/rad^2
     let d2_pitching_moment_d_alpha_d_pitch_rate = i.reference_force * p.c_bar
         * d2_c_m_d_alpha_d_pitch_rate; // ft*lb*s/rad^2
 
-    hessian.velocity_by_beta_velocity = i.cos_alpha * p.inv_m
-        * d2_thrust_d_velocity_d_beta;
-    hessian.velocity_by_beta_altitude = i.cos_alpha * p.inv_m
-        * d2_thrust_d_altitude_d_beta;
-    hessian.velocity_by_beta_alpha = -i.sin_alpha * p.c_t_beta_over_m
-        * i.reference_force;
-    hessian.gamma_by_beta_velocity = d2_gamma_rate_d_velocity_d_beta;
-    hessian.gamma_by_beta_altitude = d2_gamma_rate_d_altitude_d_beta;
-    hessian.gamma_by_beta_alpha = d2_gamma_rate_d_alpha_d_beta;
-    hessian.alpha_by_beta_velocity = -d2_gamma_rate_d_velocity_d_beta;
-    hessian.alpha_by_beta_altitude = -d2_gamma_rate_d_altitude_d_beta;
-    hessian.alpha_by_beta_alpha = -d2_gamma_rate_d_alpha_d_beta;
-    hessian.pitch_rate_by_pitch_rate_velocity = d2_pitching_moment_d_velocity_d_pitch_rate
-        * p.inv_i_yy;
-    hessian.pitch_rate_by_pitch_rate_altitude = d2_pitching_moment_d_altitude_d_pitch_rate
-        * p.inv_i_yy;
-    hessian.pitch_rate_by_pitch_rate_alpha = d2_pitching_moment_d_alpha_d_pitch_rate
-        * p.inv_i_yy;
+    hessian.velocity.beta.velocity = i.cos_alpha * p.inv_m * d2_thrust_d_velocity_d_beta;
+    hessian.velocity.beta.altitude = i.cos_alpha * p.inv_m * d2_thrust_d_altitude_d_beta;
+    hessian.velocity.beta.alpha = -i.sin_alpha * p.c_t_beta_over_m * i.reference_force;
+    hessian.alpha.beta.velocity = -hessian.gamma.beta.velocity;
+    hessian.alpha.beta.altitude = -hessian.gamma.beta.altitude;
+    hessian.alpha.beta.alpha = -hessian.gamma.beta.alpha;
+    hessian.pitch_rate.pitch_rate.velocity = d2_pitching_moment_d_velocity_d_pitch_rate * p.inv_i_yy;
+    hessian.pitch_rate.pitch_rate.altitude = d2_pitching_moment_d_altitude_d_pitch_rate * p.inv_i_yy;
+    hessian.pitch_rate.pitch_rate.alpha = d2_pitching_moment_d_alpha_d_pitch_rate * p.inv_i_yy;
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (4).
@@ -305,11 +224,7 @@ fn hessian_by_beta_pitch_rate<R: Real>(
 ///
 /// 253 operations: 50 additions, 198 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn hessian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> HessianEntries<R> {
+pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let mut hessian = HessianEntries::splat(R::ZERO);

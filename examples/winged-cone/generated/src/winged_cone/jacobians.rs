@@ -3,130 +3,95 @@
 //! Functions of WINGED_CONE. Units are foot, slug, second and radian.
 
 use super::{
-    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian,
-    drift_from, intermediates, slopes,
+    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian, drift_from, intermediates, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`StateJacobian`].
-    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
-        velocity_by_velocity: velocity.velocity,
-        velocity_by_altitude: velocity.altitude,
-        velocity_by_gamma: velocity.gamma,
-        velocity_by_alpha: velocity.alpha,
-        velocity_by_beta: velocity.beta,
-        altitude_by_velocity: altitude.velocity,
-        altitude_by_gamma: altitude.gamma,
-        gamma_by_velocity: gamma.velocity,
-        gamma_by_altitude: gamma.altitude,
-        gamma_by_gamma: gamma.gamma,
-        gamma_by_alpha: gamma.alpha,
-        gamma_by_beta: gamma.beta,
-        alpha_by_velocity: alpha.velocity,
-        alpha_by_altitude: alpha.altitude,
-        alpha_by_gamma: alpha.gamma,
-        alpha_by_alpha: alpha.alpha,
-        alpha_by_pitch_rate: alpha.pitch_rate,
-        alpha_by_beta: alpha.beta,
-        pitch_rate_by_velocity: pitch_rate.velocity,
-        pitch_rate_by_altitude: pitch_rate.altitude,
-        pitch_rate_by_alpha: pitch_rate.alpha,
-        pitch_rate_by_pitch_rate: pitch_rate.pitch_rate,
-        beta_by_beta_rate: beta.beta_rate,
-        beta_rate_by_beta: beta_rate.beta,
-        beta_rate_by_beta_rate: beta_rate.beta_rate,
+    pub struct StateJacobianEntries in state_jacobian_entries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity { velocity, altitude, gamma, alpha, beta }
+        altitude { velocity, gamma }
+        gamma { velocity, altitude, gamma, alpha, beta }
+        alpha { velocity, altitude, gamma, alpha, pitch_rate, beta }
+        pitch_rate { velocity, altitude, alpha, pitch_rate }
+        beta { beta_rate }
+        beta_rate { beta, beta_rate }
     }
 }
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`InputJacobian`].
-    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
-        pitch_rate_by_delta_e: pitch_rate.delta_e,
-        beta_rate_by_beta_command: beta_rate.beta_command,
+    pub struct InputJacobianEntries in input_jacobian_entries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        pitch_rate { delta_e }
+        beta_rate { beta_command }
     }
 }
 
 /// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft
-    let d_gamma_rate_d_velocity =
+    state.gamma.velocity =
         p.inv_m * (s.d_lift_d_velocity * i.inv_velocity - (i.lift + s.thrust_sin_alpha) * s.inv_velocity_2)
         + i.cos_gamma * (i.gravity * s.inv_velocity_2 + i.inv_radius)
         + s.slope_of_gamma_rate_in_thrust * s.d_thrust_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar
-        * (i.reference_force * s.d_c_m_d_velocity
-            + i.c_m * s.d_reference_force_d_velocity); // lb*s
+        * (i.reference_force * s.d_c_m_d_velocity + i.c_m * s.d_reference_force_d_velocity); // lb*s
 
     // Derivatives with respect to altitude
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft
-    let d_gamma_rate_d_altitude = s.slope_of_gamma_rate_in_radius
+    state.gamma.altitude = s.slope_of_gamma_rate_in_radius
         + s.slope_of_gamma_rate_in_gravity * s.d_gravity_d_altitude
         + s.d_lift_d_altitude * p.inv_m * i.inv_velocity
         + s.slope_of_gamma_rate_in_thrust * s.d_thrust_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude; // lb
 
     // Derivatives with respect to gamma
-    let d_gamma_rate_d_gamma = (i.gravity * i.inv_velocity - x.velocity * i.inv_radius)
-        * i.sin_gamma; // 1/s
+    state.gamma.gamma = (i.gravity * i.inv_velocity - x.velocity * i.inv_radius) * i.sin_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/rad
-    let d_gamma_rate_d_alpha = p.inv_m * i.inv_velocity
+    state.gamma.alpha = p.inv_m * i.inv_velocity
         * (i.thrust * i.cos_alpha + i.reference_force * p.c_l_alpha); // 1/s
     let d_pitching_moment_d_alpha = i.reference_force * p.c_bar * s.d_c_m_d_alpha; // ft*lb/rad
 
     // Derivatives with respect to pitch_rate
-    let d_pitching_moment_d_pitch_rate = i.reference_force * p.c_bar
-        * s.d_c_m_d_pitch_rate; // ft*lb*s/rad
+    let d_pitching_moment_d_pitch_rate = i.reference_force * p.c_bar * s.d_c_m_d_pitch_rate; // ft*lb*s/rad
 
     // Derivatives with respect to delta_e
     let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_tail; // ft*lb/rad
 
-    // Result
-    let state = StateJacobianEntries {
-        velocity_by_velocity: p.inv_m
-            * (i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity),
-        velocity_by_altitude: p.inv_m
-            * (i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude)
-            - i.sin_gamma * s.d_gravity_d_altitude,
-        velocity_by_gamma: -i.cos_gamma * i.gravity,
-        velocity_by_alpha: -p.inv_m * (s.thrust_sin_alpha + d_drag_d_alpha),
-        velocity_by_beta: i.cos_alpha * p.c_t_beta_over_m * i.reference_force,
-        altitude_by_velocity: i.sin_gamma,
-        altitude_by_gamma: x.velocity * i.cos_gamma,
-        gamma_by_velocity: d_gamma_rate_d_velocity,
-        gamma_by_altitude: d_gamma_rate_d_altitude,
-        gamma_by_gamma: d_gamma_rate_d_gamma,
-        gamma_by_alpha: d_gamma_rate_d_alpha,
-        gamma_by_beta: s.d_gamma_rate_d_beta,
-        alpha_by_velocity: -d_gamma_rate_d_velocity,
-        alpha_by_altitude: -d_gamma_rate_d_altitude,
-        alpha_by_gamma: -d_gamma_rate_d_gamma,
-        alpha_by_alpha: -d_gamma_rate_d_alpha,
-        alpha_by_pitch_rate: R::ONE,
-        alpha_by_beta: -s.d_gamma_rate_d_beta,
-        pitch_rate_by_velocity: d_pitching_moment_d_velocity * p.inv_i_yy,
-        pitch_rate_by_altitude: d_pitching_moment_d_altitude * p.inv_i_yy,
-        pitch_rate_by_alpha: d_pitching_moment_d_alpha * p.inv_i_yy,
-        pitch_rate_by_pitch_rate: d_pitching_moment_d_pitch_rate * p.inv_i_yy,
-        beta_by_beta_rate: R::ONE,
-        beta_rate_by_beta: p.minus_omega_2,
-        beta_rate_by_beta_rate: p.minus_two_zeta_omega,
-    };
-    let input = InputJacobianEntries {
-        pitch_rate_by_delta_e: d_pitching_moment_d_delta_e * p.inv_i_yy,
-        beta_rate_by_beta_command: p.omega_2,
-    };
+    state.velocity.velocity = p.inv_m * (i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity);
+    state.velocity.altitude = p.inv_m * (i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude)
+        - i.sin_gamma * s.d_gravity_d_altitude;
+    state.velocity.gamma = -i.cos_gamma * i.gravity;
+    state.velocity.alpha = -p.inv_m * (s.thrust_sin_alpha + d_drag_d_alpha);
+    state.velocity.beta = i.cos_alpha * p.c_t_beta_over_m * i.reference_force;
+    state.altitude.velocity = i.sin_gamma;
+    state.altitude.gamma = x.velocity * i.cos_gamma;
+    state.gamma.beta = s.d_gamma_rate_d_beta;
+    state.alpha.velocity = -state.gamma.velocity;
+    state.alpha.altitude = -state.gamma.altitude;
+    state.alpha.gamma = -state.gamma.gamma;
+    state.alpha.alpha = -state.gamma.alpha;
+    state.alpha.pitch_rate = R::ONE;
+    state.alpha.beta = -s.d_gamma_rate_d_beta;
+    state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy;
+    state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy;
+    state.pitch_rate.alpha = d_pitching_moment_d_alpha * p.inv_i_yy;
+    state.pitch_rate.pitch_rate = d_pitching_moment_d_pitch_rate * p.inv_i_yy;
+    state.beta.beta_rate = R::ONE;
+    state.beta_rate.beta = p.minus_omega_2;
+    state.beta_rate.beta_rate = p.minus_two_zeta_omega;
+    input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy;
+    input.beta_rate.beta_command = p.omega_2;
     (state, input)
 }
 
@@ -137,9 +102,7 @@ pub fn jacobians_values_from<R: Real>(
 /// 131 operations: 29 additions, 97 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -148,11 +111,7 @@ pub fn jacobians_values<R: Real>(
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (4).
 #[inline(always)]
-pub fn jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (StateJacobian<R>, InputJacobian<R>) {
+pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
     (state.dense(), input.dense())
 }
@@ -165,9 +124,7 @@ pub fn jacobians<R: Real>(
 /// 149 operations: 35 additions, 109 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -180,9 +137,7 @@ pub fn drift_and_jacobians_values<R: Real>(
 /// for less than one after the other, eq. (4).
 #[inline(always)]
 pub fn drift_and_jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
     (drift, state.dense(), input.dense())

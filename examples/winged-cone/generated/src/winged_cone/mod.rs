@@ -29,43 +29,25 @@ pub use prepared::{Prepared, prepare};
 
 use ahv_core::{Bounds, Pattern, Real};
 
-/// State of WINGED_CONE.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct State<T> {
-    /// Velocity, ft/s.
-    pub velocity: T,
-    /// Altitude, ft.
-    pub altitude: T,
-    /// Flight-path angle, rad.
-    pub gamma: T,
-    /// Angle of attack, rad.
-    pub alpha: T,
-    /// Pitch rate, rad/s.
-    pub pitch_rate: T,
-    /// Throttle setting, dimensionless.
-    pub beta: T,
-    /// Rate of the throttle setting, 1/s.
-    pub beta_rate: T,
-}
-
-ahv_core::impl_vector! {
-    State {
+ahv_core::vector! {
+    /// State of WINGED_CONE.
+    pub struct State<T> {
+        /// Velocity, ft/s.
         velocity: ["ft/s", "m/s", 0.3048],
+        /// Altitude, ft.
         altitude: ["ft", "m", 0.3048],
+        /// Flight-path angle, rad.
         gamma: ["rad", "rad", 1.0],
+        /// Angle of attack, rad.
         alpha: ["rad", "rad", 1.0],
+        /// Pitch rate, rad/s.
         pitch_rate: ["rad/s", "rad/s", 1.0],
+        /// Throttle setting, dimensionless.
         beta: ["1", "1", 1.0],
+        /// Rate of the throttle setting, 1/s.
         beta_rate: ["1/s", "1/s", 1.0],
     }
 }
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(State);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, State);
 
 /// Where the curve fits are meant to be used.
 pub const STATE_BOUNDS: State<Bounds> = State {
@@ -78,28 +60,15 @@ pub const STATE_BOUNDS: State<Bounds> = State {
     beta_rate: VALIDITY.beta_rate,
 };
 
-/// Input of WINGED_CONE.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Input<T> {
-    /// Throttle setting as commanded, dimensionless.
-    pub beta_command: T,
-    /// Elevator deflection, rad.
-    pub delta_e: T,
-}
-
-ahv_core::impl_vector! {
-    Input {
+ahv_core::vector! {
+    /// Input of WINGED_CONE.
+    pub struct Input<T> {
+        /// Throttle setting as commanded, dimensionless.
         beta_command: ["1", "1", 1.0],
+        /// Elevator deflection, rad.
         delta_e: ["rad", "rad", 1.0],
     }
 }
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Input);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Input);
 
 /// Where the curve fits are meant to be used.
 pub const INPUT_BOUNDS: Input<Bounds> = Input {
@@ -107,43 +76,28 @@ pub const INPUT_BOUNDS: Input<Bounds> = Input {
     delta_e: VALIDITY.delta_e,
 };
 
-/// Quantities that people look at of WINGED_CONE.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Outputs<T> {
-    /// Pitch angle, rad.
-    pub theta: T,
-    /// Air density, slug/ft^3.
-    pub density: T,
-    /// Dynamic pressure, lb/ft^2.
-    pub dynamic_pressure: T,
-    /// Lift, lb.
-    pub lift: T,
-    /// Drag, lb.
-    pub drag: T,
-    /// Thrust, lb.
-    pub thrust: T,
-    /// Pitching moment, ft*lb.
-    pub pitching_moment: T,
-}
-
-ahv_core::impl_vector! {
-    Outputs {
+ahv_core::vector! {
+    /// Quantities that people look at of WINGED_CONE.
+    pub struct Outputs<T> {
+        /// Pitch angle, rad.
         theta: ["rad", "rad", 1.0],
+        /// Air density, slug/ft^3.
         density: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        /// Dynamic pressure, lb/ft^2.
         dynamic_pressure: ["lb/ft^2", "N/m^2", 47.880258980335846],
+        /// Lift, lb.
         lift: ["lb", "N", 4.4482216152605],
+        /// Drag, lb.
         drag: ["lb", "N", 4.4482216152605],
+        /// Thrust, lb.
         thrust: ["lb", "N", 4.4482216152605],
+        /// Pitching moment, ft*lb.
         pitching_moment: ["ft*lb", "m*N", 1.3558179483314003],
     }
 }
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Outputs);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Outputs);
+ahv_core::impl_nalgebra!(State by State, Input, Outputs);
 
 /// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
@@ -167,9 +121,7 @@ pub struct Model<R> {
 impl<R: Real> Model<R> {
     /// The model for these parameters.
     pub fn new(parameters: &Parameters<R>) -> Self {
-        Self {
-            prepared: prepare(parameters),
-        }
+        Self { prepared: prepare(parameters) }
     }
 }
 
@@ -200,20 +152,12 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
     #[inline(always)]
-    fn jacobians(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-    ) -> (StateJacobian<R>, InputJacobian<R>) {
+    fn jacobians(&self, x: &State<R>, u: &Input<R>) -> (StateJacobian<R>, InputJacobian<R>) {
         jacobians(x, u, &self.prepared)
     }
 
     #[inline(always)]
-    fn drift_and_jacobians(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-    ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    fn drift_and_jacobians(&self, x: &State<R>, u: &Input<R>) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
         drift_and_jacobians(x, u, &self.prepared)
     }
 }

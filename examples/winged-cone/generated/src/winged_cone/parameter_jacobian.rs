@@ -2,55 +2,20 @@
 
 //! Functions of WINGED_CONE. Units are foot, slug, second and radian.
 
-use super::{
-    Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes,
-};
-
+use super::{Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`ParameterJacobian`].
-    pub struct ParameterJacobianEntries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
-        velocity_by_m: velocity.m,
-        velocity_by_s: velocity.s,
-        velocity_by_rho_0: velocity.rho_0,
-        velocity_by_h_s: velocity.h_s,
-        velocity_by_r_e: velocity.r_e,
-        velocity_by_mu: velocity.mu,
-        velocity_by_c_d_alpha_2: velocity.c_d_alpha_2,
-        velocity_by_c_d_alpha: velocity.c_d_alpha,
-        velocity_by_c_d_0: velocity.c_d_0,
-        velocity_by_c_t_beta: velocity.c_t_beta,
-        gamma_by_m: gamma.m,
-        gamma_by_s: gamma.s,
-        gamma_by_rho_0: gamma.rho_0,
-        gamma_by_h_s: gamma.h_s,
-        gamma_by_r_e: gamma.r_e,
-        gamma_by_mu: gamma.mu,
-        gamma_by_c_l_alpha: gamma.c_l_alpha,
-        gamma_by_c_t_beta: gamma.c_t_beta,
-        alpha_by_m: alpha.m,
-        alpha_by_s: alpha.s,
-        alpha_by_rho_0: alpha.rho_0,
-        alpha_by_h_s: alpha.h_s,
-        alpha_by_r_e: alpha.r_e,
-        alpha_by_mu: alpha.mu,
-        alpha_by_c_l_alpha: alpha.c_l_alpha,
-        alpha_by_c_t_beta: alpha.c_t_beta,
-        pitch_rate_by_i_yy: pitch_rate.i_yy,
-        pitch_rate_by_s: pitch_rate.s,
-        pitch_rate_by_c_bar: pitch_rate.c_bar,
-        pitch_rate_by_rho_0: pitch_rate.rho_0,
-        pitch_rate_by_h_s: pitch_rate.h_s,
-        pitch_rate_by_c_m_alpha_2: pitch_rate.c_m_alpha_2,
-        pitch_rate_by_c_m_alpha: pitch_rate.c_m_alpha,
-        pitch_rate_by_c_m_0: pitch_rate.c_m_0,
-        pitch_rate_by_c_m_alpha_2_q_hat: pitch_rate.c_m_alpha_2_q_hat,
-        pitch_rate_by_c_m_alpha_q_hat: pitch_rate.c_m_alpha_q_hat,
-        pitch_rate_by_c_m_q_hat: pitch_rate.c_m_q_hat,
-        pitch_rate_by_c_m_tail: pitch_rate.c_m_tail,
-        beta_rate_by_zeta: beta_rate.zeta,
-        beta_rate_by_omega: beta_rate.omega,
+    pub struct ParameterJacobianEntries in parameter_jacobian_entries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
+        velocity { m, s, rho_0, h_s, r_e, mu, c_d_alpha_2, c_d_alpha, c_d_0, c_t_beta }
+        gamma { m, s, rho_0, h_s, r_e, mu, c_l_alpha, c_t_beta }
+        alpha { m, s, rho_0, h_s, r_e, mu, c_l_alpha, c_t_beta }
+        pitch_rate {
+            i_yy, s, c_bar, rho_0, h_s, c_m_alpha_2, c_m_alpha, c_m_0, c_m_alpha_2_q_hat, c_m_alpha_q_hat, c_m_q_hat,
+            c_m_tail,
+        }
+        beta_rate { zeta, omega }
     }
 }
 
@@ -60,30 +25,26 @@ ahv_core::entries! {
 ///
 /// 153 operations: 22 additions, 126 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobianEntries<R> {
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
+    let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
 
     // Derivatives with respect to parameters
-    let d_gamma_rate_d_m = -(i.lift + s.thrust_sin_alpha) * p.inv_m_2 * i.inv_velocity; // rad/s/slug
-    let d_gamma_rate_d_s = i.dynamic_pressure
+    parameter.gamma.m = -(i.lift + s.thrust_sin_alpha) * p.inv_m_2 * i.inv_velocity; // rad/s/slug
+    parameter.gamma.s = i.dynamic_pressure
         * (i.c_l * p.inv_m * i.inv_velocity + s.slope_of_gamma_rate_in_thrust * i.c_t); // rad/s/ft^2
     let d_pitching_moment_d_c_bar = i.reference_force
         * (i.c_m
             + p.half_c_bar
                 * i.c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat
                 * x.pitch_rate * i.inv_velocity); // lb
-    let d_dynamic_pressure_d_rho_0 = R::HALF * i.velocity_2
-        * i.exp_minus_altitude_over_h_s; // lb*ft/slug
+    let d_dynamic_pressure_d_rho_0 = R::HALF * i.velocity_2 * i.exp_minus_altitude_over_h_s; // lb*ft/slug
     let d_reference_force_d_rho_0 = p.s * d_dynamic_pressure_d_rho_0; // lb*ft^3/slug
     let d_drag_d_rho_0 = i.c_d * d_reference_force_d_rho_0; // lb*ft^3/slug
     let d_thrust_d_rho_0 = i.c_t * d_reference_force_d_rho_0; // lb*ft^3/slug
     let d_lift_d_rho_0 = i.c_l * d_reference_force_d_rho_0; // lb*ft^3/slug
-    let d_gamma_rate_d_rho_0 = d_lift_d_rho_0 * p.inv_m * i.inv_velocity
+    parameter.gamma.rho_0 = d_lift_d_rho_0 * p.inv_m * i.inv_velocity
         + s.slope_of_gamma_rate_in_thrust * d_thrust_d_rho_0; // rad*ft^3/s/slug
     let d_pitching_moment_d_rho_0 = i.c_m * p.c_bar * d_reference_force_d_rho_0; // ft^4*lb/slug
     let d_density_d_h_s = i.density * x.altitude * p.inv_h_s_2; // slug/ft^4
@@ -92,65 +53,52 @@ pub fn parameter_jacobian_values<R: Real>(
     let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft
     let d_thrust_d_h_s = i.c_t * d_reference_force_d_h_s; // lb/ft
     let d_lift_d_h_s = i.c_l * d_reference_force_d_h_s; // lb/ft
-    let d_gamma_rate_d_h_s = d_lift_d_h_s * p.inv_m * i.inv_velocity
+    parameter.gamma.h_s = d_lift_d_h_s * p.inv_m * i.inv_velocity
         + s.slope_of_gamma_rate_in_thrust * d_thrust_d_h_s; // rad/s/ft
     let d_pitching_moment_d_h_s = i.c_m * p.c_bar * d_reference_force_d_h_s; // lb
-    let d_gamma_rate_d_r_e = s.slope_of_gamma_rate_in_radius
+    parameter.gamma.r_e = s.slope_of_gamma_rate_in_radius
         - R::TWO * s.slope_of_gamma_rate_in_gravity * i.gravity * i.inv_radius; // rad/s/ft
 
-    ParameterJacobianEntries {
-        velocity_by_m: -(i.thrust * i.cos_alpha - i.drag) * p.inv_m_2,
-        velocity_by_s: p.inv_m * i.dynamic_pressure * (i.cos_alpha * i.c_t - i.c_d),
-        velocity_by_rho_0: p.inv_m * (i.cos_alpha * d_thrust_d_rho_0 - d_drag_d_rho_0),
-        velocity_by_h_s: p.inv_m * (i.cos_alpha * d_thrust_d_h_s - d_drag_d_h_s),
-        velocity_by_r_e: R::TWO * i.sin_gamma * i.gravity * i.inv_radius,
-        velocity_by_mu: -i.sin_gamma * i.inv_radius_2,
-        velocity_by_c_d_alpha_2: -i.reference_force * i.alpha_2 * p.inv_m,
-        velocity_by_c_d_alpha: -i.reference_force * x.alpha * p.inv_m,
-        velocity_by_c_d_0: -i.reference_force * p.inv_m,
-        velocity_by_c_t_beta: i.cos_alpha * p.inv_m * i.reference_force * x.beta,
-        gamma_by_m: d_gamma_rate_d_m,
-        gamma_by_s: d_gamma_rate_d_s,
-        gamma_by_rho_0: d_gamma_rate_d_rho_0,
-        gamma_by_h_s: d_gamma_rate_d_h_s,
-        gamma_by_r_e: d_gamma_rate_d_r_e,
-        gamma_by_mu: s.slope_of_gamma_rate_in_gravity * i.inv_radius_2,
-        gamma_by_c_l_alpha: i.reference_force * x.alpha * p.inv_m * i.inv_velocity,
-        gamma_by_c_t_beta: s.slope_of_gamma_rate_in_thrust * i.reference_force * x.beta,
-        alpha_by_m: -d_gamma_rate_d_m,
-        alpha_by_s: -d_gamma_rate_d_s,
-        alpha_by_rho_0: -d_gamma_rate_d_rho_0,
-        alpha_by_h_s: -d_gamma_rate_d_h_s,
-        alpha_by_r_e: -d_gamma_rate_d_r_e,
-        alpha_by_mu: -s.slope_of_gamma_rate_in_gravity * i.inv_radius_2,
-        alpha_by_c_l_alpha: -i.reference_force * x.alpha * p.inv_m * i.inv_velocity,
-        alpha_by_c_t_beta: -s.slope_of_gamma_rate_in_thrust * i.reference_force * x.beta,
-        pitch_rate_by_i_yy: -i.pitching_moment * p.inv_i_yy_2,
-        pitch_rate_by_s: i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure,
-        pitch_rate_by_c_bar: d_pitching_moment_d_c_bar * p.inv_i_yy,
-        pitch_rate_by_rho_0: d_pitching_moment_d_rho_0 * p.inv_i_yy,
-        pitch_rate_by_h_s: d_pitching_moment_d_h_s * p.inv_i_yy,
-        pitch_rate_by_c_m_alpha_2: i.reference_force * p.c_bar_over_i_yy * i.alpha_2,
-        pitch_rate_by_c_m_alpha: i.reference_force * p.c_bar_over_i_yy * x.alpha,
-        pitch_rate_by_c_m_0: i.reference_force * p.c_bar_over_i_yy,
-        pitch_rate_by_c_m_alpha_2_q_hat: i.reference_force * p.c_bar_over_i_yy * i.q_hat
-            * i.alpha_2,
-        pitch_rate_by_c_m_alpha_q_hat: i.reference_force * p.c_bar_over_i_yy * i.q_hat
-            * x.alpha,
-        pitch_rate_by_c_m_q_hat: i.reference_force * p.c_bar_over_i_yy * i.q_hat,
-        pitch_rate_by_c_m_tail: i.reference_force * p.c_bar_over_i_yy * i.tail,
-        beta_rate_by_zeta: x.beta_rate * p.minus_two_omega,
-        beta_rate_by_omega: (u.beta_command - x.beta) * p.two_omega
-            - x.beta_rate * p.two_zeta,
-    }
+    parameter.velocity.m = -(i.thrust * i.cos_alpha - i.drag) * p.inv_m_2;
+    parameter.velocity.s = p.inv_m * i.dynamic_pressure * (i.cos_alpha * i.c_t - i.c_d);
+    parameter.velocity.rho_0 = p.inv_m * (i.cos_alpha * d_thrust_d_rho_0 - d_drag_d_rho_0);
+    parameter.velocity.h_s = p.inv_m * (i.cos_alpha * d_thrust_d_h_s - d_drag_d_h_s);
+    parameter.velocity.r_e = R::TWO * i.sin_gamma * i.gravity * i.inv_radius;
+    parameter.velocity.mu = -i.sin_gamma * i.inv_radius_2;
+    parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
+    parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
+    parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
+    parameter.velocity.c_t_beta = i.cos_alpha * p.inv_m * i.reference_force * x.beta;
+    parameter.gamma.mu = s.slope_of_gamma_rate_in_gravity * i.inv_radius_2;
+    parameter.gamma.c_l_alpha = i.reference_force * x.alpha * p.inv_m * i.inv_velocity;
+    parameter.gamma.c_t_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force * x.beta;
+    parameter.alpha.m = -parameter.gamma.m;
+    parameter.alpha.s = -parameter.gamma.s;
+    parameter.alpha.rho_0 = -parameter.gamma.rho_0;
+    parameter.alpha.h_s = -parameter.gamma.h_s;
+    parameter.alpha.r_e = -parameter.gamma.r_e;
+    parameter.alpha.mu = -s.slope_of_gamma_rate_in_gravity * i.inv_radius_2;
+    parameter.alpha.c_l_alpha = -i.reference_force * x.alpha * p.inv_m * i.inv_velocity;
+    parameter.alpha.c_t_beta = -s.slope_of_gamma_rate_in_thrust * i.reference_force * x.beta;
+    parameter.pitch_rate.i_yy = -i.pitching_moment * p.inv_i_yy_2;
+    parameter.pitch_rate.s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
+    parameter.pitch_rate.c_bar = d_pitching_moment_d_c_bar * p.inv_i_yy;
+    parameter.pitch_rate.rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy;
+    parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy;
+    parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy * i.alpha_2;
+    parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
+    parameter.pitch_rate.c_m_0 = i.reference_force * p.c_bar_over_i_yy;
+    parameter.pitch_rate.c_m_alpha_2_q_hat = i.reference_force * p.c_bar_over_i_yy * i.q_hat * i.alpha_2;
+    parameter.pitch_rate.c_m_alpha_q_hat = i.reference_force * p.c_bar_over_i_yy * i.q_hat * x.alpha;
+    parameter.pitch_rate.c_m_q_hat = i.reference_force * p.c_bar_over_i_yy * i.q_hat;
+    parameter.pitch_rate.c_m_tail = i.reference_force * p.c_bar_over_i_yy * i.tail;
+    parameter.beta_rate.zeta = x.beta_rate * p.minus_two_omega;
+    parameter.beta_rate.omega = (u.beta_command - x.beta) * p.two_omega - x.beta_rate * p.two_zeta;
+    parameter
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (4).
 #[inline(always)]
-pub fn parameter_jacobian<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobian<R> {
+pub fn parameter_jacobian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobian<R> {
     parameter_jacobian_values(x, u, p).dense()
 }

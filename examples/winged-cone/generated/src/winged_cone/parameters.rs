@@ -4,79 +4,52 @@
 
 use ahv_core::Bounds;
 
-/// One value for each parameter and coefficient of the table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Parameters<T> {
-    /// Vehicle mass, slug.
-    pub m: T,
-    /// Pitch moment of inertia, slug*ft^2.
-    pub i_yy: T,
-    /// Reference area, ft^2.
-    pub s: T,
-    /// Mean aerodynamic chord, ft.
-    pub c_bar: T,
-    /// Damping ratio of the engine, dimensionless.
-    pub zeta: T,
-    /// Natural frequency of the engine, rad/s.
-    pub omega: T,
-    /// Air density at sea level, slug/ft^3.
-    pub rho_0: T,
-    /// Scale height of the air density, ft.
-    pub h_s: T,
-    /// Radius of the Earth, ft.
-    pub r_e: T,
-    /// Gravitational constant of the Earth, ft^3/s^2.
-    pub mu: T,
-    /// Coefficient of alpha in C_L, 1/rad.
-    pub c_l_alpha: T,
-    /// Coefficient of alpha^2 in C_D, 1/rad^2.
-    pub c_d_alpha_2: T,
-    /// Coefficient of alpha in C_D, 1/rad.
-    pub c_d_alpha: T,
-    /// Constant part of C_D, dimensionless.
-    pub c_d_0: T,
-    /// Coefficient of beta in C_T, dimensionless.
-    pub c_t_beta: T,
-    /// Coefficient of alpha^2 in C_M, 1/rad^2.
-    pub c_m_alpha_2: T,
-    /// Coefficient of alpha in C_M, 1/rad.
-    pub c_m_alpha: T,
-    /// Constant part of C_M, dimensionless.
-    pub c_m_0: T,
-    /// Coefficient of alpha^2*q_hat in C_M, 1/rad^3.
-    pub c_m_alpha_2_q_hat: T,
-    /// Coefficient of alpha*q_hat in C_M, 1/rad^2.
-    pub c_m_alpha_q_hat: T,
-    /// Coefficient of q_hat in C_M, 1/rad.
-    pub c_m_q_hat: T,
-    /// Coefficient of tail in C_M, 1/rad.
-    pub c_m_tail: T,
-}
-
-ahv_core::impl_vector! {
-    Parameters {
+ahv_core::vector! {
+    /// One value for each parameter and coefficient of the table.
+    pub struct Parameters<T> {
+        /// Vehicle mass, slug.
         m: ["slug", "kg", 14.593902937206364],
+        /// Pitch moment of inertia, slug*ft^2.
         i_yy: ["slug*ft^2", "kg*m^2", 1.3558179483314003],
+        /// Reference area, ft^2.
         s: ["ft^2", "m^2", 0.09290304],
+        /// Mean aerodynamic chord, ft.
         c_bar: ["ft", "m", 0.3048],
+        /// Damping ratio of the engine, dimensionless.
         zeta: ["1", "1", 1.0],
+        /// Natural frequency of the engine, rad/s.
         omega: ["rad/s", "rad/s", 1.0],
+        /// Air density at sea level, slug/ft^3.
         rho_0: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        /// Scale height of the air density, ft.
         h_s: ["ft", "m", 0.3048],
+        /// Radius of the Earth, ft.
         r_e: ["ft", "m", 0.3048],
+        /// Gravitational constant of the Earth, ft^3/s^2.
         mu: ["ft^3/s^2", "m^3/s^2", 0.028316846592],
+        /// Coefficient of alpha in C_L, 1/rad.
         c_l_alpha: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of alpha^2 in C_D, 1/rad^2.
         c_d_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of alpha in C_D, 1/rad.
         c_d_alpha: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_D, dimensionless.
         c_d_0: ["1", "1", 1.0],
+        /// Coefficient of beta in C_T, dimensionless.
         c_t_beta: ["1", "1", 1.0],
+        /// Coefficient of alpha^2 in C_M, 1/rad^2.
         c_m_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of alpha in C_M, 1/rad.
         c_m_alpha: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_M, dimensionless.
         c_m_0: ["1", "1", 1.0],
+        /// Coefficient of alpha^2*q_hat in C_M, 1/rad^3.
         c_m_alpha_2_q_hat: ["1/rad^3", "1/rad^3", 1.0],
+        /// Coefficient of alpha*q_hat in C_M, 1/rad^2.
         c_m_alpha_q_hat: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of q_hat in C_M, 1/rad.
         c_m_q_hat: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of tail in C_M, 1/rad.
         c_m_tail: ["1/rad", "1/rad", 1.0],
     }
 }

@@ -6,88 +6,23 @@ use super::Parameters;
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Parameters as the functions of this model use them.
+    /// Parameters as the functions of this model use them. A field without a description is what its name says:
+    /// its formula and unit stand in [`prepare`].
     pub struct Prepared<R> {
-        /// Air density at sea level, slug/ft^3.
-        pub rho_0: R,
-        /// `1 / h_s`.
-        pub inv_h_s: R,
-        /// Reference area, ft^2.
-        pub s: R,
-        /// Coefficient of beta in C_T, dimensionless.
-        pub c_t_beta: R,
-        /// Coefficient of alpha^2 in C_D, 1/rad^2.
-        pub c_d_alpha_2: R,
-        /// Coefficient of alpha in C_D, 1/rad.
-        pub c_d_alpha: R,
-        /// Constant part of C_D, dimensionless.
-        pub c_d_0: R,
-        /// `1 / m`.
-        pub inv_m: R,
-        /// Gravitational constant of the Earth, ft^3/s^2.
-        pub mu: R,
-        /// Radius of the Earth, ft.
-        pub r_e: R,
-        /// Coefficient of alpha in C_L, 1/rad.
-        pub c_l_alpha: R,
-        /// Mean aerodynamic chord, ft.
-        pub c_bar: R,
-        /// `R::HALF * c_bar`.
-        pub half_c_bar: R,
-        /// Coefficient of alpha^2*q_hat in C_M, 1/rad^3.
-        pub c_m_alpha_2_q_hat: R,
-        /// Coefficient of alpha*q_hat in C_M, 1/rad^2.
-        pub c_m_alpha_q_hat: R,
-        /// Coefficient of q_hat in C_M, 1/rad.
-        pub c_m_q_hat: R,
-        /// Coefficient of alpha^2 in C_M, 1/rad^2.
-        pub c_m_alpha_2: R,
-        /// Coefficient of alpha in C_M, 1/rad.
-        pub c_m_alpha: R,
-        /// Constant part of C_M, dimensionless.
-        pub c_m_0: R,
-        /// Coefficient of tail in C_M, 1/rad.
-        pub c_m_tail: R,
-        /// `1 / i_yy`.
-        pub inv_i_yy: R,
-        /// `omega * omega`.
-        pub omega_2: R,
-        /// `2 * zeta * omega`.
-        pub two_zeta_omega: R,
-        /// `2 * c_d_alpha_2`.
-        pub two_c_d_alpha_2: R,
-        /// `inv_m * c_t_beta`.
-        pub c_t_beta_over_m: R,
-        /// `2 * c_m_alpha_2_q_hat`.
-        pub two_c_m_alpha_2_q_hat: R,
-        /// `2 * c_m_alpha_2`.
-        pub two_c_m_alpha_2: R,
-        /// `c_m_alpha - c_m_tail`.
-        pub c_m_alpha_minus_c_m_tail: R,
-        /// `-omega_2`.
-        pub minus_omega_2: R,
-        /// `R::from_f64(-2.0) * zeta * omega`.
-        pub minus_two_zeta_omega: R,
-        /// `c_bar * c_m_tail`.
-        pub c_bar_c_m_tail: R,
-        /// `inv_m * inv_m`.
-        pub inv_m_2: R,
-        /// `inv_h_s * inv_h_s`.
-        pub inv_h_s_2: R,
-        /// `inv_i_yy * inv_i_yy`.
-        pub inv_i_yy_2: R,
-        /// `c_bar * inv_i_yy`.
-        pub c_bar_over_i_yy: R,
-        /// `R::from_f64(-2.0) * omega`.
-        pub minus_two_omega: R,
-        /// `2 * omega`.
-        pub two_omega: R,
-        /// `2 * zeta`.
-        pub two_zeta: R,
-        /// `2 * inv_m`.
-        pub two_over_m: R,
-        /// `R::from_f64(-0.5) * c_bar`.
-        pub minus_half_c_bar: R,
+        inv_h_s, inv_m, half_c_bar, inv_i_yy, omega_2, two_zeta_omega, two_c_d_alpha_2, c_t_beta_over_m,
+        two_c_m_alpha_2_q_hat, two_c_m_alpha_2, c_m_alpha_minus_c_m_tail, minus_omega_2, minus_two_zeta_omega,
+        c_bar_c_m_tail, inv_m_2, inv_h_s_2, inv_i_yy_2, c_bar_over_i_yy, minus_two_omega, two_omega, two_zeta,
+        two_over_m, minus_half_c_bar,
+    }
+    from Parameters {
+        rho_0,
+        s,
+        c_t_beta,
+        c_d_alpha_2, c_d_alpha, c_d_0,
+        mu, r_e,
+        c_l_alpha,
+        c_bar,
+        c_m_alpha_2_q_hat, c_m_alpha_q_hat, c_m_q_hat, c_m_alpha_2, c_m_alpha, c_m_0, c_m_tail,
     }
 }
 
@@ -95,24 +30,7 @@ ahv_core::record! {
 ///
 /// 24 operations: 1 addition, 20 multiplications, 3 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
-    let mut c = Prepared::splat(R::ZERO);
-    c.rho_0 = p.rho_0;
-    c.s = p.s;
-    c.c_t_beta = p.c_t_beta;
-    c.c_d_alpha_2 = p.c_d_alpha_2;
-    c.c_d_alpha = p.c_d_alpha;
-    c.c_d_0 = p.c_d_0;
-    c.mu = p.mu;
-    c.r_e = p.r_e;
-    c.c_l_alpha = p.c_l_alpha;
-    c.c_bar = p.c_bar;
-    c.c_m_alpha_2_q_hat = p.c_m_alpha_2_q_hat;
-    c.c_m_alpha_q_hat = p.c_m_alpha_q_hat;
-    c.c_m_q_hat = p.c_m_q_hat;
-    c.c_m_alpha_2 = p.c_m_alpha_2;
-    c.c_m_alpha = p.c_m_alpha;
-    c.c_m_0 = p.c_m_0;
-    c.c_m_tail = p.c_m_tail;
+    let mut c = Prepared::copied(p);
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
     c.half_c_bar = R::HALF * p.c_bar;

@@ -6,70 +6,46 @@ use super::{Input, Prepared, State};
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Quantities of the drift that other functions need.
+    /// Quantities of the drift that other functions need. A field without a description is what its name says:
+    /// its formula and unit stand in [`intermediates`].
     pub struct Intermediates<R> {
-        /// `(-x.altitude * inv_h_s).exp()`.
-        pub exp_minus_altitude_over_h_s: R,
         /// Air density, slug/ft^3.
-        pub density: R,
-        /// `x.velocity * x.velocity`.
-        pub velocity_2: R,
+        density,
         /// Dynamic pressure, lb/ft^2.
-        pub dynamic_pressure: R,
-        /// `1 / radius`.
-        pub inv_radius: R,
-        /// `i.inv_radius * i.inv_radius`.
-        pub inv_radius_2: R,
+        dynamic_pressure,
         /// Acceleration of gravity, ft/s^2.
-        pub gravity: R,
-        /// `1 / x.velocity`.
-        pub inv_velocity: R,
+        gravity,
         /// Pitch rate times chord over twice the velocity, rad.
-        pub q_hat: R,
+        q_hat,
         /// Elevator deflection less angle of attack, rad.
-        pub tail: R,
+        tail,
         /// Lift coefficient, dimensionless.
-        pub c_l: R,
-        /// `x.alpha * x.alpha`.
-        pub alpha_2: R,
+        c_l,
         /// Drag coefficient, dimensionless.
-        pub c_d: R,
+        c_d,
         /// Thrust coefficient, dimensionless.
-        pub c_t: R,
-        /// `c_m_alpha_2_q_hat * i.alpha_2 + c_m_alpha_q_hat * x.alpha + c_m_q_hat`.
-        pub c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat: R,
+        c_t,
         /// Pitching-moment coefficient, dimensionless.
-        pub c_m: R,
+        c_m,
         /// Dynamic pressure times area, lb.
-        pub reference_force: R,
+        reference_force,
         /// Lift, lb.
-        pub lift: R,
+        lift,
         /// Drag, lb.
-        pub drag: R,
+        drag,
         /// Thrust, lb.
-        pub thrust: R,
+        thrust,
         /// Pitching moment, ft*lb.
-        pub pitching_moment: R,
-        /// ``.
-        pub sin_alpha: R,
-        /// ``.
-        pub cos_alpha: R,
-        /// ``.
-        pub sin_gamma: R,
-        /// ``.
-        pub cos_gamma: R,
-        /// `(i.gravity * i.inv_velocity - x.velocity * i.inv_radius) * i.cos_gamma`.
-        pub gravity_over_velocity_minus_velocity_over_radius_times_cos_gamma: R,
+        pitching_moment,
+        exp_minus_altitude_over_h_s, velocity_2, inv_radius, inv_radius_2, inv_velocity, alpha_2,
+        c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat, sin_alpha, cos_alpha, sin_gamma, cos_gamma,
+        gravity_over_velocity_minus_velocity_over_radius_times_cos_gamma,
     }
 }
 
 /// Computes [`Intermediates`].
 #[inline(always)]
-pub fn intermediates<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> Intermediates<R> {
+pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Intermediates<R> {
     let mut i = Intermediates::splat(R::ZERO);
 
     // Air and gravity, (1)
@@ -88,9 +64,7 @@ pub fn intermediates<R: Real>(
     i.tail = u.delta_e - x.alpha; // rad
     i.c_l = p.c_l_alpha * x.alpha;
     i.alpha_2 = x.alpha * x.alpha;
-    i.c_d = p.c_d_0
-        + p.c_d_alpha_2 * i.alpha_2
-        + p.c_d_alpha * x.alpha;
+    i.c_d = p.c_d_0 + p.c_d_alpha_2 * i.alpha_2 + p.c_d_alpha * x.alpha;
     i.c_t = p.c_t_beta * x.beta;
     i.c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat = p.c_m_alpha_2_q_hat * i.alpha_2
         + p.c_m_alpha_q_hat * x.alpha
@@ -117,57 +91,25 @@ pub fn intermediates<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the Jacobians that other functions need.
+    /// Quantities of the Jacobians that other functions need. A field without a description is what its name
+    /// says: its formula and unit stand in [`slopes`].
     pub struct Slopes<R> {
-        /// Derivative of dynamic pressure times area with respect to velocity, lb*s/ft.
-        pub d_reference_force_d_velocity: R,
-        /// Derivative of thrust with respect to velocity, lb*s/ft.
-        pub d_thrust_d_velocity: R,
-        /// Derivative of lift with respect to velocity, lb*s/ft.
-        pub d_lift_d_velocity: R,
         /// Partial derivative of turn rate with respect to thrust, rad/s/lb.
-        pub slope_of_gamma_rate_in_thrust: R,
-        /// `i.thrust * i.sin_alpha`.
-        pub thrust_sin_alpha: R,
-        /// `i.inv_velocity * i.inv_velocity`.
-        pub inv_velocity_2: R,
-        /// Derivative of pitching-moment coefficient with respect to velocity, s/ft.
-        pub d_c_m_d_velocity: R,
-        /// Derivative of acceleration of gravity with respect to altitude, 1/s^2.
-        pub d_gravity_d_altitude: R,
-        /// Derivative of air density with respect to altitude, slug/ft^4.
-        pub d_density_d_altitude: R,
-        /// Derivative of dynamic pressure times area with respect to altitude, lb/ft.
-        pub d_reference_force_d_altitude: R,
-        /// Derivative of thrust with respect to altitude, lb/ft.
-        pub d_thrust_d_altitude: R,
+        slope_of_gamma_rate_in_thrust,
         /// Partial derivative of turn rate with respect to distance to the centre of the Earth, rad/s/ft.
-        pub slope_of_gamma_rate_in_radius: R,
+        slope_of_gamma_rate_in_radius,
         /// Partial derivative of turn rate with respect to acceleration of gravity, rad*s/ft.
-        pub slope_of_gamma_rate_in_gravity: R,
-        /// Derivative of lift with respect to altitude, lb/ft.
-        pub d_lift_d_altitude: R,
-        /// Derivative of drag coefficient with respect to alpha, 1/rad.
-        pub d_c_d_d_alpha: R,
-        /// `two_c_m_alpha_2_q_hat * x.alpha + c_m_alpha_q_hat`.
-        pub two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat: R,
-        /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
-        pub d_c_m_d_alpha: R,
-        /// Derivative of pitching-moment coefficient with respect to pitch_rate, s/rad.
-        pub d_c_m_d_pitch_rate: R,
-        /// Derivative of turn rate with respect to beta, rad/s.
-        pub d_gamma_rate_d_beta: R,
+        slope_of_gamma_rate_in_gravity,
+        d_reference_force_d_velocity, d_thrust_d_velocity, d_lift_d_velocity, thrust_sin_alpha, inv_velocity_2,
+        d_c_m_d_velocity, d_gravity_d_altitude, d_density_d_altitude, d_reference_force_d_altitude, d_thrust_d_altitude,
+        d_lift_d_altitude, d_c_d_d_alpha, two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat, d_c_m_d_alpha,
+        d_c_m_d_pitch_rate, d_gamma_rate_d_beta,
     }
 }
 
 /// Computes [`Slopes`].
 #[inline(always)]
-pub fn slopes<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> Slopes<R> {
+pub fn slopes<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Slopes<R> {
     let mut s = Slopes::splat(R::ZERO);
 
     // Derivatives with respect to velocity
@@ -176,9 +118,8 @@ pub fn slopes<R: Real>(
     s.d_thrust_d_velocity = i.c_t * s.d_reference_force_d_velocity; // lb*s/ft
     s.d_lift_d_velocity = i.c_l * s.d_reference_force_d_velocity; // lb*s/ft
     s.slope_of_gamma_rate_in_thrust = i.sin_alpha * p.inv_m * i.inv_velocity; // rad/s/lb
-    s.d_c_m_d_velocity = -i
-        .c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat * i.q_hat
-        * i.inv_velocity; // s/ft
+    s.d_c_m_d_velocity = -i.c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat
+        * i.q_hat * i.inv_velocity; // s/ft
 
     // Derivatives with respect to altitude
     s.d_gravity_d_altitude = R::from_f64(-2.0) * i.gravity * i.inv_radius; // 1/s^2
@@ -192,20 +133,17 @@ pub fn slopes<R: Real>(
 
     // Derivatives with respect to alpha
     s.d_c_d_d_alpha = p.two_c_d_alpha_2 * x.alpha + p.c_d_alpha; // 1/rad
-    s.two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat = p.two_c_m_alpha_2_q_hat
-        * x.alpha + p.c_m_alpha_q_hat;
+    s.two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat = p.two_c_m_alpha_2_q_hat * x.alpha + p.c_m_alpha_q_hat;
     s.d_c_m_d_alpha = i.q_hat * s.two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat
         + p.two_c_m_alpha_2 * x.alpha
         + p.c_m_alpha_minus_c_m_tail; // 1/rad
 
     // Derivatives with respect to pitch_rate
-    s.d_c_m_d_pitch_rate = i
-        .c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat
+    s.d_c_m_d_pitch_rate = i.c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat
         * p.half_c_bar * i.inv_velocity; // s/rad
 
     // Derivatives with respect to beta
-    s.d_gamma_rate_d_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * p.c_t_beta; // rad/s
+    s.d_gamma_rate_d_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force * p.c_t_beta; // rad/s
 
     // Further values
     s.thrust_sin_alpha = i.thrust * i.sin_alpha;

@@ -29,11 +29,7 @@ pub const TABLE: Table = Table {
         Entry::coefficient("C_M", "alpha^2", "coefficient of alpha^2 in C_M"),
         Entry::coefficient("C_M", "alpha", "coefficient of alpha in C_M"),
         Entry::coefficient("C_M", "1", "constant part of C_M"),
-        Entry::coefficient(
-            "C_M",
-            "alpha^2*q_hat",
-            "coefficient of alpha^2*q_hat in C_M",
-        ),
+        Entry::coefficient("C_M", "alpha^2*q_hat", "coefficient of alpha^2*q_hat in C_M"),
         Entry::coefficient("C_M", "alpha*q_hat", "coefficient of alpha*q_hat in C_M"),
         Entry::coefficient("C_M", "q_hat", "coefficient of q_hat in C_M"),
         Entry::coefficient("C_M", "tail", "coefficient of tail in C_M"),
@@ -51,24 +47,14 @@ pub const TABLE: Table = Table {
         Interval::new("delta_e", "rad", VALIDITY.delta_e, &["delta_e"]),
     ],
     rules: &[
-        Rule::new(
-            "positive",
-            "`m` (vehicle mass) must be positive",
-            Sign::Positive,
-            &[Term::new(1.0, &["m"])],
-        ),
+        Rule::new("positive", "`m` (vehicle mass) must be positive", Sign::Positive, &[Term::new(1.0, &["m"])]),
         Rule::new(
             "positive",
             "`I_yy` (pitch moment of inertia) must be positive",
             Sign::Positive,
             &[Term::new(1.0, &["i_yy"])],
         ),
-        Rule::new(
-            "positive",
-            "`S` (reference area) must be positive",
-            Sign::Positive,
-            &[Term::new(1.0, &["s"])],
-        ),
+        Rule::new("positive", "`S` (reference area) must be positive", Sign::Positive, &[Term::new(1.0, &["s"])]),
         Rule::new(
             "positive",
             "`c_bar` (mean aerodynamic chord) must be positive",
