@@ -35,20 +35,22 @@ fn hessian_by_velocity_altitude<R: Real>(
 ) {
     // Derivatives with respect to velocity
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^2
-    let d2_thrust_d_velocity_d_velocity = i.c_t * p.s * i.density; // lb*s^2/ft^2
+    let d2_thrust_d_velocity_d_velocity = i.thrust_coefficient * p.s * i.density; // lb*s^2/ft^2
 
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^2
     let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
-    let d2_thrust_d_velocity_d_altitude = i.c_t * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
+    let d2_thrust_d_velocity_d_altitude = i.thrust_coefficient
+        * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
     let d2_gravity_d_altitude_d_altitude = R::from_f64(6.0) * i.gravity * i.inv_radius_2; // 1/s^2/ft
     let d2_density_d_altitude_d_altitude = i.density * p.inv_h_s_2; // slug/ft^5
     let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * d2_density_d_altitude_d_altitude; // lb/ft^4
     let d2_reference_force_d_altitude_d_altitude = p.s * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^2
     let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
-    let d2_thrust_d_altitude_d_altitude = i.c_t * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
+    let d2_thrust_d_altitude_d_altitude = i.thrust_coefficient
+        * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
 
     // Derivatives with respect to velocity
     let d2_lift_d_velocity_d_velocity = i.c_l * p.s * i.density; // lb*s^2/ft^2
@@ -180,8 +182,10 @@ fn hessian_by_beta_pitch_rate<R: Real>(
     hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to beta
-    let d2_thrust_d_velocity_d_beta = s.d_reference_force_d_velocity * p.c_t_beta; // lb*s/ft
-    let d2_thrust_d_altitude_d_beta = s.d_reference_force_d_altitude * p.c_t_beta; // lb/ft
+    let d2_thrust_d_velocity_d_beta = s.d_reference_force_d_velocity
+        * s.d_thrust_coefficient_d_beta; // lb*s/ft
+    let d2_thrust_d_altitude_d_beta = s.d_reference_force_d_altitude
+        * s.d_thrust_coefficient_d_beta; // lb/ft
 
     // Derivatives with respect to alpha
     let d_slope_of_gamma_rate_in_thrust_d_alpha = i.cos_alpha * p.inv_m * i.inv_velocity; // 1/s/lb
@@ -190,8 +194,7 @@ fn hessian_by_beta_pitch_rate<R: Real>(
     hessian.gamma.beta.velocity = s.slope_of_gamma_rate_in_thrust * d2_thrust_d_velocity_d_beta
         - s.d_gamma_rate_d_beta * i.inv_velocity; // rad/ft
     hessian.gamma.beta.altitude = s.slope_of_gamma_rate_in_thrust * d2_thrust_d_altitude_d_beta; // rad/s/ft
-    hessian.gamma.beta.alpha = d_slope_of_gamma_rate_in_thrust_d_alpha * i.reference_force
-        * p.c_t_beta; // 1/s
+    hessian.gamma.beta.alpha = d_slope_of_gamma_rate_in_thrust_d_alpha * s.d_thrust_d_beta; // 1/s
 
     // Derivatives with respect to pitch_rate
     let d2_c_m_d_velocity_d_pitch_rate = i
@@ -209,7 +212,7 @@ fn hessian_by_beta_pitch_rate<R: Real>(
 
     hessian.velocity.beta.velocity = i.cos_alpha * p.inv_m * d2_thrust_d_velocity_d_beta;
     hessian.velocity.beta.altitude = i.cos_alpha * p.inv_m * d2_thrust_d_altitude_d_beta;
-    hessian.velocity.beta.alpha = -i.sin_alpha * p.c_t_beta_over_m * i.reference_force;
+    hessian.velocity.beta.alpha = -i.sin_alpha * p.inv_m * s.d_thrust_d_beta;
     hessian.alpha.beta.velocity = -hessian.gamma.beta.velocity;
     hessian.alpha.beta.altitude = -hessian.gamma.beta.altitude;
     hessian.alpha.beta.alpha = -hessian.gamma.beta.alpha;
@@ -222,7 +225,7 @@ fn hessian_by_beta_pitch_rate<R: Real>(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 253 operations: 50 additions, 198 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 260 operations: 52 additions, 200 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);

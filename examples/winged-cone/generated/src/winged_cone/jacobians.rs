@@ -73,7 +73,7 @@ pub fn jacobians_values_from<R: Real>(
         - i.sin_gamma * s.d_gravity_d_altitude;
     state.velocity.gamma = -i.cos_gamma * i.gravity;
     state.velocity.alpha = -p.inv_m * (s.thrust_sin_alpha + d_drag_d_alpha);
-    state.velocity.beta = i.cos_alpha * p.c_t_beta_over_m * i.reference_force;
+    state.velocity.beta = i.cos_alpha * p.inv_m * s.d_thrust_d_beta;
     state.altitude.velocity = i.sin_gamma;
     state.altitude.gamma = x.velocity * i.cos_gamma;
     state.gamma.beta = s.d_gamma_rate_d_beta;
@@ -99,7 +99,7 @@ pub fn jacobians_values_from<R: Real>(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 131 operations: 29 additions, 97 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 139 operations: 31 additions, 100 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -121,7 +121,7 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 149 operations: 35 additions, 109 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 157 operations: 37 additions, 112 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

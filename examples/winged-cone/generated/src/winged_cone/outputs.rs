@@ -7,7 +7,7 @@ use ahv_core::Real;
 
 /// Quantities that people look at, which are not states.
 ///
-/// 36 operations: 10 additions, 24 multiplications, 1 division, 1 exp.
+/// 39 operations: 11 additions, 25 multiplications, 1 division, 1 exp, 1 select.
 #[inline(always)]
 pub fn outputs<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Outputs<R> {
     let i = intermediates(x, u, p);

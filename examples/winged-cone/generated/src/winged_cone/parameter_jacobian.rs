@@ -8,9 +8,9 @@ use ahv_core::Real;
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`ParameterJacobian`].
     pub struct ParameterJacobianEntries in parameter_jacobian_entries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
-        velocity { m, s, rho_0, h_s, r_e, mu, c_d_alpha_2, c_d_alpha, c_d_0, c_t_beta }
-        gamma { m, s, rho_0, h_s, r_e, mu, c_l_alpha, c_t_beta }
-        alpha { m, s, rho_0, h_s, r_e, mu, c_l_alpha, c_t_beta }
+        velocity { m, s, rho_0, h_s, r_e, mu, c_d_alpha_2, c_d_alpha, c_d_0, c_t_beta, c_t_high_0, c_t_high_beta }
+        gamma { m, s, rho_0, h_s, r_e, mu, c_l_alpha, c_t_beta, c_t_high_0, c_t_high_beta }
+        alpha { m, s, rho_0, h_s, r_e, mu, c_l_alpha, c_t_beta, c_t_high_0, c_t_high_beta }
         pitch_rate {
             i_yy, s, c_bar, rho_0, h_s, c_m_alpha_2, c_m_alpha, c_m_0, c_m_alpha_2_q_hat, c_m_alpha_q_hat, c_m_q_hat,
             c_m_tail,
@@ -23,7 +23,7 @@ ahv_core::entries! {
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 153 operations: 22 additions, 126 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// 178 operations: 23 additions, 147 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
@@ -33,7 +33,8 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     // Derivatives with respect to parameters
     parameter.gamma.m = -(i.lift + s.thrust_sin_alpha) * p.inv_m_2 * i.inv_velocity; // rad/s/slug
     parameter.gamma.s = i.dynamic_pressure
-        * (i.c_l * p.inv_m * i.inv_velocity + s.slope_of_gamma_rate_in_thrust * i.c_t); // rad/s/ft^2
+        * (i.c_l * p.inv_m * i.inv_velocity
+            + s.slope_of_gamma_rate_in_thrust * i.thrust_coefficient); // rad/s/ft^2
     let d_pitching_moment_d_c_bar = i.reference_force
         * (i.c_m
             + p.half_c_bar
@@ -42,7 +43,7 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     let d_dynamic_pressure_d_rho_0 = R::HALF * i.velocity_2 * i.exp_minus_altitude_over_h_s; // lb*ft/slug
     let d_reference_force_d_rho_0 = p.s * d_dynamic_pressure_d_rho_0; // lb*ft^3/slug
     let d_drag_d_rho_0 = i.c_d * d_reference_force_d_rho_0; // lb*ft^3/slug
-    let d_thrust_d_rho_0 = i.c_t * d_reference_force_d_rho_0; // lb*ft^3/slug
+    let d_thrust_d_rho_0 = i.thrust_coefficient * d_reference_force_d_rho_0; // lb*ft^3/slug
     let d_lift_d_rho_0 = i.c_l * d_reference_force_d_rho_0; // lb*ft^3/slug
     parameter.gamma.rho_0 = d_lift_d_rho_0 * p.inv_m * i.inv_velocity
         + s.slope_of_gamma_rate_in_thrust * d_thrust_d_rho_0; // rad*ft^3/s/slug
@@ -51,7 +52,7 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
     let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft
     let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft
-    let d_thrust_d_h_s = i.c_t * d_reference_force_d_h_s; // lb/ft
+    let d_thrust_d_h_s = i.thrust_coefficient * d_reference_force_d_h_s; // lb/ft
     let d_lift_d_h_s = i.c_l * d_reference_force_d_h_s; // lb/ft
     parameter.gamma.h_s = d_lift_d_h_s * p.inv_m * i.inv_velocity
         + s.slope_of_gamma_rate_in_thrust * d_thrust_d_h_s; // rad/s/ft
@@ -60,7 +61,7 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
         - R::TWO * s.slope_of_gamma_rate_in_gravity * i.gravity * i.inv_radius; // rad/s/ft
 
     parameter.velocity.m = -(i.thrust * i.cos_alpha - i.drag) * p.inv_m_2;
-    parameter.velocity.s = p.inv_m * i.dynamic_pressure * (i.cos_alpha * i.c_t - i.c_d);
+    parameter.velocity.s = p.inv_m * i.dynamic_pressure * (i.cos_alpha * i.thrust_coefficient - i.c_d);
     parameter.velocity.rho_0 = p.inv_m * (i.cos_alpha * d_thrust_d_rho_0 - d_drag_d_rho_0);
     parameter.velocity.h_s = p.inv_m * (i.cos_alpha * d_thrust_d_h_s - d_drag_d_h_s);
     parameter.velocity.r_e = R::TWO * i.sin_gamma * i.gravity * i.inv_radius;
@@ -68,10 +69,20 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
     parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
     parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
-    parameter.velocity.c_t_beta = i.cos_alpha * p.inv_m * i.reference_force * x.beta;
+    parameter.velocity.c_t_beta = i.cos_alpha * p.inv_m * i.reference_force * s.slope_of_thrust_coefficient_in_c_t
+        * x.beta;
+    parameter.velocity.c_t_high_0 = i.cos_alpha * p.inv_m * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t_high;
+    parameter.velocity.c_t_high_beta = i.cos_alpha * p.inv_m * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
     parameter.gamma.mu = s.slope_of_gamma_rate_in_gravity * i.inv_radius_2;
     parameter.gamma.c_l_alpha = i.reference_force * x.alpha * p.inv_m * i.inv_velocity;
-    parameter.gamma.c_t_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force * x.beta;
+    parameter.gamma.c_t_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t * x.beta;
+    parameter.gamma.c_t_high_0 = s.slope_of_gamma_rate_in_thrust * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t_high;
+    parameter.gamma.c_t_high_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
     parameter.alpha.m = -parameter.gamma.m;
     parameter.alpha.s = -parameter.gamma.s;
     parameter.alpha.rho_0 = -parameter.gamma.rho_0;
@@ -79,7 +90,12 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter.alpha.r_e = -parameter.gamma.r_e;
     parameter.alpha.mu = -s.slope_of_gamma_rate_in_gravity * i.inv_radius_2;
     parameter.alpha.c_l_alpha = -i.reference_force * x.alpha * p.inv_m * i.inv_velocity;
-    parameter.alpha.c_t_beta = -s.slope_of_gamma_rate_in_thrust * i.reference_force * x.beta;
+    parameter.alpha.c_t_beta = -s.slope_of_gamma_rate_in_thrust * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t * x.beta;
+    parameter.alpha.c_t_high_0 = -s.slope_of_gamma_rate_in_thrust * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t_high;
+    parameter.alpha.c_t_high_beta = -s.slope_of_gamma_rate_in_thrust * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
     parameter.pitch_rate.i_yy = -i.pitching_moment * p.inv_i_yy_2;
     parameter.pitch_rate.s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
     parameter.pitch_rate.c_bar = d_pitching_moment_d_c_bar * p.inv_i_yy;

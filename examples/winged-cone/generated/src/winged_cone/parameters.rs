@@ -37,6 +37,10 @@ ahv_core::vector! {
         c_d_0: ["1", "1", 1.0],
         /// Coefficient of beta in C_T, dimensionless.
         c_t_beta: ["1", "1", 1.0],
+        /// Constant part of C_T_high, dimensionless.
+        c_t_high_0: ["1", "1", 1.0],
+        /// Coefficient of beta in C_T_high, dimensionless.
+        c_t_high_beta: ["1", "1", 1.0],
         /// Coefficient of alpha^2 in C_M, 1/rad^2.
         c_m_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
         /// Coefficient of alpha in C_M, 1/rad.

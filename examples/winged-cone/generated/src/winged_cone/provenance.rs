@@ -22,6 +22,8 @@ pub const PROVENANCE: Parameters<Provenance> = Parameters {
     c_d_alpha: Provenance::new("xu2004", Status::Unverified, 0.1),
     c_d_0: Provenance::new("xu2004", Status::Unverified, 0.1),
     c_t_beta: Provenance::new("xu2004", Status::Unverified, 0.1),
+    c_t_high_0: Provenance::new("xu2004", Status::Unverified, 0.1),
+    c_t_high_beta: Provenance::new("xu2004", Status::Unverified, 0.1),
     c_m_alpha_2: Provenance::new("xu2004", Status::Unverified, 0.1),
     c_m_alpha: Provenance::new("xu2004", Status::Unverified, 0.1),
     c_m_0: Provenance::new("xu2004", Status::Unverified, 0.1),

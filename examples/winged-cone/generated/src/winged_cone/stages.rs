@@ -23,10 +23,10 @@ ahv_core::record! {
         c_l,
         /// Drag coefficient, dimensionless.
         c_d,
-        /// Thrust coefficient, dimensionless.
-        c_t,
         /// Pitching-moment coefficient, dimensionless.
         c_m,
+        /// Thrust coefficient, dimensionless.
+        thrust_coefficient,
         /// Dynamic pressure times area, lb.
         reference_force,
         /// Lift, lb.
@@ -65,7 +65,6 @@ pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> In
     i.c_l = p.c_l_alpha * x.alpha;
     i.alpha_2 = x.alpha * x.alpha;
     i.c_d = p.c_d_0 + p.c_d_alpha_2 * i.alpha_2 + p.c_d_alpha * x.alpha;
-    i.c_t = p.c_t_beta * x.beta;
     i.c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat = p.c_m_alpha_2_q_hat * i.alpha_2
         + p.c_m_alpha_q_hat * x.alpha
         + p.c_m_q_hat;
@@ -74,12 +73,15 @@ pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> In
         + p.c_m_alpha_2 * i.alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_tail * i.tail;
+    let c_t = p.c_t_beta * x.beta;
+    let c_t_high = p.c_t_high_0 + p.c_t_high_beta * x.beta;
+    i.thrust_coefficient = x.beta.select(R::ONE, c_t, c_t_high);
 
     // Forces and moment, (3)
     i.reference_force = i.dynamic_pressure * p.s; // lb
     i.lift = i.reference_force * i.c_l; // lb
     i.drag = i.reference_force * i.c_d; // lb
-    i.thrust = i.reference_force * i.c_t; // lb
+    i.thrust = i.reference_force * i.thrust_coefficient; // lb
     i.pitching_moment = i.reference_force * p.c_bar * i.c_m; // ft*lb
 
     // Further values
@@ -100,10 +102,15 @@ ahv_core::record! {
         slope_of_gamma_rate_in_radius,
         /// Partial derivative of turn rate with respect to acceleration of gravity, rad*s/ft.
         slope_of_gamma_rate_in_gravity,
+        /// Partial derivative of thrust coefficient with respect to thrust coefficient below beta = 1, dimensionless.
+        slope_of_thrust_coefficient_in_c_t,
+        /// Partial derivative of thrust coefficient with respect to thrust coefficient from beta = 1 on,
+        /// dimensionless.
+        slope_of_thrust_coefficient_in_c_t_high,
         d_reference_force_d_velocity, d_thrust_d_velocity, d_lift_d_velocity, thrust_sin_alpha, inv_velocity_2,
         d_c_m_d_velocity, d_gravity_d_altitude, d_density_d_altitude, d_reference_force_d_altitude, d_thrust_d_altitude,
         d_lift_d_altitude, d_c_d_d_alpha, two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat, d_c_m_d_alpha,
-        d_c_m_d_pitch_rate, d_gamma_rate_d_beta,
+        d_c_m_d_pitch_rate, d_thrust_coefficient_d_beta, d_thrust_d_beta, d_gamma_rate_d_beta,
     }
 }
 
@@ -115,7 +122,7 @@ pub fn slopes<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Interme
     // Derivatives with respect to velocity
     let d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
     s.d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft
-    s.d_thrust_d_velocity = i.c_t * s.d_reference_force_d_velocity; // lb*s/ft
+    s.d_thrust_d_velocity = i.thrust_coefficient * s.d_reference_force_d_velocity; // lb*s/ft
     s.d_lift_d_velocity = i.c_l * s.d_reference_force_d_velocity; // lb*s/ft
     s.slope_of_gamma_rate_in_thrust = i.sin_alpha * p.inv_m * i.inv_velocity; // rad/s/lb
     s.d_c_m_d_velocity = -i.c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat
@@ -126,7 +133,7 @@ pub fn slopes<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Interme
     s.d_density_d_altitude = -i.density * p.inv_h_s; // slug/ft^4
     let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * s.d_density_d_altitude; // lb/ft^3
     s.d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft
-    s.d_thrust_d_altitude = i.c_t * s.d_reference_force_d_altitude; // lb/ft
+    s.d_thrust_d_altitude = i.thrust_coefficient * s.d_reference_force_d_altitude; // lb/ft
     s.slope_of_gamma_rate_in_radius = -i.cos_gamma * x.velocity * i.inv_radius_2; // rad/s/ft
     s.slope_of_gamma_rate_in_gravity = -i.cos_gamma * i.inv_velocity; // rad*s/ft
     s.d_lift_d_altitude = i.c_l * s.d_reference_force_d_altitude; // lb/ft
@@ -143,7 +150,12 @@ pub fn slopes<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Interme
         * p.half_c_bar * i.inv_velocity; // s/rad
 
     // Derivatives with respect to beta
-    s.d_gamma_rate_d_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force * p.c_t_beta; // rad/s
+    s.slope_of_thrust_coefficient_in_c_t = x.beta.select(R::ONE, R::ONE, R::ZERO);
+    s.slope_of_thrust_coefficient_in_c_t_high = x.beta.select(R::ONE, R::ZERO, R::ONE);
+    s.d_thrust_coefficient_d_beta = s.slope_of_thrust_coefficient_in_c_t * p.c_t_beta
+        + s.slope_of_thrust_coefficient_in_c_t_high * p.c_t_high_beta;
+    s.d_thrust_d_beta = i.reference_force * s.d_thrust_coefficient_d_beta; // lb
+    s.d_gamma_rate_d_beta = s.slope_of_gamma_rate_in_thrust * s.d_thrust_d_beta; // rad/s
 
     // Further values
     s.thrust_sin_alpha = i.thrust * i.sin_alpha;

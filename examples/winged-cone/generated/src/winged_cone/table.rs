@@ -26,6 +26,8 @@ pub const TABLE: Table = Table {
         Entry::coefficient("C_D", "alpha", "coefficient of alpha in C_D"),
         Entry::coefficient("C_D", "1", "constant part of C_D"),
         Entry::coefficient("C_T", "beta", "coefficient of beta in C_T"),
+        Entry::coefficient("C_T_high", "1", "constant part of C_T_high"),
+        Entry::coefficient("C_T_high", "beta", "coefficient of beta in C_T_high"),
         Entry::coefficient("C_M", "alpha^2", "coefficient of alpha^2 in C_M"),
         Entry::coefficient("C_M", "alpha", "coefficient of alpha in C_M"),
         Entry::coefficient("C_M", "1", "constant part of C_M"),
