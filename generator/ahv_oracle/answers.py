@@ -15,6 +15,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from . import six_dof
 from .roots import Case
 from .vehicles import PUBLISHED, Vector, Vehicle
 
@@ -74,6 +75,8 @@ def _questions(examples: Path) -> Iterator[dict[str, object]]:
     for command, answers in _about_trim(PUBLISHED["parker_canard"]):
         yield question("parker-canard", command, answers)
     yield question("parker-canard", *_at_printed_point())
+    for arguments, answers in six_dof.questions(examples / "six-dof" / "six_dof.toml"):
+        yield question("six-dof", arguments, answers)
     for program, (folder, table) in TABLES.items():
         case = Case(examples / folder / f"{table}.toml", "dcom", "nominal")
         for command, answers in _of_case(case):

@@ -28,10 +28,13 @@ const PACKAGES: [(&str, &str); 5] = [
 ];
 /// The example of which `ahv new` makes a repository; the program has its name.
 const NEW: &str = "wang-stengel";
-/// The example whose package is checked in.
-const CHECKED_IN: &str = "winged-cone";
-/// It in turbulence: its example's README joins a gust, and the program has this name.
-const GUSTY: &str = "gusty-cone";
+/// The example in turbulence: its README joins a gust, and the program has this name.
+const GUSTY: (&str, &str) = ("gusty-cone", "winged-cone");
+/// The examples whose packages are checked in.
+const CHECKED_IN: [(&str, &[commands::Question]); 2] = [
+    ("six-dof", commands::SIX_DOF),
+    ("winged-cone", commands::WINGED_CONE),
+];
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
 const GENERATE: &str = "ahv generate";
@@ -65,7 +68,7 @@ pub(crate) fn run() -> Result<(), String> {
         ("parker-canard", &["parker_canard"], commands::PARKER_CANARD),
         ("pendulum", &["pendulum"], commands::PENDULUM),
         ("tank", &["tank"], commands::TANK),
-        (GUSTY, &["winged_cone", "gusty_cone"], commands::GUSTY_CONE),
+        (GUSTY.0, &["winged_cone", "gusty_cone"], commands::GUSTY_CONE),
     ] {
         println!("{program}");
         let own = Own::new(program, &place.join("made"));
@@ -82,7 +85,9 @@ pub(crate) fn run() -> Result<(), String> {
     let message = "--state-deviation: tank names no deviation that costs 1";
     Own::new("tank", &place.join("made")).refuses("lqr --model tank", message)?;
     new_repository(&place, &answers)?;
-    checked_in(&answers)?;
+    for (example, questions) in CHECKED_IN {
+        checked_in(example, questions, &answers)?;
+    }
     documented(&place)
 }
 
@@ -105,14 +110,18 @@ fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
     own.does("generate --check")
 }
 
-/// The example that is checked in with its package builds as it is, and answers as published.
-fn checked_in(answers: &Answers) -> Result<(), String> {
-    let folder = shell::root().join("examples").join(CHECKED_IN);
-    println!("examples/{CHECKED_IN}");
+/// An example that is checked in with its package builds as it is, and answers as published.
+fn checked_in(
+    example: &str,
+    questions: &[commands::Question],
+    answers: &Answers,
+) -> Result<(), String> {
+    let folder = shell::root().join("examples").join(example);
+    println!("examples/{example}");
     build(&folder)?;
-    let own = Own::new(CHECKED_IN, &shell::target().join("debug"));
-    own.answers(commands::WINGED_CONE)?;
-    answers.compare(CHECKED_IN, &own)
+    let own = Own::new(example, &shell::target().join("debug"));
+    own.answers(questions)?;
+    answers.compare(example, &own)
 }
 
 /// Makes the package of the tables and families in a folder.
@@ -138,8 +147,8 @@ fn tables_of(place: &Path, package: &str) -> PathBuf {
 
 /// Makes the package of the example with the gust that its README joins.
 fn gusty(place: &Path) -> Result<(), String> {
-    let example = shell::root().join("examples").join(CHECKED_IN);
-    let package = format!("{GUSTY}-models");
+    let example = shell::root().join("examples").join(GUSTY.1);
+    let package = format!("{}-models", GUSTY.0);
     let folder = tables_of(place, &package);
     let table = tables::joined(
         &read(&example.join("winged_cone.toml"))?,

@@ -135,11 +135,11 @@ pub struct Model {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Trim {
-    /// States that are given.
+    /// States and outputs that are given.
     pub given: Vec<Given>,
     /// States and inputs that are sought.
     pub sought: Vec<Sought>,
-    /// Rows of the drift that vanish.
+    /// Rows of the drift and outputs that vanish.
     pub equations: Vec<Equation>,
     /// States that move all the same.
     pub moving: Vec<String>,
@@ -147,11 +147,11 @@ pub struct Trim {
     pub shown: Vec<String>,
 }
 
-/// A state that is given.
+/// A state or an output that is given.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Given {
-    /// The state.
+    /// The state or output.
     pub name: String,
     /// Its value where none is asked for.
     pub default: f64,
@@ -173,7 +173,7 @@ pub struct Sought {
     pub scale: f64,
 }
 
-/// A row of the drift that vanishes.
+/// A row of the drift, or an output, that vanishes.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Equation {
@@ -394,7 +394,7 @@ impl Model {
         }
     }
 
-    /// Multiplies the numbers of trim and deviations with the factor of their state or input.
+    /// Multiplies the numbers of trim and deviations with the factor of their state, input or output.
     pub(crate) fn scale_description(&mut self, factor: impl Fn(&str) -> f64) {
         for given in &mut self.trim.given {
             let factor = factor(&given.name);

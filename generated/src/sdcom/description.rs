@@ -68,6 +68,9 @@ impl GeneratedModel for Model<f64> {
     fn generic<R: Real>(parameters: &Parameters<R>) -> Model<R> {
         Model::new(parameters)
     }
+    fn with_scalar<R: Real>(&self) -> Model<R> {
+        self.map_ref(|&it| R::from_f64(it))
+    }
 
     #[inline(always)]
     fn map_model<R: Real, U: Real>(model: &Model<R>, f: impl FnMut(&R) -> U) -> Model<U> {

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::shell;
 
 /// A command line, and facts of its JSON: `pointer = value`, `pointer ~ value` for a number of five digits, or `#pointer = length` of a list or an object.
-type Question = (&'static str, &'static [&'static str]);
+pub(super) type Question = (&'static str, &'static [&'static str]);
 
 /// Two flexible modes and a set `heavy`.
 pub(super) const TWO_MODES: &[Question] = &[
@@ -181,6 +181,32 @@ pub(super) const TANK: &[Question] = &[
     (
         "simulate --model tank --t-end 1 --dt 0.01 --out level.csv",
         &["/steps = 100", "#/final_state = 1"],
+    ),
+];
+
+/// Six degrees of freedom, in level flight and in a turn.
+pub(super) const SIX_DOF: &[Question] = &[
+    (
+        "trim --bank 30",
+        &[
+            "/converged = true",
+            "#/state = 13",
+            "/in_validity_box = true",
+        ],
+    ),
+    ("poles", &["#/poles = 13", "/modes/0/name = \"heading\""]),
+    (
+        "lqr --bank 30 --out turn.json",
+        &["#/gain = 4", "#/gain/0 = 13"],
+    ),
+    (
+        "montecarlo --bank 30 --feedback turn.json --members 16 --t-end 1 --dt 0.01 --disperse --state-std beta=1deg",
+        &["/members = 16", "/lost = 0", "/feedback = true"],
+    ),
+    ("disperse --bank 30 --members 30", &["#/failed = 0"]),
+    (
+        "covariance --state-std alpha=0.1deg --t-end 1 --dt 0.05 --members 30",
+        &["#/times/0/linear_std = 13"],
     ),
 ];
 
