@@ -120,6 +120,16 @@ def factor(text: str, expected: str) -> float:
     return ratio
 
 
+def in_radians(text: str) -> str:
+    """A unit with radians for degrees."""
+    return text.replace("deg", "rad")
+
+
+def whole(text: str) -> bool:
+    """Whether degrees stand in a unit with a whole power: only then is their conversion the same on every machine."""
+    return cast("float", _parse(text)._units.get("degree", 0)) % 1 == 0
+
+
 def other(system: str) -> str:
     """The system that is not `system`."""
     return SI if system == IMPERIAL else IMPERIAL
