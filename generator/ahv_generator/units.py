@@ -162,6 +162,15 @@ def dimensions(text: str) -> Dimensions:
     return {str(k): cast("float", v) * 1.0 for k, v in found.items() if str(k) != "[angle]" and v != 0}
 
 
+def basic(found: Dimensions) -> str:
+    """The unit of these dimensions in foot, slug, second and kelvin."""
+    names = {"[length]": "ft", "[mass]": "slug", "[time]": "s", "[temperature]": "K"}
+    powers = {names[name]: power for name, power in found.items() if abs(power) > 1e-9}
+    above = [_power(name, power) for name, power in powers.items() if power > 0]
+    below = [_power(name, -power) for name, power in powers.items() if power < 0]
+    return "/".join(["*".join(above) or "1", *below])
+
+
 def spelled(texts: Iterable[str]) -> dict[str, str]:
     """The spelling of each unit: that in which its like, `ft/s^2` of `ft/s/s`, stands first among `texts`."""
     first: dict[UnitsContainer, str] = {}

@@ -248,6 +248,8 @@ impl fmt::Display for Status {
 pub enum Basis {
     /// Further arguments of a function.
     Argument,
+    /// Where the equations of motion go over to another formula.
+    Boundary,
     /// Inputs.
     Input,
     /// Quantities that people look at.
