@@ -58,6 +58,10 @@ impl GeneratedModel for Model<f64> {
         Model::new(parameters)
     }
 
+    fn with_scalar<R: Real>(&self) -> Model<R> {
+        self.map_ref(|&it| R::from_f64(it))
+    }
+
     #[inline(always)]
     fn map_model<R: Real, U: Real>(model: &Model<R>, f: impl FnMut(&R) -> U) -> Model<U> {
         model.map_ref(f)

@@ -49,6 +49,8 @@ class Model:
 
     def __post_init__(self) -> None:
         self._section, self._equation = self.title, ""
+        # Of a quantity the unit that its author states it in; the graph has those of the table.
+        self._units: dict[str, str] = {}
         self.graph = Graph(self.table.units)
         for basis, prefix in LEAVES.items():
             for variable in self.bases.get(basis, ()):
@@ -124,6 +126,7 @@ class Model:
             raise FamilyError(f"`{plain}` has no text that says what it is")
         if any(f"{prefix}.{plain}" in self.graph.symbols for prefix in "xut") or plain in self.graph.symbols:
             raise FamilyError(f"the name `{plain}` is used twice in `{self.name}`")
+        self._units[plain] = unit
         return self.graph.define(
             plain,
             ca.SX(expr),
@@ -154,9 +157,7 @@ class Model:
         name = name or spec.key.lower()
         polynomial = polynomial or self.table.polynomials[spec.key]
         symbols = self.fit_symbols(variables or {})
-        for variable in spec.variables:
-            if variable not in symbols:
-                symbols[variable] = self[variable]
+        symbols |= {variable: self.seen(variable, symbols.get(variable)) for variable in spec.variables}
         if collect is None or not (slope := polynomial.linear_part(collect.name)).terms:
             expr = polynomial.expression(symbols)
         else:
@@ -172,6 +173,14 @@ class Model:
             rest = polynomial.without_linear(collect.name).expression(symbols)
             expr = per_variable * symbols[collect.name] + rest
         return self.define(name, expr, spec.symbol, spec.unit, spec.doc, equation=equation)
+
+    def seen(self, named: Named, value: ca.SX | None = None) -> ca.SX:
+        """A state as curve fits see it: with what parts add to it, such as the incidence of a gust.
+
+        A derived variable of curve fits is written in it. Without such a part it is the state itself, or `value` in
+        its place.
+        """
+        return self[named] if value is None else value
 
     def fit_symbols(self, variables: Mapping[str, ca.SX]) -> dict[str, ca.SX]:
         """What a polynomial is written in: quantities and coefficients by name, and the given variables."""
@@ -236,7 +245,10 @@ class Model:
     def outputs(self, *named: Named) -> None:
         """Quantities that commands print and reports show beside the states, as one function and one vector."""
         quantities = [self._defined(one) for one in named if name_of(one) not in self.names("state")]
-        self.bases["output"] = tuple(Variable(q.name, q.symbol, q.unit, q.doc) for q in quantities)
+        stated = [self._units.get(q.name, q.unit) for q in quantities]
+        self.bases["output"] = tuple(
+            Variable(q.name, q.symbol, unit, q.doc) for q, unit in zip(quantities, stated, strict=True)
+        )
         entries = tuple(Entry((q.name,), self.graph.symbols[q.name]) for q in quantities)
         doc = "Quantities that people look at, which are not states"
         self.add("outputs", "outputs", doc, "", [Output("", ("output",), entries)])
@@ -269,24 +281,28 @@ class Model:
         moving: Iterable[Named] = (),
         shown: Iterable[Named] = (),
     ) -> None:
-        """The trim problem: unknowns are `sought` so that the rows `equations` of the drift vanish.
+        """The trim problem: unknowns are `sought` so that the `equations`, rows of the drift and outputs, vanish.
 
-        States that are neither given nor sought are 0, inputs that are not sought are held. `moving` are states whose
-        rate need not vanish, such as the altitude; `shown` are states, inputs and outputs that a trim prints.
+        States and outputs may be `given`; an output that is given is an equation more. States that are neither given
+        nor sought are 0, inputs that are not sought are held. `moving` are states whose rate need not vanish, such as
+        the altitude; `shown` are states, inputs and outputs that a trim prints. The outputs are stated before.
 
         Raises:
             FamilyError: when there are not as many equations as unknowns, or a name fits nothing.
         """
         trim = Trim(tuple(given), tuple(sought), tuple(equations), *(tuple(map(name_of, n)) for n in (moving, shown)))
         rows, unknowns = [row.name for row in trim.equations], [one.name for one in trim.sought]
-        states, givens = self.names("state"), [state.name for state in trim.given]
+        states, givens = self.names("state"), [one.name for one in trim.given]
+        given_states = [name for name in givens if name in states]
+        known = (*states, *(output.name for output in self.bases.get("output", ())))
         likes = [equation.like_names for equation in trim.equations if equation.like_names]
-        self._refuse_unknown("states that a trim is given", givens, states)
+        self._refuse_unknown("states and outputs that a trim is given", givens, known)
         self._refuse_unknown("unknowns of the trim", unknowns, (*states, *self.names("input")))
-        self._refuse_unknown("equations of the trim", rows, states)
+        rows += [name for name in givens if name not in states]
+        self._refuse_unknown("equations of the trim", rows, known)
         self._refuse_unknown("states that move in the trim", trim.moving, states)
         self._refuse_unknown("rows that others are like", dict.fromkeys(row for row, _ in likes), rows)
-        self._refuse_unknown("values that others are like", dict.fromkeys(state for _, state in likes), givens)
+        self._refuse_unknown("values that others are like", dict.fromkeys(state for _, state in likes), given_states)
         if len(rows) != len(unknowns):
             raise FamilyError(
                 f"the trim of `{self.name}` has {len(rows)} equations ({', '.join(rows)}) for {len(unknowns)} unknowns"

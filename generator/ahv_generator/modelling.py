@@ -42,6 +42,7 @@ from .diagnostics import FamilyError
 from .family import Family, Outline
 from .function import Entry, Output
 from .model import Gains, Model, Rates
+from .part import Part, PartModel
 from .schema import (
     NOT_NEGATIVE,
     NOT_ZERO,
@@ -87,6 +88,8 @@ __all__ = [
     "Outline",
     "Output",
     "Parameter",
+    "Part",
+    "PartModel",
     "Quantity",
     "Rates",
     "Rule",

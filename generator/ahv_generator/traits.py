@@ -26,17 +26,20 @@ def name_of(named: Named | Parameter) -> str:
 
 @dataclass(frozen=True)
 class Given:
-    """A state that the caller of a trim gives; strictly between `above` and `below`, in the unit of the state."""
+    """A state or an output that the caller of a trim gives; strictly between `above` and `below`, in its unit.
 
-    state: Named
+    An output that is given is an equation: the trim has as many unknowns more as outputs are given.
+    """
+
+    what: Named
     default: float
     above: float | None = None
     below: float | None = None
 
     @property
     def name(self) -> str:
-        """Name of the state."""
-        return name_of(self.state)
+        """Name of the state or output."""
+        return name_of(self.what)
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,7 @@ class Sought:
 
 @dataclass(frozen=True)
 class Equation:
-    """A row of the drift that vanishes in a trim.
+    """A row of the drift, or an output, that vanishes in a trim.
 
     Rows are scaled by their largest slope, times `weight`. A row that is `like` another, (row, given state), has the
     scale of that row over the value of the state instead.
@@ -67,7 +70,7 @@ class Equation:
 
     @property
     def name(self) -> str:
-        """Name of the state whose rate it is."""
+        """Name of the state whose rate it is, or of the output."""
         return name_of(self.row)
 
     @property

@@ -67,6 +67,23 @@ def test_units_of_a_family_may_be_of_either_system(tmp_path: Path) -> None:
     assert [p.unit for p in table.parameters] == ["rad/s", "1/s", "1/s/ft^2"]
 
 
+def test_a_trim_may_be_given_an_output_and_have_one_as_an_equation(tmp_path: Path) -> None:
+    example = Path(__file__).parents[2] / "examples" / "van-der-pol"
+    family = (example / "van_der_pol.py").read_text(encoding="utf-8")
+    family = family.replace("Family, Model", "Family, Given, Model").replace(
+        "equations=[Equation(position), Equation(rate)]",
+        "given=[Given(energy, 2.0, above=0.0)], equations=[Equation(position)]",
+    )
+    (tmp_path / "van_der_pol.py").write_text(family, encoding="utf-8")  # in SI
+    text = (example / "van_der_pol.toml").read_text(encoding="utf-8").replace('"si"', '"ft-slug-s-rad"')
+    table = load_text(tmp_path / "van_der_pol.toml", re.sub(r'"(1/s/)?m(\W)', r'"\1ft\2', text))
+    (model,) = json.loads(ir.render(table, table.build()))["models"]
+    (given,) = model["trim"]["given"]
+    assert given["default"] == pytest.approx(2.0 / 0.3048**2, rel=1e-15)
+    assert (given["name"], given["above"]) == ("energy", 0)
+    assert model["bases"]["output"][0]["unit"] == "ft^2/s^2"
+
+
 FAULTS = [
     ("mass = { value = 2.0", "mass = { value = -2.0", "positive", ("pendulum", "mass", "value")),
     ("rate^3", "rate^9*rate", "monomial", ("C_F", "rate^9*rate")),
@@ -97,7 +114,9 @@ def test_the_rules_of_a_family_are_checked_in_table_and_sets(
 
 
 def test_no_other_file_lists_the_families() -> None:
-    families = {name: family_file.find(name, Path()).family(Outline()) for name in family_file.built_in()}
+    families = {
+        name: family_file.find_family(name, Path()).family(Outline()) for name in family_file.built_in("families")
+    }
     assert {name: tuple(family.models) for name, family in families.items()} == {
         "com": ("com", "com_rigid"),
         "dcom": ("dcom", "sdcom", "sdcom_printed", "sdcom_gust"),

@@ -14,7 +14,7 @@ from ahv_generator.diagnostics import Diagnostic, TableError
 from ahv_generator.table import load
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "van-der-pol"
-FAMILY = (EXAMPLE / "van_der_pol.py").read_text(encoding="utf-8")
+FAMILY = (EXAMPLE / "van_der_pol.py").read_text(encoding="utf-8").replace("Family, Model", "Family, Given, Model")
 TABLE = (EXAMPLE / "van_der_pol.toml").read_text(encoding="utf-8")
 
 ENERGY = '        energy = model.define("energy", (v**2 + (w * x) ** 2) / 2, "E", "m^2/s^2", "energy per mass")'
@@ -54,6 +54,7 @@ CASES = [
     (OMEGA, "1 / 0\n" + OMEGA, "1 / 0", "ZeroDivisionError: division by zero", None),
     (ENERGY, after(ENERGY, "raise ValueError('no such vehicle')"), "raise", "ValueError: no such vehicle", None),
     (OMEGA, "raise SystemExit(3)\n" + OMEGA, "raise", "SystemExit: 3", None),
+    (OMEGA, "import os\nos._exit(3)\n" + OMEGA, "os._exit", "`os._exit(3)` would end the derivation", None),
     (OMEGA, "omega == (\n" + OMEGA, "omega == (", "SyntaxError: '(' was never closed", None),
     (OMEGA, "import sibling\n" + OMEGA, "import sibling", "No module named 'sibling'", "a family is one file"),
     (OMEGA, "from .sibling import x\n" + OMEGA, "from .sibling", "relative import", None),
@@ -100,6 +101,12 @@ CASES = [
     (TRIM, "sought=[Sought(position)]", "model.trim",
      "the trim of `van_der_pol` has 2 equations (position, rate) for 1 unknowns (position)", None),
     (TRIM, 'sought=[Sought("speed"), Sought(rate)]', "model.trim", "there is no `speed`", None),
+    (TRIM, TRIM + ", given=[Given(energy, 1.0)]", "model.trim",
+     "has 3 equations (position, rate, energy) for 2 unknowns", None),
+    (TRIM, TRIM + ', given=[Given("speed", 1.0)]', "model.trim",
+     "that a trim is given of `van_der_pol`: there is no `speed`", None),
+    ("equations=[Equation(position), Equation(rate)]", "given=[Given(energy, 1.0)], equations=[Equation(energy)]",
+     "model.trim", "equations of the trim of `van_der_pol`: `energy` is used twice", None),
     (TRIM, TRIM + ', shown=["speed"]', MODEL, "that a trim shows of `van_der_pol`: there is no `speed`",
      None),
     (OUTPUTS, after(OUTPUTS, '    model.mode("one", rate)', '    model.mode("two", rate)'), 'model.mode("two"',

@@ -190,11 +190,11 @@ impl Real for Dual {
 
 /// The derivatives of the outputs of `model` at (x, u) by each state, then by each input: a vector over the outputs each.
 pub fn output_slopes<M: GeneratedModel>(
-    parameters: &M::ParametersOf<f64>,
+    model: &M,
     x: &M::State,
     u: &M::Input,
 ) -> Vec<M::OutputsOf<f64>> {
-    let model = M::generic(&M::map_parameters(parameters, |&it| Dual::constant(it)));
+    let model = model.with_scalar::<Dual>();
     let states = <M::State as Vector<f64>>::LEN;
     let slopes = (0..states + <M::Input as Vector<f64>>::LEN).map(|variable| {
         let mut x = M::map_state(x, |&it| Dual::constant(it));

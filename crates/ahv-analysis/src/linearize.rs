@@ -112,7 +112,7 @@ pub fn with_outputs<M: GeneratedModel>(
     let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
     let mut system = linearize(&model, x, u, &inputs, &[])?;
     let (n, m) = (system.states.len(), system.inputs.len());
-    let slopes = output_slopes::<M>(parameters, x, u);
+    let slopes = output_slopes(&model, x, u);
     let slope = |output: usize, variable: usize| {
         let slopes: Option<&M::OutputsOf<f64>> = slopes.get(variable);
         slopes.and_then(|slopes| slopes.get(output)).unwrap_or(0.0)

@@ -58,7 +58,7 @@ pub enum LqrError {
         /// Imaginary part, in rad/s.
         imaginary: f64,
     },
-    /// The weight Q does not see a mode that does not decay.
+    /// The weight Q does not see a mode that does not decay; of states that it does not see at all, one that grows.
     #[error("not detectable: no weighted state shows the mode {:+} {:+}i, which does not decay", Shown(*real), Shown(*imaginary))]
     NotDetectable {
         /// Real part of its eigenvalue, in 1/s.
@@ -83,7 +83,7 @@ pub struct Regulator {
     pub gain: DMatrix<f64>,
     /// X, states × states: the cost from x is xᵀXx.
     pub cost: DMatrix<f64>,
-    /// Eigenvalues of A − B K, in 1/s, rightmost first.
+    /// Eigenvalues of A − B K of the states that the weight sees, in 1/s, rightmost first.
     pub poles: Vec<Complex<f64>>,
     /// Residual of the Riccati equation over the largest of its terms, with every state measured by its weight.
     pub residual: f64,
@@ -113,6 +113,9 @@ impl Regulator {
     /// The regulator of A (states × states) and B (states × inputs) for the weights Q (states × states, positive
     /// semidefinite) and R (inputs × inputs, positive definite).
     ///
+    /// States that neither have a weight nor act on one that has, such as the position of a vehicle, change no cost: they have no
+    /// gain and no pole here, and move as they are driven.
+    ///
     /// # Errors
     ///
     /// [`LqrError`]; a regulator is only returned with a residual below 10⁻⁹ and all poles in the left half plane.
@@ -123,6 +126,10 @@ impl Regulator {
         r: &DMatrix<f64>,
     ) -> Result<Self, LqrError> {
         check(a, b, q, r)?;
+        let seen = seen(a, q);
+        if !seen.is_empty() && seen.len() < a.nrows() {
+            return Self::of_seen((a, b, q, r), &seen);
+        }
         // Units of states differ by orders of magnitude: each state is measured by its weight.
         let d = scales(q);
         let inverse = d.map(f64::recip);
@@ -166,6 +173,51 @@ impl Regulator {
             residual,
         })
     }
+}
+
+impl Regulator {
+    /// The regulator where the weight sees these states alone: no other acts on them.
+    fn of_seen(
+        (a, b, q, r): (&DMatrix<f64>, &DMatrix<f64>, &DMatrix<f64>, &DMatrix<f64>),
+        seen: &[usize],
+    ) -> Result<Self, LqrError> {
+        let hidden = (0..a.nrows()).filter(|state| !seen.contains(state));
+        let hidden: Vec<usize> = hidden.collect();
+        let hidden = a.select_rows(&hidden).select_columns(&hidden);
+        let rounding = OUT_OF_REACH * hidden.norm();
+        let rightmost = eigenvalues(&hidden).into_iter().next();
+        if let Some(Complex { re, im }) = rightmost.filter(|mode| mode.re > rounding) {
+            return Err(LqrError::NotDetectable {
+                real: re,
+                imaginary: im,
+            });
+        }
+        let square = |matrix: &DMatrix<f64>| matrix.select_rows(seen).select_columns(seen);
+        let part = Self::new(&square(a), &b.select_rows(seen), &square(q), r)?;
+        let mut gain = DMatrix::zeros(b.ncols(), a.nrows());
+        let mut cost = DMatrix::zeros(a.nrows(), a.nrows());
+        for (column, &state) in seen.iter().enumerate() {
+            gain.set_column(state, &part.gain.column(column));
+            for (row, &other) in seen.iter().enumerate() {
+                cost[(other, state)] = part.cost[(row, column)];
+            }
+        }
+        Ok(Self { gain, cost, ..part })
+    }
+}
+
+/// The states with a weight, and those that act on them, through however many states.
+fn seen(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Vec<usize> {
+    let n = a.nrows();
+    let weighted = |state: usize| q.column(state).iter().any(|&entry| entry != 0.0);
+    let mut open: Vec<usize> = (0..n).filter(|&state| weighted(state)).collect();
+    let mut seen = vec![false; n];
+    while let Some(state) = open.pop() {
+        if !std::mem::replace(&mut seen[state], true) {
+            open.extend((0..n).filter(|&other| a[(state, other)] != 0.0));
+        }
+    }
+    (0..n).filter(|&state| seen[state]).collect()
 }
 
 /// Refuses what is no linear-quadratic problem.

@@ -1,16 +1,18 @@
 //! Poles, their modes, and zeros of linear systems.
 
 mod balance;
+mod blocks;
 mod modes;
 mod staircase;
 mod zeros;
 
 use ahv_core::ModeOfMotion;
 use faer::Mat;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::linearize::LinearSystem;
 use balance::{balance, similar};
+use blocks::blocks;
 pub use zeros::{Decoupling, Zero, Zeros, zeros};
 
 /// A pole with the mode that it belongs to.
@@ -39,7 +41,8 @@ pub enum PolesError {
 pub fn damping(root: Complex<f64>) -> f64 {
     let frequency = frequency(root);
     if frequency > 0.0 {
-        -root.re / frequency
+        // A root on the imaginary axis has no sign.
+        -root.re / frequency + 0.0
     } else {
         0.0
     }
@@ -55,32 +58,47 @@ pub fn frequency(root: Complex<f64>) -> f64 {
 /// Modes are told by participation factors |uᵢ vᵢ| with right and left eigenvectors u, v (Perez-Arriaga, Verghese and
 /// Schweppe 1982), which do not depend on units.
 ///
+/// Poles are found block by block of states that act on each other. A state on which nothing depends, such as a position, has
+/// a pole of its own: together with the states that drive it, the pole 0 would be multiple and its eigenvectors one.
+///
 /// # Errors
 ///
 /// [`PolesError::NoConvergence`]
 pub fn poles(system: &LinearSystem, modes: &[ModeOfMotion]) -> Result<Vec<Pole>, PolesError> {
     let balanced = similar(&system.a, &balance(&system.a));
-    let n = balanced.nrows();
-    let eigen = Mat::from_fn(n, n, |row, column| balanced[(row, column)])
+    let mut found = Vec::with_capacity(balanced.nrows());
+    for block in blocks(&balanced) {
+        found.extend(of_block(&balanced, &block)?);
+    }
+    // The roots of a pair are equally large to the bit, the upper one stands first.
+    found.sort_by(|(a, _), (b, _)| {
+        let frequencies = frequency(*a).total_cmp(&frequency(*b));
+        frequencies.then(b.im.total_cmp(&a.im))
+    });
+    Ok(modes::named(modes, &system.states, &found))
+}
+
+/// The poles of some states, each with the participation of all states.
+fn of_block(
+    balanced: &DMatrix<f64>,
+    block: &[usize],
+) -> Result<Vec<(Complex<f64>, DVector<f64>)>, PolesError> {
+    let n = block.len();
+    let eigen = Mat::from_fn(n, n, |row, column| balanced[(block[row], block[column])])
         .eigen()
         .map_err(|_| PolesError::NoConvergence)?;
     let (values, vectors) = (eigen.S().column_vector(), eigen.U());
-    let mut order: Vec<usize> = (0..n).collect();
-    // The roots of a pair are equally large to the bit, the upper one stands first.
-    order.sort_by(|&i, &j| {
-        let frequencies = frequency(values[i]).total_cmp(&frequency(values[j]));
-        frequencies.then(values[j].im.total_cmp(&values[i].im))
-    });
-    let right = DMatrix::from_fn(n, n, |row, column| vectors[(row, order[column])]);
-    let values = order.iter().map(|&i| told_from_zero(values[i], &balanced));
-    let values: Vec<Complex<f64>> = values.collect();
-    let participation = participation(&right);
-    Ok(modes::named(
-        modes,
-        &system.states,
-        &values,
-        participation.as_ref(),
-    ))
+    let participation = participation(&DMatrix::from_fn(n, n, |row, column| {
+        vectors[(row, column)]
+    }));
+    let pole = |index: usize| {
+        let mut of_all = DVector::zeros(balanced.nrows());
+        for (row, &state) in block.iter().enumerate() {
+            of_all[state] = participation[(row, index)];
+        }
+        (told_from_zero(values[index], balanced), of_all)
+    };
+    Ok((0..n).map(pole).collect())
 }
 
 /// `root` of a balanced matrix or pencil; 0 where rounding cannot tell it from 0.
@@ -93,13 +111,19 @@ fn told_from_zero(root: Complex<f64>, balanced: &DMatrix<f64>) -> Complex<f64> {
     }
 }
 
-/// Participation of states (rows) in poles (columns); columns sum to 1. `None` without a full set of eigenvectors.
-fn participation(right: &DMatrix<Complex<f64>>) -> Option<DMatrix<f64>> {
-    let left = right.clone().try_inverse()?;
+/// Participation of states (rows) in poles (columns); columns sum to 1. All 0 without a full set of eigenvectors.
+fn participation(right: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
+    let none = right.map(|_| 0.0);
+    let Some(left) = right.clone().try_inverse() else {
+        return none;
+    };
     let mut factors = right.zip_map(&left.transpose(), |u, v| frequency(u * v));
     for mut column in factors.column_iter_mut() {
         let sum = column.sum();
         column /= sum;
     }
-    factors.iter().all(|it| it.is_finite()).then_some(factors)
+    match factors.iter().all(|it| it.is_finite()) {
+        true => factors,
+        false => none,
+    }
 }

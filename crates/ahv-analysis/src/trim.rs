@@ -1,17 +1,18 @@
-//! Steady states: the state and input at which the rows of the drift that a model's [`TrimProblem`] names vanish.
+//! Steady states: the state and input at which the rates and outputs that a model's [`TrimProblem`] names vanish.
 //!
 //! Some states are given, all inputs that are not sought are held. A flight on a straight path is such a state: given are
 //! velocity, altitude and flight-path angle; the row of the altitude does not vanish, and that of the angle of attack repeats
-//! the one of the flight path at zero pitch rate. A climb is steady at its instant only, for the air thins.
+//! the one of the flight path at zero pitch rate. A climb is steady at its instant only, for the air thins. An output that is
+//! given, such as the bank angle of a turn, is an equation more.
 
 mod nearest;
 mod newton;
 mod response;
 mod system;
 
-use ahv_core::{Bounds, DifferentiableModel, Equation, Given, Shown, Sought, TrimProblem, Vector};
+use ahv_core::{Bounds, Equation, GeneratedModel, Given, Shown, Sought, TrimProblem, Vector};
 
-pub use response::{Shift, response};
+pub use response::{ModelChange, Shift, response};
 use system::{Point, System};
 
 use crate::values::values;
@@ -24,7 +25,7 @@ pub struct SteadyState {
     sought: Vec<Sought>,
     equations: &'static [Equation],
     moving: &'static [&'static str],
-    /// Values of the given states by name.
+    /// Values of the given states and outputs by name.
     values: Vec<(&'static str, f64)>,
     /// Inputs that are held elsewhere than at 0.
     held: Vec<(&'static str, f64)>,
@@ -39,7 +40,7 @@ impl SteadyState {
         Self::converted(problem, |_| 1.0)
     }
 
-    /// The same for a model in other units: `factor` gives what each state and input of the problem is multiplied with.
+    /// The same for a model in other units: `factor` gives what each state, input and output of the problem is multiplied with.
     pub fn converted(problem: &TrimProblem, factor: impl Fn(&str) -> f64) -> Self {
         let given = problem.given.iter().map(|it| {
             let factor = factor(it.name);
@@ -66,7 +67,7 @@ impl SteadyState {
         }
     }
 
-    /// The same with another value of a given state. A name that is none of a given state is an error of [`Self::check`].
+    /// The same with another value of a given state or output. A name that is not given is an error of [`Self::check`].
     #[must_use]
     pub fn with(mut self, name: &'static str, value: f64) -> Self {
         self.values.retain(|&(known, _)| known != name);
@@ -100,7 +101,7 @@ impl SteadyState {
         self
     }
 
-    /// The given states by name, in the order of the problem.
+    /// The given states and outputs by name, in the order of the problem.
     pub fn given(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
         let value = |name| self.values.iter().find(|(known, _)| *known == name);
         self.given
@@ -168,7 +169,7 @@ pub struct Trim<X, U> {
     pub input: U,
     /// What is left of each row of the drift, 0 for states that move; each in its own unit per second.
     pub residuals: X,
-    /// The largest of their absolute values.
+    /// The largest absolute value of these, and of what outputs that are equations are off by.
     pub residual_max: f64,
     /// Steps taken.
     pub iterations: usize,
@@ -199,20 +200,35 @@ pub struct Nearest {
     pub input: Vec<(&'static str, f64)>,
     /// As [`Trim::residuals`], by name.
     pub residuals: Vec<(&'static str, f64)>,
-    /// The largest of their absolute values.
+    /// As [`Trim::residual_max`].
     pub residual_max: f64,
-    /// The row that is worst after scaling.
+    /// The equation that is worst after scaling: a state, whose rate does not vanish, or an output.
     pub worst: &'static str,
+    /// What is left of it: a rate in its own unit per second, an output in its unit.
+    pub worst_residual: f64,
     /// Steps taken.
     pub iterations: usize,
 }
 
 impl Nearest {
-    /// What is left of the worst row, in its own unit per second.
-    pub fn worst_residual(&self) -> f64 {
-        let mut rows = self.residuals.iter();
-        rows.find(|(name, _)| *name == self.worst)
-            .map_or(f64::NAN, |&(_, value)| value)
+    /// Whether the worst equation is a rate, not an output.
+    pub fn worst_is_rate(&self) -> bool {
+        self.state.iter().any(|(name, _)| *name == self.worst)
+    }
+}
+
+/// The worst equation as the end of a sentence.
+impl std::fmt::Display for Nearest {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (name, value) = (self.worst, Shown(self.worst_residual));
+        if self.worst_is_rate() {
+            write!(
+                formatter,
+                "the derivative of {name} is still {value} per second"
+            )
+        } else {
+            write!(formatter, "{name} is still off by {value}")
+        }
     }
 }
 
@@ -237,13 +253,13 @@ impl std::fmt::Display for Blocking {
 /// Why there is no trim.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrimError {
-    /// There is no such state, input or given state.
-    #[error("the model has no state or input called {name}, or it is not given")]
+    /// There is no such state, input or output, or it is not given.
+    #[error("the model has no state, input or output called {name}, or it is not given")]
     MissingName {
         /// The name that was looked for.
         name: &'static str,
     },
-    /// A given state where there is no steady state.
+    /// A given state or output where there is no steady state.
     #[error(
         "{name} is {}; it must be finite, above {} and below {}",
         Shown(*value),
@@ -251,7 +267,7 @@ pub enum TrimError {
         Shown(*below)
     )]
     Domain {
-        /// The state.
+        /// The state or output.
         name: &'static str,
         /// Its value, in the model's unit.
         value: f64,
@@ -260,21 +276,16 @@ pub enum TrimError {
         /// It must be below this.
         below: f64,
     },
-    /// A derivative is infinite or NaN where the search starts.
-    #[error("the derivative of {name} is {} where the trim starts", Shown(*value))]
+    /// A rate or an output is infinite or NaN where the search starts.
+    #[error("the equation of {name} is {} where the trim starts", Shown(*value))]
     NonFinite {
-        /// Row of the drift.
+        /// The state whose rate it is, or the output.
         name: &'static str,
         /// Its value.
         value: f64,
     },
     /// No trim inside the bounds.
-    #[error(
-        "no trim inside {}: at the nearest point the derivative of {} is {} per second",
-        list(blocking),
-        nearest.worst,
-        Shown(nearest.worst_residual())
-    )]
+    #[error("no trim inside {}: at the nearest point {nearest}", list(blocking))]
     Blocked {
         /// The bounds that the trim outside violates; where none is known, those that the search ran into. At least one.
         blocking: Vec<Blocking>,
@@ -284,12 +295,7 @@ pub enum TrimError {
         nearest: Box<Nearest>,
     },
     /// No trim was found, and no bound is the reason.
-    #[error(
-        "no trim after {} iterations: the derivative of {} is still {} per second",
-        nearest.iterations,
-        nearest.worst,
-        Shown(nearest.worst_residual())
-    )]
+    #[error("no trim after {} iterations: {nearest}", nearest.iterations)]
     NoConvergence {
         /// The nearest point.
         nearest: Box<Nearest>,
@@ -321,10 +327,10 @@ fn list(blocking: &[Blocking]) -> String {
 ///
 /// [`TrimError`], with the nearest point and the bounds that block; a trim is only returned with a scaled residual
 /// below 1e-12.
-pub fn trim<M>(model: &M, flight: &SteadyState) -> Result<Trim<M::State, M::Input>, TrimError>
-where
-    M: DifferentiableModel<Scalar = f64>,
-{
+pub fn trim<M: GeneratedModel>(
+    model: &M,
+    flight: &SteadyState,
+) -> Result<Trim<M::State, M::Input>, TrimError> {
     flight.check()?;
     let system = System::new(model, flight)?;
     let start = system.start(flight)?;

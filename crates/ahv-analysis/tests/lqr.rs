@@ -161,6 +161,21 @@ fn what_no_weight_sees_is_refused_unless_it_decays() {
     assert!(Regulator::new(&of(-0.25), &b, &q, &r).is_ok());
 }
 
+/// A mass whose speed alone has a weight: v' = u and K = 1; its position moves on.
+#[test]
+fn a_position_without_weight_has_no_gain() {
+    let a = of_rows(&[&[0.0, 1.0], &[0.0, 0.0]]);
+    let (b, r) = (of_rows(&[&[0.0], &[1.0]]), of_rows(&[&[1.0]]));
+    let q = of_rows(&[&[0.0, 0.0], &[0.0, 1.0]]);
+    let regulator = Regulator::new(&a, &b, &q, &r).expect("a regulator");
+    assert_eq!(regulator.gain[(0, 0)], 0.0);
+    assert_relative_eq!(regulator.gain[(0, 1)], 1.0, max_relative = 1e-12);
+    assert_eq!(regulator.poles.len(), 1);
+    assert_relative_eq!(regulator.poles[0].re, -1.0, max_relative = 1e-12);
+    let cost = of_rows(&[&[0.0, 0.0], &[0.0, 1.0]]);
+    assert_relative_eq!(regulator.cost, cost, epsilon = 1e-12);
+}
+
 #[test]
 fn what_is_no_problem_is_refused() {
     let (a, b) = (

@@ -149,7 +149,7 @@ fn slopes_are_those_of_differences<M: GeneratedModel>(share: f64) -> usize {
         let model = M::generic(&set.parameters);
         let x: M::State = inside(&M::STATE_BOUNDS, share);
         let u: M::Input = inside(&M::INPUT_BOUNDS, share);
-        let slopes = output_slopes::<M>(&set.parameters, &x, &u);
+        let slopes = output_slopes(&M::with_parameters(&set.parameters), &x, &u);
         assert_eq!(slopes.len(), names.len(), "{}", M::NAME);
         let values = M::outputs(&model, &x, &u);
         for (output, name) in M::OutputsOf::<f64>::NAMES.iter().enumerate() {

@@ -430,7 +430,7 @@ fn the_bound_that_blocks_is_told() {
     assert!(nearest.iterations < 20, "{nearest:?}");
     assert_eq!(nearest.input[0], ("phi", 0.2));
     assert_eq!(nearest.worst, "velocity");
-    assert!(nearest.worst_residual() < 0.0, "{nearest:?}");
+    assert!(nearest.worst_residual < 0.0, "{nearest:?}");
     let TrimError::Blocked {
         blocking, beyond, ..
     } = &error

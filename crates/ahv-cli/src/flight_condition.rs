@@ -9,7 +9,6 @@ use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
 use crate::assignment::Assignments;
 use crate::failure::{Failure, complain};
-use crate::labels::Labels;
 use crate::names;
 use crate::output::describe_outside;
 use crate::registry::models;
@@ -22,19 +21,24 @@ const SHARE: f64 = 0.618;
 
 /// What is given of a steady state, and the inputs that are held.
 pub(crate) struct FlightCondition {
-    /// Given states, as they stand on the command line.
+    /// Given states and outputs, as they stand on the command line.
     given: Vec<(&'static str, f64)>,
     input: Vec<String>,
 }
 
-/// The given states of all models, each once, with their unit and SI unit.
+/// The given states and outputs of all models, each once, with their unit and SI unit.
 fn all_given() -> Vec<(Given, [&'static str; 2])> {
     let mut all: Vec<(Given, [&str; 2])> = Vec::new();
     for model in models() {
-        let states = model.states();
         for given in model.trim_problem().given {
             if all.iter().all(|(known, _)| known.name != given.name) {
-                let unit = |units: Units| units.labels(states).unit(given.name);
+                let is_state = model.states().index_of(given.name).is_some();
+                let own = if is_state {
+                    model.states()
+                } else {
+                    model.outputs()
+                };
+                let unit = |units: Units| units.labels(own).unit(given.name);
                 all.push((*given, [unit(Units::FootSlug), unit(Units::Si)]));
             }
         }
@@ -65,13 +69,14 @@ fn is_angle(unit: &str) -> bool {
 /// What to say of a flag for a given state.
 fn help(given: &Given, [unit, si]: [&str; 2]) -> String {
     let name = given.name.replace('_', " ");
-    let (unit, other) = match (is_angle(unit), unit == si) {
-        (true, _) => ("deg", String::new()),
-        (false, true) => (unit, String::new()),
-        (false, false) => (unit, format!(", with --units si in {si}")),
+    let (unit, said) = match (is_angle(unit), unit == si) {
+        (true, _) => ("deg", " in deg".to_owned()),
+        (false, true) if unit == "1" => (unit, String::new()),
+        (false, true) => (unit, format!(" in {unit}")),
+        (false, false) => (unit, format!(" in {unit}, with --units si in {si}")),
     };
     format!(
-        "Given {name} in {unit}{other}{} [default: {}]",
+        "Given {name}{said}{} [default: {}]",
         domain(given, unit),
         show(given.default, unit)
     )
@@ -178,7 +183,7 @@ impl FlightCondition {
             if problem.given.iter().all(|given| given.name != name) {
                 let known: Vec<_> = problem.given.iter().map(|given| given.name).collect();
                 let problem = match known.as_slice() {
-                    [] => "no state is given".to_owned(),
+                    [] => "nothing is given".to_owned(),
                     known => format!("given are {}", names::list(known)),
                 };
                 return Err(Failure::Request(format!(
@@ -187,7 +192,7 @@ impl FlightCondition {
                     vehicle.name()
                 )));
             }
-            let is_angle = is_angle(vehicle.states.unit(name));
+            let is_angle = is_angle(vehicle.unit(name));
             flight = flight.with(name, if is_angle { value.to_radians() } else { value });
         }
         for (name, value) in inputs.iter() {
@@ -195,7 +200,7 @@ impl FlightCondition {
         }
         flight
             .check()
-            .map_err(|error| outside_domain(&error, vehicle.states))?;
+            .map_err(|error| outside_domain(&error, vehicle))?;
         Ok((flight, inputs))
     }
 
@@ -212,7 +217,7 @@ impl FlightCondition {
 }
 
 /// What to say of a flight condition outside the domain of steady states.
-fn outside_domain(error: &TrimError, states: Labels) -> Failure {
+fn outside_domain(error: &TrimError, vehicle: &Vehicle) -> Failure {
     Failure::Request(match *error {
         TrimError::Domain {
             name,
@@ -220,7 +225,7 @@ fn outside_domain(error: &TrimError, states: Labels) -> Failure {
             above,
             below,
         } => {
-            let unit = states.unit(name);
+            let unit = vehicle.unit(name);
             let given = Given::new(name, 0.0, above, below);
             let must = domain(&given, if is_angle(unit) { "deg" } else { unit });
             let must = must.strip_prefix(", ").unwrap_or("a finite number");
@@ -274,9 +279,10 @@ impl Vehicle {
         };
         let factor = |name: &str| {
             let state = of(self.model.states(), name);
-            let factor = state
-                .or_else(|| of(self.model.inputs(), name))
-                .unwrap_or(1.0);
+            let input = || of(self.model.inputs(), name);
+            let factor = state.or_else(input);
+            let factor = factor.or_else(|| of(self.model.outputs(), name));
+            let factor = factor.unwrap_or(1.0);
             self.units.factor_from(own, factor)
         };
         SteadyState::converted(&self.model.trim_problem(), factor)
@@ -367,7 +373,7 @@ impl Vehicle {
     /// Where a steady state is, for a person.
     pub(crate) fn at(&self, flight: &SteadyState) -> String {
         let given = flight.given().map(|(name, value)| {
-            let unit = self.states.unit(name);
+            let unit = self.unit(name);
             format!("{name} {}", show_beside(value, 0.0, unit))
         });
         let given: Vec<String> = given.collect();
@@ -402,12 +408,15 @@ impl Vehicle {
             }
             None => "nor was one found beyond".to_owned(),
         };
-        let rate = self.states.unit(nearest.worst);
+        let left = show(nearest.worst_residual, self.unit(nearest.worst));
+        let left = match nearest.worst_is_rate() {
+            true => format!("still changes by {left} a second"),
+            false => format!("is still off by {left}"),
+        };
         format!(
-            "no trim with {}; {instead}; at the nearest point {} still changes by {} a second",
+            "no trim with {}; {instead}; at the nearest point {} {left}",
             self.blocking(error).join(" and "),
-            nearest.worst,
-            show(nearest.worst_residual(), rate)
+            nearest.worst
         )
     }
 

@@ -180,7 +180,7 @@ impl Gains {
         flight: &SteadyState,
     ) -> Result<Self, String> {
         let text = text_of(path).map_err(|error| error.to_string())?;
-        let given: Vec<String> = Named::given(vehicle.model.states(), flight)
+        let given: Vec<String> = Named::given(vehicle, flight)
             .0
             .into_iter()
             .map(|it| it.0)
@@ -283,13 +283,14 @@ impl Gains {
         }
     }
 
-    /// The trim that the gains are about is of their condition: these states are given, not sought.
+    /// The trim that the gains are about is of their condition: these states and outputs are given, not sought.
     fn check_condition(&self, vehicle: &Vehicle, flight: &SteadyState) -> Result<(), String> {
         for ((name, _), (_, value)) in flight.given().zip(&self.condition.0) {
-            let Some((_, own)) = self.state.0.iter().find(|(own, _)| own == name) else {
+            let mut known = self.state.0.iter().chain(&self.outputs.0);
+            let Some((_, own)) = known.find(|(own, _)| own == name) else {
                 continue;
             };
-            let (_, own) = shown_as(name, *own, vehicle.states.unit(name));
+            let (_, own) = shown_as(name, *own, vehicle.unit(name));
             if (own - value).abs() > SAME * value.abs().max(1.0) {
                 return Err(format!(
                     "its `state` is not of its flight condition: {name}"
@@ -316,7 +317,7 @@ impl Gains {
             let own = own.and_then(|(_, chosen)| chosen.as_deref());
             text(name, &option(own), &option(*chosen));
         }
-        let flown = Named::given(vehicle.model.states(), flight);
+        let flown = Named::given(vehicle, flight);
         let mut pairs: Vec<(String, (f64, f64))> = Vec::new();
         for ((name, own), (_, flown)) in self.condition.0.iter().zip(&flown.0) {
             pairs.push((name.replace("_deg", " in deg"), (*own, *flown)));

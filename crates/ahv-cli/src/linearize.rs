@@ -196,7 +196,7 @@ fn json<'a>(
     let point = vehicle.point(state, input);
     Json {
         heading: vehicle.heading(),
-        condition: Named::given(vehicle.model.states(), flight),
+        condition: Named::given(vehicle, flight),
         states: &system.states,
         inputs: &system.inputs,
         outputs: &system.outputs,

@@ -161,7 +161,7 @@ fn gains(
         choices: Named::new(choices.map(|(name, chosen)| (name, chosen.map(str::to_owned)))),
         unit_system: vehicle.units.name().to_owned(),
         parameters_sha256: vehicle.fingerprint(),
-        condition: Named::given(vehicle.model.states(), flight),
+        condition: Named::given(vehicle, flight),
         law: LAW.to_owned(),
         states: text(&system.states),
         inputs: text(&names),

@@ -3,10 +3,11 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use ahv_analysis::erased::Components;
 use ahv_analysis::trim::SteadyState;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::vehicle::Vehicle;
 
 /// Values by name in their own order, each name once; an object in JSON.
 pub(crate) struct Named<T>(pub(crate) Vec<(String, T)>);
@@ -33,14 +34,10 @@ impl<T> Named<T> {
 }
 
 impl Named<f64> {
-    /// What is given of a steady state, of `states` in the model's own units; angles in deg, as their names say.
-    pub(crate) fn given(states: Components, flight: &SteadyState) -> Self {
-        Self::new(flight.given().map(|(name, value)| {
-            let unit = states
-                .index_of(name)
-                .and_then(|index| states.units.get(index));
-            shown_as(name, value, unit.copied().unwrap_or("1"))
-        }))
+    /// What is given of a steady state, in the units of the vehicle; angles in deg, as their names say.
+    pub(crate) fn given(vehicle: &Vehicle, flight: &SteadyState) -> Self {
+        let given = flight.given();
+        Self::new(given.map(|(name, value)| shown_as(name, value, vehicle.unit(name))))
     }
 
     /// The components with these names; 0 for one that has no name here.

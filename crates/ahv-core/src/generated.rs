@@ -92,6 +92,9 @@ pub trait GeneratedModel:
     /// The model of parameters with another scalar.
     fn generic<R: Real>(parameters: &Self::ParametersOf<R>) -> Self::With<R>;
 
+    /// This model with another scalar; its prepared values are constants there.
+    fn with_scalar<R: Real>(&self) -> Self::With<R>;
+
     /// The model with another scalar: `f` applied to every prepared value.
     fn map_model<R: Real, U: Real>(model: &Self::With<R>, f: impl FnMut(&R) -> U) -> Self::With<U>;
 
@@ -246,15 +249,15 @@ macro_rules! component_functions {
     };
 }
 
-/// What a steady state is: the rows of the drift that vanish, what is given and what is sought.
+/// What a steady state is: the rates and outputs that vanish, what is given and what is sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrimProblem {
-    /// States that are given.
+    /// States and outputs that are given. An output is an equation: it has the value that is given.
     pub given: &'static [Given],
     /// States and inputs that are sought, states first. A state that is neither given nor sought is 0; an input that is not
     /// sought is held.
     pub sought: &'static [Sought],
-    /// Rows of the drift that vanish, as many as there are unknowns.
+    /// Rows of the drift and outputs that vanish; with the outputs that are given as many as there are unknowns.
     pub equations: &'static [Equation],
     /// States that move all the same, such as the altitude of a climb.
     pub moving: &'static [&'static str],
@@ -262,10 +265,10 @@ pub struct TrimProblem {
     pub shown: &'static [&'static str],
 }
 
-/// A state that is given.
+/// A state or an output that is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
-    /// The state.
+    /// The state or output.
     pub name: &'static str,
     /// Its value where none is asked for.
     pub default: f64,
@@ -305,10 +308,10 @@ impl Sought {
     }
 }
 
-/// A row of the drift that vanishes.
+/// A row of the drift, or an output, that vanishes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equation {
-    /// The row.
+    /// The state whose rate it is, or the output.
     pub name: &'static str,
     /// How much it weighs where not all rows can vanish.
     pub weight: f64,

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::shell;
 
 /// A command line, and facts of its JSON: `pointer = value`, `pointer ~ value` for a number of five digits, or `#pointer = length` of a list or an object.
-type Question = (&'static str, &'static [&'static str]);
+pub(super) type Question = (&'static str, &'static [&'static str]);
 
 /// Two flexible modes and a set `heavy`.
 pub(super) const TWO_MODES: &[Question] = &[
@@ -25,13 +25,13 @@ pub(super) const TWO_MODES: &[Question] = &[
         "trim --model dcom",
         &[
             "/converged = true",
-            "/set = \"own\"",
+            "/set = \"nominal\"",
             "#/eta = 2",
             "#/state = 9",
         ],
     ),
     (
-        "trim --model dcom --table tables-of-own-models/own.toml --set heavy",
+        "trim --model dcom --table tables-of-own-models/two_mode.toml --set heavy",
         &["/converged = true", "/set = \"heavy\""],
     ),
     (
@@ -96,9 +96,20 @@ pub(super) const TWO_MODES: &[Question] = &[
     ),
 ];
 
-/// One model of a family.
-pub(super) const DCOM_ALONE: &[Question] =
-    &[("trim --model dcom", &["/converged = true", "#/eta = 3"])];
+/// One model of a family, with a mode more than the table of the built-in family has.
+pub(super) const FOUR_MODE: &[Question] = &[(
+    "trim --model dcom",
+    &["/converged = true", "#/eta = 4", "/in_validity_box = true"],
+)];
+
+/// Equations of a built-in family in a family of its own.
+pub(super) const PARKER_CANARD: &[Question] = &[
+    (
+        "trim --input delta_c=2deg",
+        &["/converged = true", "/in_validity_box = true"],
+    ),
+    ("poles --inputs phi,delta_e,delta_c", &["#/inputs = 3"]),
+];
 
 /// One model of a family, without flexible modes and without noise.
 pub(super) const COM_RIGID_ALONE: &[Question] = &[
@@ -173,10 +184,36 @@ pub(super) const TANK: &[Question] = &[
     ),
 ];
 
+/// Six degrees of freedom, in level flight and in a turn.
+pub(super) const SIX_DOF: &[Question] = &[
+    (
+        "trim --bank 30",
+        &[
+            "/converged = true",
+            "#/state = 13",
+            "/in_validity_box = true",
+        ],
+    ),
+    ("poles", &["#/poles = 13", "/modes/0/name = \"heading\""]),
+    (
+        "lqr --bank 30 --out turn.json",
+        &["#/gain = 4", "#/gain/0 = 13"],
+    ),
+    (
+        "montecarlo --bank 30 --feedback turn.json --members 16 --t-end 1 --dt 0.01 --disperse --state-std beta=1deg",
+        &["/members = 16", "/lost = 0", "/feedback = true"],
+    ),
+    ("disperse --bank 30 --members 30", &["#/failed = 0"]),
+    (
+        "covariance --state-std alpha=0.1deg --t-end 1 --dt 0.05 --members 30",
+        &["#/times/0/linear_std = 13"],
+    ),
+];
+
 /// The published trim of the winged cone: alpha 0.0312 rad, throttle 0.1762, elevator -0.0069 rad.
 pub(super) const WINGED_CONE: &[Question] = &[
     (
-        "trim --velocity 15060 --altitude 110000",
+        "trim --model winged_cone --velocity 15060 --altitude 110000",
         &[
             "/converged = true",
             "/state/alpha ~ 0.031227",
@@ -185,9 +222,47 @@ pub(super) const WINGED_CONE: &[Question] = &[
         ],
     ),
     ("poles", &["#/poles = 7"]),
+];
+
+/// As computed. Published, coarsely rounded: alpha 0.0315 rad, throttle 0.183, elevator -0.0066 rad.
+pub(super) const WANG_STENGEL: &[Question] = &[
+    (
+        "trim --model wang_stengel --velocity 15060 --altitude 110000",
+        &[
+            "/converged = true",
+            "/state/alpha ~ 0.031225",
+            "/input/beta_command ~ 0.17619",
+            "/input/delta_e ~ -0.0069465",
+        ],
+    ),
     (
         "montecarlo --members 1000 --t-end 1 --dt 0.01 --disperse",
         &["/members = 1000", "/lost = 0", "#/mean = 7"],
+    ),
+];
+
+/// A gust of two states joins the winged cone: at rest it changes no trim, and it drives every member of its own.
+pub(super) const GUSTY_CONE: &[Question] = &[
+    (
+        "trim --model gusty_cone --velocity 15060 --altitude 110000",
+        &[
+            "/converged = true",
+            "/state/alpha ~ 0.031227",
+            "/state/gust_first = 0.0",
+            "/input/delta_e ~ -0.0069454",
+        ],
+    ),
+    (
+        "poles --model gusty_cone",
+        &["#/poles = 9", "/modes/7/name = \"gust\""],
+    ),
+    (
+        "montecarlo --model gusty_cone --members 1000 --t-end 1 --dt 0.01",
+        &["/members = 1000", "/lost = 0", "#/mean = 9"],
+    ),
+    (
+        "montecarlo --model winged_cone --members 16 --t-end 1 --dt 0.01 --disperse",
+        &["/members = 16", "/lost = 0", "#/mean = 7"],
     ),
 ];
 
@@ -228,15 +303,19 @@ impl Own {
     pub(super) fn answers(&self, questions: &[Question]) -> Result<(), String> {
         for (line, facts) in questions {
             println!("  {line}");
-            let answer = self.ask(&format!("{line} --json"))?;
-            let json: Value = serde_json::from_str(&answer)
-                .map_err(|error| format!("error: {line}: {error}\n{answer}"))?;
+            let json = self.json(line)?;
             for fact in *facts {
                 holds(&json, fact)
                     .map_err(|found| format!("error: {line}: not {fact}, but {found}"))?;
             }
         }
         Ok(())
+    }
+
+    /// What a command answers with `--json`.
+    pub(super) fn json(&self, line: &str) -> Result<Value, String> {
+        let answer = self.ask(&format!("{line} --json"))?;
+        serde_json::from_str(&answer).map_err(|error| format!("error: {line}: {error}\n{answer}"))
     }
 
     /// Holds a command to being refused with this message.

@@ -1,7 +1,7 @@
 //! Which pole belongs to which mode.
 
 use ahv_core::ModeOfMotion;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DVector};
 
 use super::Pole;
 
@@ -12,39 +12,37 @@ struct Group {
     free: usize,
 }
 
-/// The poles with their modes.
+/// The poles, found with the participation of each state, with their modes.
 ///
 /// A mode has as many poles as states. Poles, pairs together, go to the mode whose states participate most, the
 /// clearest cases first.
 pub(super) fn named(
     modes: &[ModeOfMotion],
     states: &[&str],
-    values: &[Complex<f64>],
-    participation: Option<&DMatrix<f64>>,
+    found: &[(Complex<f64>, DVector<f64>)],
 ) -> Vec<Pole> {
-    let mut poles: Vec<Pole> = values
+    let mut poles: Vec<Pole> = found
         .iter()
-        .map(|&value| Pole {
+        .map(|&(value, _)| Pole {
             value,
             mode: None,
             participation: 0.0,
         })
         .collect();
-    let Some(participation) = participation else {
-        return poles;
-    };
     let mut groups = groups(modes, states);
     let mut cases = Vec::new();
-    for (pole, value) in values
-        .iter()
-        .enumerate()
-        .filter(|(_, value)| value.im >= 0.0)
-    {
+    for (pole, (value, participation)) in found.iter().enumerate() {
         // The upper root of a pair stands before the lower one.
-        let size = if value.im > 0.0 { 2 } else { 1 };
+        let size = match value.im {
+            im if im > 0.0 => 2,
+            im if im < 0.0 => continue,
+            _ => 1,
+        };
         for (group, Group { states, .. }) in groups.iter().enumerate() {
-            let share: f64 = states.iter().map(|&it| participation[(it, pole)]).sum();
-            cases.push((share, pole, size, group));
+            let share: f64 = states.iter().map(|&it| participation[it]).sum();
+            if share > 0.0 {
+                cases.push((share, pole, size, group));
+            }
         }
     }
     cases.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -111,19 +109,15 @@ mod tests {
     #[test]
     fn the_height_mode_is_the_slowest_of_three_real_poles() {
         let values = [7.1e-5, 0.013_75, -0.014_37].map(Complex::from);
-        let shares = [0.2, 0.3, 0.3, 0.3, 0.1, 0.1, 0.5, 0.6, 0.6];
-        let participation = DMatrix::from_row_slice(3, 3, &shares);
+        let shares = [[0.2, 0.3, 0.5], [0.3, 0.1, 0.6], [0.3, 0.1, 0.6]];
+        let shares = shares.map(|of| DVector::from_row_slice(&of));
+        let found: Vec<_> = values.into_iter().zip(shares).collect();
         let phugoid = ModeOfMotion::new(
             "phugoid",
             &["velocity", "altitude", "gamma"],
             Some("height"),
         );
-        let poles = named(
-            &[phugoid],
-            &["velocity", "gamma", "altitude"],
-            &values,
-            Some(&participation),
-        );
+        let poles = named(&[phugoid], &["velocity", "gamma", "altitude"], &found);
         let modes: Vec<_> = poles.iter().map(|pole| pole.mode).collect();
         let [height, phugoid] = [Some("height"), Some("phugoid")];
         assert_eq!(modes, [height, phugoid, phugoid]);

@@ -1,6 +1,6 @@
 //! A Levenberg-Marquardt method inside the bounds: Moré 1978, with the step projected onto the box.
 
-use ahv_core::DifferentiableModel;
+use ahv_core::GeneratedModel;
 use nalgebra::{DMatrix, DVector};
 
 use super::{Blocking, Point, System};
@@ -17,7 +17,7 @@ const SOLVED: f64 = 1e-12;
 /// Damping at the start, its factor after a step that fails, and the damping that ends the search.
 const DAMPING: (f64, f64, f64) = (1e-3, 10.0, 1e12);
 
-impl<M: DifferentiableModel<Scalar = f64>> System<'_, M> {
+impl<M: GeneratedModel> System<'_, M> {
     /// The point inside the bounds with a minimum of the sum of squares, from `start`, and the steps taken.
     pub(super) fn nearest(&self, start: Point<M>) -> (Point<M>, usize) {
         let mut point = self.clamped(&start);

@@ -1,6 +1,6 @@
 //! A damped Newton method without bounds.
 
-use ahv_core::DifferentiableModel;
+use ahv_core::GeneratedModel;
 
 use super::{Point, System};
 
@@ -14,13 +14,13 @@ const MAX_HALVINGS: i32 = 30;
 const TOLERANCE: f64 = 1e-12;
 
 /// Where Newton's method ended.
-pub(super) struct Outcome<M: DifferentiableModel<Scalar = f64>> {
+pub(super) struct Outcome<M: GeneratedModel> {
     pub(super) point: Point<M>,
     pub(super) converged: bool,
     pub(super) iterations: usize,
 }
 
-impl<M: DifferentiableModel<Scalar = f64>> System<'_, M> {
+impl<M: GeneratedModel> System<'_, M> {
     /// Newton's method from `point`, each step halved until the residual shrinks.
     pub(super) fn solve(&self, mut point: Point<M>) -> Outcome<M> {
         let mut iterations = 0;

@@ -1,6 +1,6 @@
-//! How a trim moves when the drift changes.
+//! How a trim moves when the model changes.
 
-use ahv_core::{DifferentiableModel, Model, Vector};
+use ahv_core::{GeneratedModel, Model, Vector};
 use nalgebra::DVector;
 
 use super::{Point, SteadyState, System, Trim, TrimError};
@@ -14,11 +14,20 @@ pub struct Shift<X, U> {
     pub input: U,
 }
 
-/// The shifts of a trim, one for each change of the drift; `None` where they are not determined.
+/// A change of the model at a state and input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelChange<X, Y> {
+    /// Change of the drift.
+    pub drift: X,
+    /// Change of the outputs.
+    pub outputs: Y,
+}
+
+/// The shifts of a trim, one for each change of the model; `None` where they are not determined.
 type Shifts<M> = Option<Vec<Shift<<M as Model>::State, <M as Model>::Input>>>;
 
-/// First-order changes of state and input at the `trim` of `flight` for each change of the drift among `changes`, for
-/// example ∂f/∂p for one parameter p: then they are ∂x/∂p and ∂u/∂p.
+/// First-order changes of state and input at the `trim` of `flight` for each change of the model among `changes`, for
+/// example its derivative by one parameter p: then they are ∂x/∂p and ∂u/∂p.
 ///
 /// By the implicit function theorem, through the Jacobian of the trim's equations. What is given does not move.
 /// `None` where that Jacobian is singular.
@@ -30,10 +39,10 @@ pub fn response<M>(
     model: &M,
     flight: &SteadyState,
     trim: &Trim<M::State, M::Input>,
-    changes: &[M::State],
+    changes: &[ModelChange<M::State, M::OutputsOf<f64>>],
 ) -> Result<Shifts<M>, TrimError>
 where
-    M: DifferentiableModel<Scalar = f64>,
+    M: GeneratedModel,
 {
     let system = System::new(model, flight)?;
     let point = Point {
@@ -46,8 +55,9 @@ where
         x: M::State::splat(0.0),
         u: M::Input::splat(0.0),
     };
-    let moved = |change: &M::State| {
-        let step: DVector<f64> = factors.solve(&-system.scaled(change))?;
+    let moved = |change: &ModelChange<M::State, M::OutputsOf<f64>>| {
+        let change = system.scaled(|source| source.value(&change.drift, &change.outputs));
+        let step: DVector<f64> = factors.solve(&-change)?;
         let moved: Point<M> = system.moved(&origin, &step)?;
         Some(Shift {
             state: moved.x,

@@ -1,31 +1,66 @@
 //! The equations of a trim, and their unknowns.
 
-use ahv_core::{Bounds, DifferentiableModel, Equation, Real, Sought, Vector};
+use ahv_core::{Bounds, Equation, GeneratedModel, Real, Sought, Vector};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Blocking, Nearest, SteadyState, Trim, TrimError};
+use crate::dual::output_slopes;
 
 /// A state with its input.
-pub(super) struct Point<M: DifferentiableModel<Scalar = f64>> {
+pub(super) struct Point<M: GeneratedModel> {
     pub(super) x: M::State,
     pub(super) u: M::Input,
 }
 
-impl<M: DifferentiableModel<Scalar = f64>> Clone for Point<M> {
+impl<M: GeneratedModel> Clone for Point<M> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<M: DifferentiableModel<Scalar = f64>> Copy for Point<M> {}
+impl<M: GeneratedModel> Copy for Point<M> {}
 
-/// Which components are unknowns, which rows are equations.
+/// Where an equation stands: in a row of the drift, or in an output.
+#[derive(Clone, Copy)]
+pub(super) enum Source {
+    Rate(usize),
+    Output(usize),
+}
+
+impl Source {
+    fn of<M: GeneratedModel>(name: &'static str) -> Result<Self, TrimError> {
+        let rate = M::State::index_of(name).map(Self::Rate);
+        rate.or_else(|| M::OutputsOf::<f64>::index_of(name).map(Self::Output))
+            .ok_or(TrimError::MissingName { name })
+    }
+
+    const fn is_output(self) -> bool {
+        matches!(self, Self::Output(_))
+    }
+
+    /// Its component of the drift and the outputs.
+    pub(super) fn value<X: Vector<f64>, Y: Vector<f64>>(self, drift: &X, outputs: &Y) -> f64 {
+        let value = match self {
+            Self::Rate(index) => drift.get(index),
+            Self::Output(index) => outputs.get(index),
+        };
+        value.unwrap_or(0.0)
+    }
+}
+
+/// An equation: what has a value, which value that is, and how it is measured.
+struct Row {
+    source: Source,
+    value: f64,
+    equation: Equation,
+}
+
+/// Which components are unknowns, which rows and outputs are equations.
 ///
 /// Unknowns and residuals are scaled throughout. The scale of the rows is that of the start, so that residuals of
 /// different steps compare.
 pub(super) struct System<'a, M> {
     model: &'a M,
-    equations: &'static [Equation],
     moving: &'static [&'static str],
     /// Unknowns.
     sought: Vec<Sought>,
@@ -34,12 +69,12 @@ pub(super) struct System<'a, M> {
     /// Names of the inputs.
     input_names: Vec<&'static str>,
     bounds: Vec<Bounds>,
-    rows: Vec<usize>,
+    rows: Vec<Row>,
     column_scale: DVector<f64>,
     row_scale: DVector<f64>,
 }
 
-impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
+impl<'a, M: GeneratedModel> System<'a, M> {
     pub(super) fn new(model: &'a M, flight: &SteadyState) -> Result<Self, TrimError> {
         let (mut states, mut inputs) = (Vec::new(), Vec::new());
         for name in flight.sought.iter().map(|it| it.name) {
@@ -49,9 +84,7 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
                 (None, None) => return Err(TrimError::MissingName { name }),
             }
         }
-        let row = |name| M::State::index_of(name).ok_or(TrimError::MissingName { name });
-        let rows = flight.equations.iter().map(|it| row(it.name));
-        let rows = rows.collect::<Result<Vec<_>, _>>()?;
+        let rows = rows::<M>(flight)?;
         let is_input = |name: &&str| M::State::index_of(name).is_none();
         let input_names: Vec<_> = flight.sought().filter(is_input).collect();
         let scales = flight.sought.iter().map(|it| it.scale);
@@ -64,7 +97,6 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
             row_scale: DVector::from_element(rows.len(), 1.0),
             rows,
             column_scale: DVector::from_iterator(flight.sought.len(), scales),
-            equations: flight.equations,
             moving: flight.moving,
             sought: flight.sought.clone(),
         };
@@ -76,15 +108,14 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
 
     /// Gives the rows their weights: first those that have a scale of their own.
     fn weigh(&mut self, start: &Point<M>) {
-        let equations = self.equations;
-        for (scale, equation) in self.row_scale.iter_mut().zip(equations) {
-            *scale *= equation.weight;
+        for (scale, row) in self.row_scale.iter_mut().zip(&self.rows) {
+            *scale *= row.equation.weight;
         }
-        for (index, equation) in equations.iter().enumerate() {
+        for (index, Row { equation, .. }) in self.rows.iter().enumerate() {
             let Some((row, state)) = equation.like else {
                 continue;
             };
-            let other = equations.iter().position(|it| it.name == row);
+            let other = self.rows.iter().position(|it| it.equation.name == row);
             let value = M::State::index_of(state).and_then(|index| start.x.get(index));
             if let (Some(other), Some(value)) = (other, value) {
                 self.row_scale[index] = equation.weight * self.row_scale[other] / value;
@@ -96,42 +127,71 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
     pub(super) fn start(&self, flight: &SteadyState) -> Result<Point<M>, TrimError> {
         let mut x = M::State::splat(0.0);
         let sought = self.sought.iter().map(|it| (it.name, it.start));
-        let is_state = |(name, _): &(&str, f64)| M::State::index_of(name).is_some();
-        for (name, value) in sought.filter(is_state).chain(flight.given()) {
-            M::State::index_of(name)
-                .and_then(|index| x.set(index, value))
-                .ok_or(TrimError::MissingName { name })?;
+        for (name, value) in sought.chain(flight.given()) {
+            // Other names are those of inputs and outputs.
+            M::State::index_of(name).and_then(|index| x.set(index, value));
         }
-        let u = flight.input();
-        match self.model.drift(&x, &u).find(|it| !Real::is_finite(it)) {
+        let point = Point {
+            x,
+            u: flight.input(),
+        };
+        let drift = self.model.drift(&x, &point.u);
+        let equations = self.rows.iter().map(|row| row.equation.name);
+        let mut left = equations.zip(self.left(&point));
+        let rate = drift.find(|it| !Real::is_finite(it));
+        match rate.or_else(|| left.find(|(_, value)| !value.is_finite())) {
             Some((name, value)) => Err(TrimError::NonFinite { name, value }),
-            None => Ok(Point { x, u }),
+            None => Ok(point),
         }
     }
 
     /// Scaled residuals; `None` where one is not finite.
     pub(super) fn residual(&self, point: &Point<M>) -> Option<DVector<f64>> {
-        let residual = self.scaled(&self.model.drift(&point.x, &point.u));
+        let residual = DVector::from_vec(self.left(point)).component_mul(&self.row_scale);
         residual.iter().all(|it| it.is_finite()).then_some(residual)
     }
 
-    /// The rows of a drift that are equations, scaled.
-    pub(super) fn scaled(&self, drift: &M::State) -> DVector<f64> {
-        let row = |(&index, scale): (&usize, &f64)| drift.get(index).unwrap_or(0.0) * scale;
-        let rows = self.rows.iter().zip(&self.row_scale).map(row);
-        DVector::from_iterator(self.rows.len(), rows)
+    /// What is left of each equation.
+    fn left(&self, point: &Point<M>) -> Vec<f64> {
+        let drift = self.model.drift(&point.x, &point.u);
+        let outputs = if self.has_outputs() {
+            M::outputs(&self.model.with_scalar(), &point.x, &point.u)
+        } else {
+            Vector::splat(0.0)
+        };
+        let left = |row: &Row| row.source.value(&drift, &outputs) - row.value;
+        self.rows.iter().map(left).collect()
+    }
+
+    fn has_outputs(&self) -> bool {
+        self.rows.iter().any(|row| row.source.is_output())
+    }
+
+    /// What `value` gives of each equation, scaled.
+    pub(super) fn scaled(&self, value: impl Fn(Source) -> f64) -> DVector<f64> {
+        let rows = self.rows.iter().zip(&self.row_scale);
+        let scaled = rows.map(|(row, scale)| value(row.source) * scale);
+        DVector::from_iterator(self.rows.len(), scaled)
     }
 
     /// Scaled residuals by scaled unknowns.
     pub(super) fn jacobian(&self, point: &Point<M>) -> DMatrix<f64> {
         let (by_state, by_input) = self.model.jacobians(&point.x, &point.u);
+        let outputs = self.has_outputs();
+        let outputs = outputs.then(|| output_slopes(self.model, &point.x, &point.u));
+        let of_output = |output: usize, variable: usize| {
+            let slopes: &M::OutputsOf<f64> = outputs.as_ref()?.get(variable)?;
+            slopes.get(output)
+        };
         DMatrix::from_fn(self.rows.len(), self.column_scale.len(), |row, column| {
-            let index = self.rows[row];
-            let entry = match self.states.get(column) {
-                Some(&state) => by_state.get(index).and_then(|it: M::State| it.get(state)),
-                None => by_input
-                    .get(index)
-                    .and_then(|it| it.get(self.inputs[column - self.states.len()])),
+            let input = || self.inputs[column - self.states.len()];
+            let entry = match (self.rows[row].source, self.states.get(column)) {
+                (Source::Rate(rate), Some(&state)) => {
+                    by_state.get(rate).and_then(|it: M::State| it.get(state))
+                }
+                (Source::Rate(rate), None) => by_input.get(rate).and_then(|it| it.get(input())),
+                (Source::Output(output), Some(&state)) => of_output(output, state),
+                (Source::Output(output), None) => of_output(output, states::<M>() + input()),
             };
             entry.unwrap_or(0.0) * self.row_scale[row] * self.column_scale[column]
         })
@@ -222,29 +282,37 @@ impl<'a, M: DifferentiableModel<Scalar = f64>> System<'a, M> {
             state: point.x,
             input: point.u,
             residuals,
-            residual_max: largest(&residuals),
+            residual_max: self.largest(&residuals, point),
             iterations,
         }
     }
 
     pub(super) fn describe(&self, point: &Point<M>, iterations: usize) -> Nearest {
         let residuals = self.residuals(point);
-        let scaled = self.scaled(&self.model.drift(&point.x, &point.u));
-        let size = |index: usize| residuals.get(self.rows[index]).map_or(0.0, f64::abs);
+        let left = DVector::from_vec(self.left(point));
+        let scaled = left.component_mul(&self.row_scale);
         // Where scaled ones are no numbers, the largest of those before scaling.
         let beyond = (0..self.rows.len()).filter(|&index| !scaled[index].is_finite());
-        let beyond = beyond.max_by(|&a, &b| size(a).total_cmp(&size(b)));
-        let worst = self.rows.get(beyond.unwrap_or_else(|| scaled.iamax()));
+        let beyond = beyond.max_by(|&a, &b| left[a].abs().total_cmp(&left[b].abs()));
+        let worst = beyond.unwrap_or_else(|| scaled.iamax());
         Nearest {
             state: named(&point.x),
             input: named(&point.u),
             residuals: named(&residuals),
-            residual_max: largest(&residuals),
-            worst: worst
-                .and_then(|&row| M::State::NAMES.get(row).copied())
-                .unwrap_or_default(),
+            residual_max: self.largest(&residuals, point),
+            worst: self.rows[worst].equation.name,
+            worst_residual: left[worst],
             iterations,
         }
+    }
+
+    /// The largest absolute value of `residuals` and of what outputs are off by.
+    fn largest(&self, residuals: &M::State, point: &Point<M>) -> f64 {
+        let rates = (0..states::<M>()).filter_map(|index| residuals.get(index));
+        let left = self.rows.iter().zip(self.left(point));
+        let outputs = left.filter(|(row, _)| row.source.is_output());
+        let all = rates.chain(outputs.map(|(_, value)| value));
+        all.fold(0.0, |worst: f64, it| worst.max(it.abs()))
     }
 
     /// The drift, 0 for the states that move.
@@ -273,9 +341,26 @@ fn row_scale(jacobian: &DMatrix<f64>) -> DVector<f64> {
     )
 }
 
-fn largest<X: Vector<f64>>(residuals: &X) -> f64 {
-    let components = (0..X::LEN).filter_map(|index| residuals.get(index));
-    components.fold(0.0, |worst: f64, it| worst.max(it.abs()))
+/// Number of states.
+const fn states<M: GeneratedModel>() -> usize {
+    <M::State as Vector<f64>>::LEN
+}
+
+/// The equations of a problem: what vanishes, then the outputs that are given.
+fn rows<M: GeneratedModel>(flight: &SteadyState) -> Result<Vec<Row>, TrimError> {
+    let vanishing = flight.equations.iter().map(|&equation| (equation, 0.0));
+    let outputs = flight
+        .given()
+        .filter(|(name, _)| M::State::index_of(name).is_none());
+    let outputs = outputs.map(|(name, value)| (Equation::new(name, 1.0, None), value));
+    let row = |(equation, value): (Equation, f64)| {
+        Ok(Row {
+            source: Source::of::<M>(equation.name)?,
+            value,
+            equation,
+        })
+    };
+    vanishing.chain(outputs).map(row).collect()
 }
 
 fn named<V: Vector<f64>>(vector: &V) -> Vec<(&'static str, f64)> {

@@ -77,7 +77,7 @@ fn reason(error: &SolutionError) -> String {
             "no trim: no convergence".to_owned()
         }
         SolutionError::Trim(TrimError::NonFinite { name, .. }) => {
-            format!("no trim: the derivative of {name} is not finite")
+            format!("no trim: the equation of {name} is not finite")
         }
         SolutionError::Linearize(LinearizeError::NonFinite { row, column, .. }) => {
             format!("no roots: the derivative of {row} by {column} is not finite")

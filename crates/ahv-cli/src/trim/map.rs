@@ -71,7 +71,8 @@ pub(super) struct Json<'a> {
 }
 
 impl<'a> Map<'a> {
-    /// Trims at each point from the cold start of `flight`, in which the two states are not `given` otherwise.
+    /// Trims at each point from the cold start of `flight`, in which the two states are not `given` otherwise. Outputs that
+    /// are given have no interval of validity, and so are not mapped.
     ///
     /// # Errors
     ///
@@ -83,14 +84,16 @@ impl<'a> Map<'a> {
         mut given: impl Iterator<Item = &'static str>,
     ) -> Result<Self, Failure> {
         let problem = vehicle.model.trim_problem();
-        let [first, second, ..] = problem.given else {
+        let states = problem.given.iter().map(|it| it.name);
+        let states = states.filter(|name| vehicle.states.index_of(name).is_some());
+        let [first, second, ..] = *states.collect::<Vec<_>>() else {
             let few = format!(
                 "--map: fewer than two states of {} are given",
                 vehicle.name()
             );
             return Err(Failure::Request(few));
         };
-        let names = [first.name, second.name];
+        let names = [first, second];
         if let Some(name) = given.find(|name| names.contains(name)) {
             return Err(Failure::Request(format!(
                 "--map: {name} is mapped; leave --{name} out"

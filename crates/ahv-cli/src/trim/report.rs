@@ -109,7 +109,7 @@ impl<'a> Report<'a> {
         let bounds = bounds.unwrap_or_default();
         Json {
             heading: vehicle.heading(),
-            condition: Named::given(vehicle.model.states(), self.flight),
+            condition: Named::given(vehicle, self.flight),
             converged: self.error.is_none(),
             reason: self.error.map(|error| vehicle.no_trim(error)),
             blocking_bound: bounds.first().cloned(),
