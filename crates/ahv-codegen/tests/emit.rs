@@ -281,7 +281,29 @@ fn si_is_another_package_in_numbers_and_units_alone() {
     assert!(si["src/lib.rs"].contains("metre, kilogram, second and radian"));
 }
 
-/// The printed number stands in the code, and what it is computed to in C.
+/// A model with a kink has the function whose zero is there; one without has none.
+#[test]
+fn a_kink_of_the_drift_is_a_boundary() {
+    let folder = root().join("examples/winged-cone");
+    let text = fs::read_to_string(folder.join("winged_cone.toml")).unwrap();
+    let ir = fs::read_to_string(folder.join("generated/ir/winged_cone.json")).unwrap();
+    let irs = [("winged_cone".to_owned(), ir)].into();
+    let cone = Table::parse("winged_cone.toml", &text).unwrap();
+    for language in [Target::Rust, Target::C] {
+        let options = Options {
+            target: language,
+            ..Options::default()
+        };
+        let tree = emit(std::slice::from_ref(&cone), &irs, &options).unwrap();
+        let mut texts = tree.values();
+        let line = "thrust_coefficient_boundary";
+        assert!(texts.any(|text| text.contains(line)), "{language:?}");
+    }
+    let tree = emit(&TABLES.map(table), &irs(), &Options::default()).unwrap();
+    assert!(!tree.keys().any(|path| path.contains("boundaries")));
+}
+
+/// The printed number stands in the code.
 #[test]
 fn a_value_per_degree_is_written_as_it_is_printed() {
     let text = fs::read_to_string(root().join("generator/tables/com.toml")).unwrap();
