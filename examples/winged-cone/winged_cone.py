@@ -1,7 +1,7 @@
 """The winged cone, control-oriented: Marrison and Stengel (1998); Xu, Mirmirani and Ioannou (2004).
 
-A rigid vehicle over a spherical Earth, whose engine follows its command as a system of second order. Thrust is that of
-the branch below beta = 1, where `[validity]` ends. The table is `winged_cone.toml`.
+A rigid vehicle over a spherical Earth, whose engine follows its command as a system of second order. Thrust has one
+curve fit below beta = 1 and another from there on. The table is `winged_cone.toml`.
 """
 
 from ahv_generator.modelling import (
@@ -16,6 +16,7 @@ from ahv_generator.modelling import (
     Variable,
     cos,
     exp,
+    select,
     sin,
 )
 
@@ -48,14 +49,15 @@ mu = Parameter("mu", r"\mu", "ft^3/s^2", "gravitational constant of the Earth", 
 
 C_L = Quantity("C_L", "C_L", "1", "lift coefficient", depends_on=(alpha,))
 C_D = Quantity("C_D", "C_D", "1", "drag coefficient", depends_on=(alpha,))
-C_T = Quantity("C_T", "C_T", "1", "thrust coefficient", depends_on=(beta,))
+C_T = Quantity("C_T", "C_T", "1", "thrust coefficient below beta = 1", depends_on=(beta,))
+C_T_high = Quantity("C_T_high", r"C_T^+", "1", "thrust coefficient from beta = 1 on", depends_on=(beta,))
 C_M = Quantity("C_M", "C_M", "1", "pitching-moment coefficient", depends_on=(alpha, q_hat, tail))
 
 family = Family()
 family.parameters("vehicle", m, I_yy, S, c_bar)
 family.parameters("engine", zeta, omega)
 family.parameters("environment", rho_0, h_s, R_E, mu)
-family.quantities(C_L, C_D, C_T, C_M)
+family.quantities(C_L, C_D, C_T, C_T_high, C_M)
 family.bounds(*STATES, *INPUTS)
 
 
@@ -73,8 +75,13 @@ def winged_cone(model: Model) -> None:
         model.define(q_hat, model[c_bar] * Q / (2 * V))
         # A gust that joins the angle of attack meets the tail, too.
         model.define(tail, elevator - model.seen(alpha))
-        lift_coefficient, drag_coefficient, thrust_coefficient, moment_coefficient = map(
-            model.fit, (C_L, C_D, C_T, C_M)
+        lift_coefficient, drag_coefficient, moment_coefficient = map(model.fit, (C_L, C_D, C_M))
+        thrust_coefficient = model.define(
+            "thrust_coefficient",
+            select(throttle < 1, model.fit(C_T), model.fit(C_T_high)),
+            r"C_T(\beta)",
+            "1",
+            "thrust coefficient",
         )
     with model.section("Forces and moment", "(3)"):
         force = model.define("reference_force", pressure * model[S], r"\bar q S", "lb", "dynamic pressure times area")

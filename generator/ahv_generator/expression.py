@@ -12,31 +12,41 @@ from . import units
 Tree = str | float | list["Tree"]
 
 _BINARY = {ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
-_UNARY = {ca.OP_NEG: "neg", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_EXP: "exp", ca.OP_SQRT: "sqrt"}
+_CALLS = {
+    ca.OP_NEG: "neg",
+    ca.OP_SIN: "sin",
+    ca.OP_COS: "cos",
+    ca.OP_TAN: "tan",
+    ca.OP_ASIN: "asin",
+    ca.OP_ATAN: "atan",
+    ca.OP_ATAN2: "atan2",
+    ca.OP_EXP: "exp",
+    ca.OP_TANH: "tanh",
+    ca.OP_LOG: "ln",
+    ca.OP_SQRT: "sqrt",
+    ca.OP_FABS: "abs",
+    ca.OP_FMIN: "min",
+    ca.OP_FMAX: "max",
+}
 
 _SHORT: dict[int, Callable[[Tree], Tree]] = {
     ca.OP_SQ: lambda x: ["pow", x, 2.0],
     ca.OP_TWICE: lambda x: ["*", 2.0, x],
     ca.OP_INV: lambda x: ["/", 1.0, x],
+    ca.OP_SIGN: lambda x: ["select", x, 0.0, -1.0, ["select", 0.0, x, 1.0, 0.0]],
 }
-# Known to CasADi; the IR and the emitter do not have them yet.
+_CONDITIONS = (ca.OP_LT, ca.OP_LE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
+# Known to CasADi; the IR and the emitter do not have them.
 _NOT_YET = {
-    ca.OP_TAN: "tan",
-    ca.OP_ASIN: "asin",
     ca.OP_ACOS: "acos",
-    ca.OP_ATAN: "atan",
-    ca.OP_ATAN2: "atan2",
     ca.OP_SINH: "sinh",
     ca.OP_COSH: "cosh",
-    ca.OP_TANH: "tanh",
-    ca.OP_LOG: "log",
-    ca.OP_FABS: "fabs",
-    ca.OP_FMIN: "fmin",
-    ca.OP_FMAX: "fmax",
-    ca.OP_SIGN: "sign",
-    ca.OP_LT: "<",
-    ca.OP_LE: "<=",
-    ca.OP_IF_ELSE_ZERO: "if_else",
+    ca.OP_EQ: "==",
+    ca.OP_NE: "!=",
+    ca.OP_COPYSIGN: "copysign",
+    ca.OP_FLOOR: "floor",
+    ca.OP_CEIL: "ceil",
+    ca.OP_FMOD: "fmod",
 }
 
 
@@ -55,24 +65,99 @@ def tree(expr: ca.SX) -> Tree:
         return str(expr.name())
     op = expr.op()
     if op == ca.OP_ADD:
-        return ["+", *(tree(term) for term in _addends(expr))]
+        terms = _cases(_addends(expr))
+        return terms[0] if len(terms) == 1 else ["+", *terms]
+    if op in _CONDITIONS:
+        return _choice(expr, 1.0, 0.0)
+    if op == ca.OP_IF_ELSE_ZERO:
+        return _choice(expr.dep(0), tree(expr.dep(1)), 0.0)
+    if _is_share(expr):
+        return _share(*(tree(expr.dep(0).dep(i)) for i in (0, 1)))
+    return _operation(op, expr)
+
+
+def _operation(op: int, expr: ca.SX) -> Tree:
+    """An operator on the trees of its arguments."""
     args = [tree(expr.dep(i)) for i in range(expr.n_dep())]
     if op in _BINARY:
         return [_BINARY[op], *args]
-    if op in _UNARY:
-        return [_UNARY[op], *args]
+    if op in _CALLS:
+        return [_CALLS[op], *args]
     if op in _SHORT:
         return _SHORT[op](args[0])
-    if op in (ca.OP_POW, ca.OP_CONSTPOW) and isinstance(args[1], float) and args[1].is_integer():
-        return ["pow", *args]
-    raise ExpressionError(_unavailable(op, expr))
-
-
-def _unavailable(op: int, expr: ca.SX) -> str:
     if op in (ca.OP_POW, ca.OP_CONSTPOW):
-        return f"an exponent is a whole number; this one is not: {expr}"
-    known = ", ".join(["+", "-", "*", "/", "**", *_UNARY.values()])
+        is_whole = isinstance(args[1], float) and args[1].is_integer()
+        return ["pow" if is_whole else "powr", *args]
+    raise ExpressionError(_unavailable(op))
+
+
+def _unavailable(op: int) -> str:
+    # By the names that a family imports; `abs` is Python's.
+    spelled = {"neg": "", "ln": "log", "min": "fmin", "max": "fmax"}
+    calls = [spelled.get(name, name) for name in _CALLS.values()]
+    known = ", ".join(["+", "-", "*", "/", "**", *filter(None, calls), "select"])
     return f"`{_NOT_YET.get(op, op)}` is not available in a model; available: {known}"
+
+
+def _cases(terms: list[ca.SX]) -> list[Tree]:
+    """The trees of addends; two that hold in opposite cases, as CasADi has a choice, are one."""
+    found: list[Tree] = []
+    waiting = list(terms)
+    while waiting:
+        term = waiting.pop(0)
+        other = next((it for it in waiting if _is_opposite(term, it)), None)
+        if other is None:
+            found.append(tree(term))
+            continue
+        waiting = [it for it in waiting if it is not other]
+        found.append(_choice(term.dep(0), tree(term.dep(1)), tree(other.dep(1))))
+    return found
+
+
+def _is_opposite(term: ca.SX, other: ca.SX) -> bool:
+    """Whether the second of two addends holds where the first does not."""
+    if not (_is(term, ca.OP_IF_ELSE_ZERO) and _is(other, ca.OP_IF_ELSE_ZERO)):
+        return False
+    condition = other.dep(0)
+    return _is(condition, ca.OP_NOT) and _equal(condition.dep(0), term.dep(0))
+
+
+def _is(expr: ca.SX, op: int) -> bool:
+    return not expr.is_constant() and not expr.is_symbolic() and bool(expr.op() == op)
+
+
+def _equal(a: ca.SX, b: ca.SX) -> bool:
+    return bool(ca.is_equal(a, b, 100))
+
+
+def _choice(condition: ca.SX, then: Tree, otherwise: Tree) -> Tree:
+    """`then` where the condition holds, else `otherwise`: in words of `<` alone."""
+    op = condition.op() if not condition.is_constant() and not condition.is_symbolic() else None
+    if op in (ca.OP_LT, ca.OP_LE):
+        left, right = tree(condition.dep(0)), tree(condition.dep(1))
+        return ["select", left, right, then, otherwise] if op == ca.OP_LT else ["select", right, left, otherwise, then]
+    if op == ca.OP_NOT:
+        return _choice(condition.dep(0), otherwise, then)
+    if op == ca.OP_AND:
+        return _choice(condition.dep(0), _choice(condition.dep(1), then, otherwise), otherwise)
+    if op == ca.OP_OR:
+        return _choice(condition.dep(0), then, _choice(condition.dep(1), then, otherwise))
+    if op in _NOT_YET:
+        raise ExpressionError(_unavailable(op))
+    raise ExpressionError(f"a condition compares two expressions by <, <=, > or >=; this one does not: {condition}")
+
+
+def _is_share(expr: ca.SX) -> bool:
+    """Whether an expression is what CasADi has as the slope of a minimum or maximum: (a <= b)/((a <= b) + (b <= a))."""
+    if not (_is(expr, ca.OP_DIV) and _is(expr.dep(0), ca.OP_LE) and _is(expr.dep(1), ca.OP_ADD)):
+        return False
+    above, below = expr.dep(0), expr.dep(1)
+    return all(_is(below.dep(i), ca.OP_LE) for i in (0, 1)) and _equal(below.dep(0), above)
+
+
+def _share(a: Tree, b: Tree) -> Tree:
+    """1 where a < b, 0 where b < a, and a half where they are equal."""
+    return ["select", a, b, 1.0, ["select", b, a, 0.0, 0.5]]
 
 
 def _addends(expr: ca.SX) -> list[ca.SX]:
@@ -117,33 +202,64 @@ def _dimensions(node: Tree, known: Mapping[str, str]) -> units.Dimensions | None
     if isinstance(node, str):
         return units.dimensions(known[node])
     op, *args = node
+    assert isinstance(op, str)
     if op == "pow":
         exponent = args[1]
         assert isinstance(exponent, float)
         return _scaled(_dimensions(args[0], known), exponent)
     parts = [_dimensions(argument, known) for argument in args]
-    if op in ("sin", "cos", "exp"):
+    if op in _OF_NUMBERS:
         if parts[0] and not _same(parts[0], {}):
             raise ExpressionError(f"{op} of a quantity with dimensions: {args[0]}")
         return {}
-    if op == "neg":
+    if op == "powr":
+        return _of_power(parts, args[1])
+    return _of_like(op, parts)
+
+
+def _of_like(op: str, parts: list[units.Dimensions | None]) -> units.Dimensions | None:
+    """The dimensions of an operation on quantities of any dimensions, some of which must have the same."""
+    if op in ("neg", "abs"):
         return parts[0]
     if op == "sqrt":
         return _scaled(parts[0], 0.5)
-    if op in ("+", "-"):
-        return functools.reduce(lambda left, right: _common(left, right, node), parts)
+    if op == "atan2":
+        _common(parts[0], parts[1], op)
+        return {}
+    if op == "select":
+        _common(parts[0], parts[1], "<")
+        return _common(parts[2], parts[3], op)
+    if op in ("+", "-", "min", "max"):
+        return functools.reduce(lambda left, right: _common(left, right, op), parts)
     return _product(parts[0], parts[1], 1.0 if op == "*" else -1.0)
+
+
+_OF_NUMBERS = ("sin", "cos", "tan", "asin", "atan", "exp", "tanh", "ln")
+# What is named in a message where two dimensions differ.
+_OF_TWO = {"atan2": "atan2", "<": "a comparison", "select": "a choice", "min": "a minimum", "max": "a maximum"}
+
+
+def _of_power(parts: list[units.Dimensions | None], exponent: Tree) -> units.Dimensions | None:
+    """The dimensions of a real power: of any quantity if the exponent is a number, else of a pure number alone."""
+    if isinstance(exponent, float):
+        return _scaled(parts[0], exponent)
+    for part, what in zip(parts, ("base", "exponent"), strict=True):
+        if part and not _same(part, {}):
+            raise ExpressionError(f"a power with an exponent that is no number has dimensions in its {what}")
+    return {}
 
 
 def _scaled(found: units.Dimensions | None, factor: float) -> units.Dimensions:
     return {name: power * factor for name, power in (found or {}).items()}
 
 
-def _common(left: units.Dimensions | None, right: units.Dimensions | None, node: Tree) -> units.Dimensions | None:
+def _common(left: units.Dimensions | None, right: units.Dimensions | None, op: str) -> units.Dimensions | None:
     if left is None or right is None:
         return left if right is None else right
     if not _same(left, right):
-        raise ExpressionError(f"a sum of unlike dimensions, {_in_words(left)} and {_in_words(right)}")
+        raise ExpressionError(
+            f"{_OF_TWO.get(op, 'a sum')} of unlike dimensions, {_in_words(left)} and {_in_words(right)}"
+        )
     return left
 
 

@@ -34,7 +34,7 @@ are CasADi scalars. Their dimensions are checked where they are named, and a fau
 from __future__ import annotations
 
 import casadi
-from casadi import cos, exp, sin, sqrt
+from casadi import asin, atan, atan2, cos, exp, fmax, fmin, if_else, log, sin, sqrt, tan, tanh
 
 from .diagnostics import FamilyError
 from .family import Family, Outline
@@ -56,6 +56,15 @@ from .schema import (
 from .traits import Equation, Given, Sought
 
 Expr = casadi.SX
+
+
+def select(condition: Expr, then: Expr | float, otherwise: Expr | float) -> Expr:
+    """`then` where the condition (`a < b`, or `<=`, `>`, `>=`) holds, else `otherwise`.
+
+    Both are computed; the slope is that of the one that is chosen.
+    """
+    return if_else(condition, then, otherwise)
+
 
 __all__ = [
     "NOT_NEGATIVE",
@@ -81,9 +90,18 @@ __all__ = [
     "Rule",
     "Sought",
     "Variable",
+    "asin",
+    "atan",
+    "atan2",
     "cos",
     "exp",
+    "fmax",
+    "fmin",
+    "log",
+    "select",
     "sin",
     "sqrt",
     "switch",
+    "tan",
+    "tanh",
 ]

@@ -2,8 +2,9 @@
 
 ``python -m ahv_oracle flights --table T --out F`` writes SciPy's flights, ``python -m ahv_oracle riccati --out F`` its
 solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`` its trims, poles and zeros,
-``python -m ahv_oracle elementary --out F`` values of sine, cosine and exponential, ``python -m ahv_oracle normals
---out F`` keyed normal numbers, ``python -m ahv_oracle zeros --tables D --out F`` SLICOT's invariant zeros (see there).
+``python -m ahv_oracle elementary --out F`` values of sine, cosine and exponential, ``transcendental`` those of tangent,
+logarithm, powers and inverses, ``python -m ahv_oracle normals --out F`` keyed normal numbers,
+``python -m ahv_oracle zeros --tables D --out F`` SLICOT's invariant zeros (see there).
 ``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
 """
 
@@ -19,12 +20,14 @@ from .normals import normal_lines
 from .riccati import riccati_lines
 from .roots import root_lines
 from .table import TableError
+from .transcendental import transcendental_lines
 from .vectors import write_lines, write_vectors
 from .zeros import zero_lines
 
 ALONE = {
     "riccati": (riccati_lines, "solutions of Riccati equations"),
     "elementary": (elementary_lines, "values of sine, cosine and exponential"),
+    "transcendental": (transcendental_lines, "values of tangent, logarithm, powers and inverses"),
     "normals": (normal_lines, "keyed normal numbers"),
 }
 """What takes no table: its lines, and what they are."""

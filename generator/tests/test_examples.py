@@ -47,6 +47,20 @@ def test_the_pitch_damping_of_the_winged_cone_is_a_monomial_in_a_derived_variabl
     assert cone.at(point)["jacobians.state.pitch_rate.pitch_rate"] == pytest.approx(slope, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("beta", "coefficient", "slope"), [(0.5, 0.01288, 0.02576), (1.0, 0.02576, 0.00336), (1.5, 0.02744, 0.00336)]
+)
+def test_the_thrust_of_the_winged_cone_has_two_branches(beta: float, coefficient: float, slope: float) -> None:
+    cone = Evaluated(ROOT / "examples" / "winged-cone" / "winged_cone.toml", "winged_cone")
+    point = {"velocity": 15060.0, "altitude": 110000.0, "beta": beta}
+    p = {name.partition(".")[2]: value for name, value in cone.parameters.items()}
+    force = p["rho_0"] * math.exp(-point["altitude"] / p["h_s"]) * point["velocity"] ** 2 * p["s"] / 2
+    found = cone.at(point)
+    thrust = found["drift.velocity"] * p["m"] + force * p["c_d_0"]
+    assert thrust == pytest.approx(force * coefficient, rel=1e-12)
+    assert found["jacobians.state.velocity.beta"] == pytest.approx(force * slope / p["m"], rel=1e-12)
+
+
 def test_the_limit_cycle_of_van_der_pol_has_amplitude_two() -> None:
     oscillator = Evaluated(ROOT / "examples" / "van-der-pol" / "van_der_pol.toml", "van_der_pol")
 

@@ -12,6 +12,7 @@ from ahv_oracle import MODELS, Oracle, sample, write_vectors
 from ahv_oracle.elementary import elementary_lines
 from ahv_oracle.flights import SETS, SOLVERS, START, Flight, heading_lines
 from ahv_oracle.normals import chacha8, normal_lines
+from ahv_oracle.transcendental import transcendental_lines
 from ahv_oracle.vectors import heading, vector_row
 
 ROOT = Path(__file__).parents[2]
@@ -64,7 +65,10 @@ def test_checked_in_flights_are_up_to_date(parameters: str) -> None:
     assert rows["DOP853"] == pytest.approx(flight.end("DOP853"), rel=1e-10), "run `cargo xtask vectors`"
 
 
-@pytest.mark.parametrize(("name", "lines"), [("elementary", elementary_lines), ("normals", normal_lines)])
+@pytest.mark.parametrize(
+    ("name", "lines"),
+    [("elementary", elementary_lines), ("transcendental", transcendental_lines), ("normals", normal_lines)],
+)
 def test_checked_in_numbers_are_up_to_date(name: str, lines: Callable[[], Iterator[str]]) -> None:
     path = ROOT / f"tests/vectors/{name}.txt"
     assert path.read_text(encoding="utf-8").splitlines() == list(lines()), "run `cargo xtask vectors`"

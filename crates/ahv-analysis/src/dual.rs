@@ -110,6 +110,53 @@ impl Real for Dual {
         self.through(value, value)
     }
 
+    fn tan(self) -> Self {
+        let value = Real::tan(self.value);
+        self.through(value, 1.0 + value * value)
+    }
+
+    fn asin(self) -> Self {
+        let x = self.value;
+        self.through(Real::asin(x), 1.0 / Real::sqrt((1.0 - x) * (1.0 + x)))
+    }
+
+    fn atan(self) -> Self {
+        let x = self.value;
+        self.through(Real::atan(x), 1.0 / (1.0 + x * x))
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        let square = self.value * self.value + x.value * x.value;
+        Self {
+            value: Real::atan2(self.value, x.value),
+            slope: (x.value * self.slope - self.value * x.slope) / square,
+        }
+    }
+
+    fn tanh(self) -> Self {
+        let value = Real::tanh(self.value);
+        self.through(value, 1.0 - value * value)
+    }
+
+    fn ln(self) -> Self {
+        self.through(Real::ln(self.value), 1.0 / self.value)
+    }
+
+    fn powr(self, exponent: Self) -> Self {
+        let (x, y) = (self.value, exponent.value);
+        let value = Real::powr(x, y);
+        // A constant exponent has no slope, whatever the logarithm of the base.
+        let of_exponent = if exponent.slope == 0.0 {
+            0.0
+        } else {
+            value * Real::ln(x) * exponent.slope
+        };
+        Self {
+            value,
+            slope: y * Real::powr(x, y - 1.0) * self.slope + of_exponent,
+        }
+    }
+
     fn sqrt(self) -> Self {
         let value = Real::sqrt(self.value);
         self.through(value, 0.5 / value)
@@ -120,7 +167,20 @@ impl Real for Dual {
     }
 
     fn abs(self) -> Self {
-        self.through(self.value.abs(), self.value.signum())
+        let slope = if self.value == 0.0 {
+            0.0
+        } else {
+            self.value.signum()
+        };
+        self.through(self.value.abs(), slope)
+    }
+
+    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
+        let choose = |a, b| Real::select(self.value, bound.value, a, b);
+        Self {
+            value: choose(below.value, otherwise.value),
+            slope: choose(below.slope, otherwise.slope),
+        }
     }
 
     fn is_finite(self) -> bool {
@@ -194,5 +254,35 @@ mod tests {
         near(Real::sqrt(F), 0.7_f64.sqrt(), 1.5 / 0.7_f64.sqrt());
         near(Real::abs(F), 0.7, 3.0);
         near(Real::abs(G), 1.3, -0.4);
+        near(Real::tan(F), 0.7_f64.tan(), 3.0 / (cos * cos));
+        near(Real::asin(F), 0.7_f64.asin(), 3.0 / 0.51_f64.sqrt());
+        near(Real::atan(F), 0.7_f64.atan(), 3.0 / 1.49);
+        near(
+            Real::tanh(G),
+            (-1.3_f64).tanh(),
+            0.4 / 1.3_f64.cosh().powi(2),
+        );
+        near(Real::ln(F), 0.7_f64.ln(), 3.0 / 0.7);
+        let of_angle = (-1.3 * 3.0 - 0.7 * 0.4) / (0.49 + 1.69);
+        near(Real::atan2(F, G), 0.7_f64.atan2(-1.3), of_angle);
+        let power = 0.7_f64.powf(-1.3);
+        let of_power = power * (-1.3 / 0.7 * 3.0 + 0.7_f64.ln() * 0.4);
+        near(Real::powr(F, G), power, of_power);
+    }
+
+    /// The slope of what is chosen; of a minimum and a maximum, that of the one that it is.
+    #[test]
+    fn choices_have_the_slope_of_what_they_choose() {
+        assert_eq!(Real::select(G, F, F, G), F);
+        assert_eq!(Real::select(F, G, F, G), G);
+        assert_eq!((Real::min(F, G), Real::max(F, G)), (G, F));
+        assert_eq!(
+            Real::abs(Dual {
+                slope: 3.0,
+                ..Dual::ZERO
+            })
+            .slope,
+            0.0
+        );
     }
 }

@@ -6,6 +6,7 @@ use ahv_core::Real;
 use std::collections::{BTreeMap, HashMap};
 
 use crate::EmitError;
+use crate::call::{Call, MOST};
 use crate::ir::{Expr, Model};
 
 #[cfg(test)]
@@ -23,10 +24,8 @@ enum Operation {
     Multiply(usize, usize),
     Divide(usize, usize),
     Negate(usize),
-    Sine(usize),
-    Cosine(usize),
-    Exponential(usize),
-    Root(usize),
+    /// A function; the places beyond its arguments are 0.
+    Call(Call, [usize; MOST]),
 }
 
 /// Expressions of one model as a flat list of operations; what stands twice is computed once.
@@ -83,10 +82,7 @@ impl Tape {
                 Operation::Multiply(a, b) => scratch[a] * scratch[b],
                 Operation::Divide(a, b) => scratch[a] / scratch[b],
                 Operation::Negate(a) => -scratch[a],
-                Operation::Sine(a) => scratch[a].sin(),
-                Operation::Cosine(a) => scratch[a].cos(),
-                Operation::Exponential(a) => scratch[a].exp(),
-                Operation::Root(a) => scratch[a].sqrt(),
+                Operation::Call(call, places) => call.value(places.map(|place| scratch[place])),
             };
             scratch.push(value);
         }
@@ -172,16 +168,13 @@ impl Tape {
 
 fn arguments(operation: Operation) -> impl Iterator<Item = usize> {
     use Operation as O;
-    let (first, second) = match operation {
-        O::Leaf(_) | O::Number(_) => (None, None),
-        O::Add(a, b) | O::Subtract(a, b) | O::Multiply(a, b) | O::Divide(a, b) => {
-            (Some(a), Some(b))
-        }
-        O::Negate(a) | O::Sine(a) | O::Cosine(a) | O::Exponential(a) | O::Root(a) => {
-            (Some(a), None)
-        }
+    let (places, count) = match operation {
+        O::Leaf(_) | O::Number(_) => ([0; MOST], 0),
+        O::Add(a, b) | O::Subtract(a, b) | O::Multiply(a, b) | O::Divide(a, b) => ([a, b, 0, 0], 2),
+        O::Negate(a) => ([a, 0, 0, 0], 1),
+        O::Call(call, places) => (places, call.arity()),
     };
-    first.into_iter().chain(second)
+    places.into_iter().take(count)
 }
 
 /// The operation with its arguments where they have moved to.
@@ -203,10 +196,11 @@ fn with_arguments(operation: Operation, new: impl Fn(usize, usize) -> usize) -> 
         O::Multiply(a, b) => O::Multiply(new(a, 0), new(b, 1)),
         O::Divide(a, b) => O::Divide(new(a, 0), new(b, 1)),
         O::Negate(a) => O::Negate(new(a, 0)),
-        O::Sine(a) => O::Sine(new(a, 0)),
-        O::Cosine(a) => O::Cosine(new(a, 0)),
-        O::Exponential(a) => O::Exponential(new(a, 0)),
-        O::Root(a) => O::Root(new(a, 0)),
+        O::Call(call, mut places) => {
+            let own = places.iter_mut().zip(0..call.arity());
+            own.for_each(|(place, order)| *place = new(*place, order));
+            O::Call(call, places)
+        }
     }
 }
 
@@ -274,11 +268,14 @@ impl Compiler<'_> {
             ("-", &[a, b]) => Operation::Subtract(a, b),
             ("/", &[a, b]) => Operation::Divide(a, b),
             ("neg", &[a]) => Operation::Negate(a),
-            ("sin", &[a]) => Operation::Sine(a),
-            ("cos", &[a]) => Operation::Cosine(a),
-            ("exp", &[a]) => Operation::Exponential(a),
-            ("sqrt", &[a]) => Operation::Root(a),
-            _ => return Err(self.fault(&format!("the operator `{operator}`"))),
+            (name, values) => match Call::of(name, values.len()) {
+                Some(call) => {
+                    let mut places = [0; MOST];
+                    places[..values.len()].copy_from_slice(values);
+                    Operation::Call(call, places)
+                }
+                None => return Err(self.fault(&format!("the operator `{operator}`"))),
+            },
         };
         Ok(self.push(operation))
     }

@@ -20,6 +20,7 @@
 #![forbid(unsafe_code)]
 
 mod c;
+mod call;
 mod docs;
 mod emit;
 mod evaluate;

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
+use crate::call::{Call, MOST};
 use crate::graph::passes::{Pass, Passes};
-use crate::graph::{Call, Dag, Id, Kind, Node};
+use crate::graph::{Dag, Id, Kind, Node};
 use crate::ir::{Expr, Model};
 
 /// A point: the values of leaves by their name with prefix, and of quantities by their name.
@@ -58,13 +59,18 @@ pub(crate) fn value_of_expr(expr: &Expr, at: &Point) -> f64 {
                 "/" => v[0] / v[1],
                 "neg" => -v[0],
                 "pow" => v[0].powi(v[1] as i32),
-                "sin" => v[0].sin(),
-                "cos" => v[0].cos(),
-                "exp" => v[0].exp(),
-                other => panic!("{other}"),
+                name => value_of_call(name, &v),
             }
         }
     }
+}
+
+/// What a function of this name is worth.
+pub(crate) fn value_of_call(name: &str, arguments: &[f64]) -> f64 {
+    let call = Call::of(name, arguments.len()).unwrap_or_else(|| panic!("{name}"));
+    let mut values = [0.0; MOST];
+    values[..arguments.len()].copy_from_slice(arguments);
+    call.value(values)
 }
 
 /// What a node of the graph is worth at a point.
@@ -85,10 +91,10 @@ pub(crate) fn value_of_node(dag: &Dag, id: Id, at: &Point) -> f64 {
         Node::Sum(terms) => terms.iter().map(|(c, t)| c * value(t)).sum(),
         Node::Product(c, factors) => c * factors.iter().map(value).product::<f64>(),
         Node::Power(base, exponent) => value(base).powi(*exponent),
-        Node::Call(Call::Sin, a) => value(a).sin(),
-        Node::Call(Call::Cos, a) => value(a).cos(),
-        Node::Call(Call::Exp, a) => value(a).exp(),
-        Node::Call(Call::Sqrt, a) => value(a).sqrt(),
+        Node::Call(call, arguments) => {
+            let arguments: Vec<f64> = arguments.iter().map(value).collect();
+            value_of_call(call.name(), &arguments)
+        }
     }
 }
 
@@ -118,7 +124,7 @@ impl Draw {
         }
         let mut part = || self.tree(depth - 1, names);
         let (a, b, c) = (part(), part(), part());
-        match self.below(10) {
+        match self.below(13) {
             0 => format!(r#"["+", {a}, {b}, {c}]"#),
             1 => format!(r#"["-", {a}, {b}]"#),
             2 | 3 => format!(r#"["*", {a}, {b}]"#),
@@ -128,6 +134,10 @@ impl Draw {
             6 => format!(r#"["pow", {a}, {}]"#, 2 + self.below(3)),
             7 => format!(r#"["sin", {a}]"#),
             8 => format!(r#"["cos", {a}]"#),
+            9 => format!(r#"["tanh", {a}]"#),
+            10 => format!(r#"["max", {a}, {b}]"#),
+            // Without a jump: another order of rounding would take the other branch.
+            11 => format!(r#"["select", {a}, {b}, {a}, {b}]"#),
             _ => self.polynomial(names, &a),
         }
     }

@@ -144,6 +144,32 @@ def main() -> None:
     print("const HALF_PI:", split(mp.pi / 2, [33, 33, 33]))
     print("const LN_2:", split(mp.log(2), [33]))
 
+    # Tangent, logarithm, powers and inverses.
+    def arc_tail(z: mp.mpf) -> mp.mpf:
+        """(atan t - t)/t^3 for z = t^2."""
+        return sum((-1) ** (k + 1) * z**k / mp.mpf(2 * k + 3) for k in range(90))
+
+    def artanh_tail(z: mp.mpf) -> mp.mpf:
+        """(artanh s - s - s^3/3 - s^5/5)/s^7 for z = s^2."""
+        return sum(z**k / mp.mpf(2 * k + 7) for k in range(60))
+
+    def less_one_tail(r: mp.mpf) -> mp.mpf:
+        """(e^r - 1 - r - r^2/2)/r^3."""
+        return sum(r**k / mp.factorial(k + 3) for k in range(30))
+
+    arc_edge = float(mp.tan(mp.pi / 8) ** 2) * 1.0001
+    show("ARC", *fit(arc_tail, lambda z: z, 1e-9, arc_edge, 10, 2))
+    root = mp.sqrt(2)
+    artanh_edge = float(((root - 1) / (root + 1)) ** 2) * 1.0001
+    show("ARTANH", *fit(artanh_tail, lambda z: z**3, 1e-4, artanh_edge, 6, 0))
+
+    def less_one_weight(r: mp.mpf) -> mp.mpf:
+        """Error of the tail to relative error of e^r - 1."""
+        return max(r * r, mp.mpf(1e-6))
+
+    show("EXP_LESS_ONE", *fit(less_one_tail, less_one_weight, -half, half, 9, 0))
+    print("const THIRD, FIFTH:", split(mp.mpf(1) / 3, [53]), split(mp.mpf(1) / 5, [53]))
+
     # Single precision; the doubles are written as f32 constants.
     show("SIN of f32", *fit(sine_tail, sine_weight, 1e-9, edge, 2, 0))
     show("COS of f32", *fit(cosine_tail, cosine_weight, 1e-9, edge, 2, 0))

@@ -6,8 +6,8 @@ use crate::{Lane, Real};
 
 /// A number whose elementary functions have no branches, so that a loop over members becomes vector instructions.
 ///
-/// Sine and cosine of an angle above π/4 and the exponential of a number that gives no normal one are NaN; elsewhere results have
-/// the bits of `T`. Every number counts as finite: who steps in a loop looks at the results, and computes again with
+/// Sine and cosine of an angle above π/4, the tangent of one above 10⁶ (singles: 10⁴) rad and the exponential of a number that
+/// gives no normal one are NaN; elsewhere results have the bits of `T`. Every number counts as finite: who steps in a loop looks at the results, and computes again with
 /// `T` what is not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
@@ -90,6 +90,46 @@ impl<T: Lane> Real for Branchless<T> {
     }
 
     #[inline(always)]
+    fn tan(self) -> Self {
+        let angle = if self.0.is_moderate_angle() {
+            self.0
+        } else {
+            T::NAN
+        };
+        Self(angle.moderate_tan())
+    }
+
+    #[inline(always)]
+    fn asin(self) -> Self {
+        Self(self.0.asin())
+    }
+
+    #[inline(always)]
+    fn atan(self) -> Self {
+        Self(self.0.atan())
+    }
+
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        Self(self.0.tanh())
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        Self(self.0.ln())
+    }
+
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        Self(self.0.atan2(x.0))
+    }
+
+    #[inline(always)]
+    fn powr(self, exponent: Self) -> Self {
+        Self(self.0.powr(exponent.0))
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt())
     }
@@ -102,6 +142,11 @@ impl<T: Lane> Real for Branchless<T> {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.abs())
+    }
+
+    #[inline(always)]
+    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
+        Self(self.0.select(bound.0, below.0, otherwise.0))
     }
 
     #[inline(always)]
@@ -142,5 +187,10 @@ impl<T: Lane> Lane for Branchless<T> {
     #[inline(always)]
     fn moderate_exp(self) -> Self {
         self.exp()
+    }
+
+    #[inline(always)]
+    fn moderate_tan(self) -> Self {
+        self.tan()
     }
 }

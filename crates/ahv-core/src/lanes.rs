@@ -34,6 +34,10 @@ pub trait Lane: Real {
     /// e to a moderate power, without branches.
     #[doc(hidden)]
     fn moderate_exp(self) -> Self;
+
+    /// Tangent of a moderate angle in rad, without branches.
+    #[doc(hidden)]
+    fn moderate_tan(self) -> Self;
 }
 
 /// `N` numbers that are computed side by side: a scalar of the generated code with a member of an ensemble in each lane.
@@ -163,6 +167,45 @@ impl<T: Lane, const N: usize> Real for Lanes<T, N> {
     }
 
     #[inline(always)]
+    fn tan(self) -> Self {
+        if self.all(T::is_moderate_angle) {
+            self.map(T::moderate_tan)
+        } else {
+            tan_of_each(self)
+        }
+    }
+
+    #[inline(always)]
+    fn asin(self) -> Self {
+        self.map(Real::asin)
+    }
+
+    #[inline(always)]
+    fn atan(self) -> Self {
+        self.map(Real::atan)
+    }
+
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        self.map(Real::tanh)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.map(Real::ln)
+    }
+
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        self.zip_with(x, Real::atan2)
+    }
+
+    #[inline(always)]
+    fn powr(self, exponent: Self) -> Self {
+        self.zip_with(exponent, Real::powr)
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.map(Real::sqrt)
     }
@@ -175,6 +218,11 @@ impl<T: Lane, const N: usize> Real for Lanes<T, N> {
     #[inline(always)]
     fn abs(self) -> Self {
         self.map(Real::abs)
+    }
+
+    #[inline(always)]
+    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
+        Self::from_fn(|lane| self.0[lane].select(bound.0[lane], below.0[lane], otherwise.0[lane]))
     }
 
     #[inline(always)]
@@ -200,4 +248,11 @@ fn reduced_sin_cos<T: Lane, const N: usize>(x: Lanes<T, N>) -> (Lanes<T, N>, Lan
 #[inline(never)]
 fn exp_of_each<T: Lane, const N: usize>(x: Lanes<T, N>) -> Lanes<T, N> {
     x.map(Real::exp)
+}
+
+/// Some angle is beyond the reduction without branches.
+#[cold]
+#[inline(never)]
+fn tan_of_each<T: Lane, const N: usize>(x: Lanes<T, N>) -> Lanes<T, N> {
+    x.map(Real::tan)
 }

@@ -3,12 +3,12 @@
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::elementary::{double, single};
+use crate::elementary::{arc, double, logarithm, single, tangent};
 
 /// A real number, or several that are computed side by side.
 ///
 /// Elementary functions are this crate's and `libm`'s, never the platform's: a result has the same bits on
-/// every machine. There is no order: generated code has no branches, so that a scalar may hold
+/// every machine. There is no order but that of [`Real::select`]: generated code has no branches, so that a scalar may hold
 /// several lanes. All functions follow IEEE 754; outside a function's domain the result is NaN.
 pub trait Real:
     Copy
@@ -49,6 +49,27 @@ pub trait Real:
     /// e to the power `self`.
     fn exp(self) -> Self;
 
+    /// Tangent of an angle in rad; above 10⁶ rad the quotient of sine and cosine, within 2 ulp.
+    fn tan(self) -> Self;
+
+    /// Inverse sine in rad, from −π/2 to π/2; NaN beyond −1 and 1.
+    fn asin(self) -> Self;
+
+    /// Inverse tangent in rad, from −π/2 to π/2.
+    fn atan(self) -> Self;
+
+    /// Angle in rad, from −π to π, of the point with the ordinate `self` and the abscissa `x`.
+    fn atan2(self, x: Self) -> Self;
+
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+
+    /// Natural logarithm; −∞ of zero, NaN below.
+    fn ln(self) -> Self;
+
+    /// `self` to the real power `exponent`, e to the power of `exponent` times the logarithm: the `powr` of IEEE 754, NaN below zero.
+    fn powr(self, exponent: Self) -> Self;
+
     /// Square root; NaN below zero.
     fn sqrt(self) -> Self;
 
@@ -57,6 +78,21 @@ pub trait Real:
 
     /// Absolute value.
     fn abs(self) -> Self;
+
+    /// `below` where `self` is below `bound`, else `otherwise`; NaN where `self` or `bound` is.
+    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self;
+
+    /// The smaller of two numbers; NaN if one is.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.select(other, self, other)
+    }
+
+    /// The larger of two numbers; NaN if one is.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.select(other, other, self)
+    }
 
     /// Whether every lane is neither infinite nor NaN.
     fn is_finite(self) -> bool;
@@ -99,6 +135,41 @@ impl Real for f64 {
     }
 
     #[inline(always)]
+    fn tan(self) -> Self {
+        double::tan(self)
+    }
+
+    #[inline(always)]
+    fn asin(self) -> Self {
+        arc::asin(self)
+    }
+
+    #[inline(always)]
+    fn atan(self) -> Self {
+        arc::atan(self)
+    }
+
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        tangent::tanh(self)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        logarithm::ln(self)
+    }
+
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        arc::atan2(self, x)
+    }
+
+    #[inline(always)]
+    fn powr(self, exponent: Self) -> Self {
+        logarithm::powr(self, exponent)
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         root::double(self)
     }
@@ -111,6 +182,16 @@ impl Real for f64 {
     #[inline(always)]
     fn abs(self) -> Self {
         f64::abs(self)
+    }
+
+    #[inline(always)]
+    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
+        let chosen = if self < bound { below } else { otherwise };
+        if self < bound || self >= bound {
+            chosen
+        } else {
+            Self::NAN
+        }
     }
 
     #[inline(always)]
@@ -156,6 +237,41 @@ impl Real for f32 {
     }
 
     #[inline(always)]
+    fn tan(self) -> Self {
+        double::tan(f64::from(self)) as f32
+    }
+
+    #[inline(always)]
+    fn asin(self) -> Self {
+        arc::asin(f64::from(self)) as f32
+    }
+
+    #[inline(always)]
+    fn atan(self) -> Self {
+        arc::atan(f64::from(self)) as f32
+    }
+
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        tangent::tanh(f64::from(self)) as f32
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        logarithm::ln(f64::from(self)) as f32
+    }
+
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        arc::atan2(f64::from(self), f64::from(x)) as f32
+    }
+
+    #[inline(always)]
+    fn powr(self, exponent: Self) -> Self {
+        logarithm::powr(f64::from(self), f64::from(exponent)) as f32
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         root::single(self)
     }
@@ -168,6 +284,16 @@ impl Real for f32 {
     #[inline(always)]
     fn abs(self) -> Self {
         f32::abs(self)
+    }
+
+    #[inline(always)]
+    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
+        let chosen = if self < bound { below } else { otherwise };
+        if self < bound || self >= bound {
+            chosen
+        } else {
+            Self::NAN
+        }
     }
 
     #[inline(always)]

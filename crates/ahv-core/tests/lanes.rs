@@ -17,7 +17,7 @@ fn bits(x: f64) -> u64 {
 }
 
 /// Every function of one number.
-fn functions<R: Real>(x: R) -> [R; 9] {
+fn functions<R: Real>(x: R) -> [R; 14] {
     let (sin, cos) = x.sin_cos();
     [
         sin,
@@ -29,12 +29,27 @@ fn functions<R: Real>(x: R) -> [R; 9] {
         x.recip(),
         x.abs(),
         -x,
+        x.asin(),
+        x.atan(),
+        x.tanh(),
+        x.ln(),
+        x.tan(),
     ]
 }
 
 /// Every function of two numbers.
-fn operations<R: Real>(x: R, y: R) -> [R; 4] {
-    [x + y, x - y, x * y, x / y]
+fn operations<R: Real>(x: R, y: R) -> [R; 9] {
+    [
+        x + y,
+        x - y,
+        x * y,
+        x / y,
+        x.atan2(y),
+        x.powr(y),
+        x.min(y),
+        x.max(y),
+        x.select(y, y, x + x),
+    ]
 }
 
 /// Numbers for which the functions go different ways, and those next to where the ways part.
@@ -106,7 +121,9 @@ fn lanes_that_are_not_finite_show_it<T: Lane>() {
 
 #[test]
 fn lanes_of_doubles_have_the_bits_of_doubles() {
-    lanes_have_the_bits_of_their_numbers::<f64>(&[core::f64::consts::FRAC_PI_4, 1e6, 708.0]);
+    let tangent = [0.414_213_562_373_095_03, 2.414_213_562_373_095];
+    let parting = [core::f64::consts::FRAC_PI_4, 1e6, 708.0];
+    lanes_have_the_bits_of_their_numbers::<f64>(&[parting.as_slice(), &tangent].concat());
     lanes_that_are_not_finite_show_it::<f64>();
 }
 
@@ -142,6 +159,7 @@ fn lanes_show_what_is_wrong_with_them() {
 struct Range {
     angle: f64,
     exponent: f64,
+    turns: f64,
 }
 
 fn straight_numbers_have_the_bits_of_theirs<T: Lane>(range: &Range, parting: &[f64]) {
@@ -152,7 +170,8 @@ fn straight_numbers_have_the_bits_of_theirs<T: Lane>(range: &Range, parting: &[f
         let known = [magnitude <= range.angle; 4]
             .into_iter()
             .chain([magnitude <= range.exponent]);
-        let known = known.chain([true; 4]);
+        let known = known.chain([true; 8]);
+        let known = known.chain([magnitude <= range.turns]);
         for ((found, exact), known) in functions(Branchless(x))
             .into_iter()
             .zip(functions(x))
@@ -179,6 +198,7 @@ fn straight_doubles_have_the_bits_of_doubles_or_are_nan() {
     let range = Range {
         angle: core::f64::consts::FRAC_PI_4,
         exponent: 708.0,
+        turns: 1e6,
     };
     straight_numbers_have_the_bits_of_theirs::<f64>(&range, &[range.angle, range.exponent]);
 }
@@ -188,6 +208,7 @@ fn straight_singles_have_the_bits_of_singles_or_are_nan() {
     let range = Range {
         angle: f64::from(core::f32::consts::FRAC_PI_4),
         exponent: 87.0,
+        turns: 1e4,
     };
     straight_numbers_have_the_bits_of_theirs::<f32>(&range, &[range.angle, range.exponent]);
 }

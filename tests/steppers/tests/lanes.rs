@@ -78,6 +78,46 @@ impl Real for Called {
     }
 
     #[inline(never)]
+    fn tan(self) -> Self {
+        Self(self.0.tan())
+    }
+
+    #[inline(never)]
+    fn asin(self) -> Self {
+        Self(self.0.asin())
+    }
+
+    #[inline(never)]
+    fn atan(self) -> Self {
+        Self(self.0.atan())
+    }
+
+    #[inline(never)]
+    fn tanh(self) -> Self {
+        Self(self.0.tanh())
+    }
+
+    #[inline(never)]
+    fn ln(self) -> Self {
+        Self(self.0.ln())
+    }
+
+    #[inline(never)]
+    fn atan2(self, x: Self) -> Self {
+        Self(self.0.atan2(x.0))
+    }
+
+    #[inline(never)]
+    fn powr(self, exponent: Self) -> Self {
+        Self(self.0.powr(exponent.0))
+    }
+
+    #[inline(never)]
+    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
+        Self(self.0.select(bound.0, below.0, otherwise.0))
+    }
+
+    #[inline(never)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt())
     }

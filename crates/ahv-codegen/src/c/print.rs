@@ -1,6 +1,6 @@
 //! Prints expressions and statements as C99.
 
-use crate::graph::{Call, Kind};
+use crate::graph::Kind;
 use crate::schedule::tree::{Binding, Expr, Operation, Sign, Source, Statement};
 use crate::wording::visible;
 
@@ -41,7 +41,11 @@ impl Printer {
             Expr::Sum(addends) => self.addends(addends).join(" "),
             Expr::Product(factors) => self.product(factors),
             Expr::Reciprocal(part) => format!("1.0 / {}", self.enclosed(part, Binding::Atom)),
-            Expr::Call(call, part) => format!("{}({})", function(*call), self.expression(part)),
+            Expr::Call(call, arguments) => {
+                let arguments = arguments.iter().map(|it| self.expression(it));
+                let arguments: Vec<String> = arguments.collect();
+                format!("ahv_{}({})", call.name(), arguments.join(", "))
+            }
         }
     }
 
@@ -147,15 +151,6 @@ impl Printer {
             _ => lines.insert(0, format!("{INDENT}{unit}")),
         }
         lines
-    }
-}
-
-fn function(call: Call) -> &'static str {
-    match call {
-        Call::Sin => "ahv_sin",
-        Call::Cos => "ahv_cos",
-        Call::Exp => "ahv_exp",
-        Call::Sqrt => "ahv_sqrt",
     }
 }
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::symbol;
 use super::tree::{Tex, negated, power, product, sum};
+use crate::call::Call;
 use crate::ir::{Basis, Document, Expr, Model, Quantity};
 
 /// Nodes of an expression that is written out; a longer one is not for a reader.
@@ -217,10 +218,7 @@ impl<'a> Printer<'a> {
                 product(parts)
             }
             ("neg", 1) => negated(parts.pop()?),
-            ("sin" | "cos" | "exp" | "sqrt", 1) => {
-                Tex::Call(operator.to_owned(), Box::new(parts.pop()?))
-            }
-            _ => return None,
+            (name, count) => Tex::Call(Call::of(name, count)?, parts),
         })
     }
 }

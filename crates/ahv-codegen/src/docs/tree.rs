@@ -1,5 +1,7 @@
 //! Formulas as trees: sums, products of powers, and how they simplify.
 
+use crate::call::Call;
+
 /// A formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Tex {
@@ -11,8 +13,8 @@ pub(super) enum Tex {
     Symbol(String),
     Sum(Vec<Tex>),
     Product(Product),
-    /// A function of one argument.
-    Call(String, Box<Tex>),
+    /// A function of its arguments.
+    Call(Call, Vec<Tex>),
 }
 
 /// A formula to a whole power.
@@ -68,12 +70,13 @@ impl Product {
                     self.multiply(factor, power * exponent);
                 }
             }
-            Tex::Call(name, argument) if name == "exp" && exponent != 1 => {
-                let argument = product(vec![Tex::Number(f64::from(exponent)), *argument]);
-                self.multiply(Tex::Call(name, Box::new(argument)), 1);
+            Tex::Call(Call::Exp, arguments) if exponent != 1 => {
+                let number = Tex::Number(f64::from(exponent));
+                let argument = product([vec![number], arguments].concat());
+                self.multiply(Tex::Call(Call::Exp, vec![argument]), 1);
             }
-            Tex::Call(name, argument) if name == "sqrt" && exponent % 2 == 0 => {
-                self.multiply(*argument, exponent / 2);
+            Tex::Call(Call::Sqrt, arguments) if exponent % 2 == 0 => {
+                self.multiply(product(arguments), exponent / 2);
             }
             other => match self.factors.iter_mut().find(|(factor, _)| *factor == other) {
                 Some((_, power)) => {

@@ -2,6 +2,7 @@
 
 use super::symbol::{self, Shape};
 use super::tree::{Product, Tex};
+use crate::call::Call;
 
 /// How tightly LaTeX text binds.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
@@ -83,7 +84,7 @@ pub(super) fn text(tex: &Tex) -> Text {
     match tex {
         Tex::Symbol(latex) => symbol_text(latex),
         Tex::Sum(addends) => sum_text(addends),
-        Tex::Call(name, argument) => call_text(name, argument),
+        Tex::Call(call, arguments) => call_text(*call, arguments),
         Tex::Number(_) | Tex::Value(_) | Tex::Product(_) => {
             let (negative, mut text) = magnitude(tex);
             if negative {
@@ -150,9 +151,65 @@ fn sum_text(addends: &[Tex]) -> Text {
 /// Longer exponents stand in parentheses.
 const SHORT_EXPONENT: f64 = 12.0;
 
-fn call_text(name: &str, argument: &Tex) -> Text {
+/// The command of a function.
+fn command(call: Call) -> String {
+    match call {
+        Call::Asin => "\\arcsin".to_owned(),
+        Call::Atan => "\\arctan".to_owned(),
+        Call::Atan2 => "\\operatorname{atan2}".to_owned(),
+        _ => format!("\\{}", call.name()),
+    }
+}
+
+/// A function of several arguments, or one with signs of its own around them.
+fn several_text(call: Call, arguments: &[Tex]) -> Text {
+    let inner: Vec<Text> = arguments.iter().map(signed_text).collect();
+    let latex: Vec<&str> = inner.iter().map(|it| it.latex.as_str()).collect();
+    let (latex, binding) = match (call, latex.as_slice()) {
+        (Call::Abs, [a]) => (format!("\\left| {a} \\right|"), Binding::Atom),
+        (Call::Powr, [_, exponent]) => {
+            let base = text(&arguments[0]).at_least(Binding::Atom);
+            (format!("{}^{{{exponent}}}", base.latex), Binding::Raised)
+        }
+        (Call::Select, [a, bound, below, otherwise]) => {
+            let first = format!("{below} & {a} < {bound}");
+            let second = format!("{otherwise} & \\text{{else}}");
+            let latex = format!("\\begin{{cases}} {first} \\\\ {second} \\end{{cases}}");
+            (latex, Binding::Product)
+        }
+        (_, all) => {
+            let inside = all.join(",\\, ");
+            let latex = format!("{}\\left( {inside} \\right)", command(call));
+            (latex, Binding::Raised)
+        }
+    };
+    Text {
+        latex,
+        binding,
+        depth: 1 + inner.iter().map(|it| it.depth).max().unwrap_or(0),
+        width: 3.0 + inner.iter().map(|it| it.width).sum::<f64>(),
+        open: false,
+    }
+}
+
+/// The text of a formula with its sign.
+fn signed_text(tex: &Tex) -> Text {
+    let (_, text) = magnitude(tex);
+    Text {
+        latex: signed(tex),
+        ..text
+    }
+}
+
+fn call_text(call: Call, arguments: &[Tex]) -> Text {
+    let [argument] = arguments else {
+        return several_text(call, arguments);
+    };
+    if call == Call::Abs {
+        return several_text(call, arguments);
+    }
     let inner = text(argument);
-    if name == "sqrt" {
+    if call == Call::Sqrt {
         return Text {
             latex: format!("\\sqrt{{{}}}", inner.latex),
             binding: Binding::Raised,
@@ -160,7 +217,7 @@ fn call_text(name: &str, argument: &Tex) -> Text {
             ..inner
         };
     }
-    if name == "exp" && inner.width <= SHORT_EXPONENT && !inner.latex.contains("\\frac") {
+    if call == Call::Exp && inner.width <= SHORT_EXPONENT && !inner.latex.contains("\\frac") {
         let width = 1.0 + 0.7 * inner.width;
         let latex = format!("e^{{{}}}", inner.latex);
         return Text {
@@ -171,9 +228,10 @@ fn call_text(name: &str, argument: &Tex) -> Text {
             ..inner
         };
     }
-    if inner.binding == Binding::Atom && name != "exp" {
+    let command = command(call);
+    if inner.binding == Binding::Atom && call != Call::Exp {
         let width = inner.width + 2.0;
-        let latex = format!("\\{name} {}", inner.latex);
+        let latex = format!("{command} {}", inner.latex);
         return Text {
             latex,
             binding: Binding::Raised,
@@ -185,7 +243,7 @@ fn call_text(name: &str, argument: &Tex) -> Text {
     let inner = inner.enclosed();
     let width = inner.width + 3.0;
     Text {
-        latex: format!("\\{name}{}", inner.latex),
+        latex: format!("{command}{}", inner.latex),
         binding: Binding::Raised,
         width,
         ..inner
@@ -202,7 +260,7 @@ fn power_text(base: &Tex, exponent: i32) -> Text {
         format!("{{{exponent}}}")
     };
     let function = match base {
-        Tex::Call(name, _) if name == "sin" || name == "cos" => Some(format!("\\{name}")),
+        Tex::Call(call @ (Call::Sin | Call::Cos), _) => Some(command(*call)),
         Tex::Symbol(latex) if symbol::shape(latex) == Shape::Function => ["\\sin", "\\cos"]
             .iter()
             .find(|f| latex.starts_with(**f))

@@ -30,6 +30,18 @@ fn operators_are_those_of_f64() {
         (r#"["cos", "x.a"]"#, Real::cos(a)),
         (r#"["exp", "u.b"]"#, Real::exp(b)),
         (r#"["sqrt", "x.a"]"#, Real::sqrt(a)),
+        (r#"["tan", "x.a"]"#, Real::tan(a)),
+        (r#"["asin", "x.a"]"#, Real::asin(a)),
+        (r#"["atan", "u.b"]"#, Real::atan(b)),
+        (r#"["atan2", "x.a", "u.b"]"#, Real::atan2(a, b)),
+        (r#"["tanh", "u.b"]"#, Real::tanh(b)),
+        (r#"["ln", "x.a"]"#, Real::ln(a)),
+        (r#"["powr", "x.a", "u.b"]"#, Real::powr(a, b)),
+        (r#"["abs", "u.b"]"#, 1.7),
+        (r#"["min", "x.a", "u.b"]"#, b),
+        (r#"["max", "x.a", "u.b"]"#, a),
+        (r#"["select", "u.b", "x.a", 3, 4]"#, 3.0),
+        (r#"["select", "x.a", "u.b", 3, ["neg", "x.a"]]"#, -a),
     ];
     for (text, expected) in cases {
         assert_eq!(
@@ -83,7 +95,7 @@ fn one_output_alone_keeps_the_leaves() {
 #[test]
 fn what_cannot_be_evaluated_is_named() {
     for (text, said) in [
-        (r#"["tan", "x.a"]"#, "`tan`"),
+        (r#"["cot", "x.a"]"#, "`cot`"),
         (r#""nobody""#, "`nobody`"),
         (r#"["/", 1]"#, "`/`"),
     ] {

@@ -14,6 +14,7 @@ mod regrouping;
 use std::collections::HashMap;
 
 use crate::EmitError;
+use crate::call::Call;
 use crate::ir;
 
 use passes::{Pass, Passes};
@@ -32,14 +33,6 @@ pub(crate) enum Kind {
     Argument,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Call {
-    Sin,
-    Cos,
-    Exp,
-    Sqrt,
-}
-
 #[derive(Clone, Debug)]
 pub(crate) enum Node {
     Number(f64),
@@ -50,7 +43,7 @@ pub(crate) enum Node {
     Product(f64, Vec<Id>),
     /// Whole power; the exponent is neither 0 nor 1.
     Power(Id, i32),
-    Call(Call, Id),
+    Call(Call, Vec<Id>),
 }
 
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -60,7 +53,7 @@ enum Key {
     Sum(Vec<(u64, Id)>),
     Product(u64, Vec<Id>),
     Power(Id, i32),
-    Call(Call, Id),
+    Call(Call, Vec<Id>),
 }
 
 /// A power that stands as a factor.
@@ -144,9 +137,11 @@ impl Dag {
         id == self.one
     }
 
-    /// The node of a call on an argument, if the graph has it.
-    pub(crate) fn find_call(&self, call: Call, argument: Id) -> Option<Id> {
-        self.index.get(&Key::Call(call, argument)).copied()
+    /// The node of a call on arguments, if the graph has it.
+    pub(crate) fn find_call(&self, call: Call, arguments: &[Id]) -> Option<Id> {
+        self.index
+            .get(&Key::Call(call, arguments.to_vec()))
+            .copied()
     }
 
     /// Operands of a node, in the order in which they are written.
@@ -161,7 +156,7 @@ impl Dag {
             Node::Product(_, factors) => factors,
             Node::Power(base, -1) => vec![base],
             Node::Power(..) => self.steps_of_power(id),
-            Node::Call(_, argument) => vec![argument],
+            Node::Call(_, arguments) => arguments,
         }
     }
 
@@ -216,11 +211,7 @@ impl Dag {
                 let inverse = self.power(b, -1);
                 self.product(1.0, &[a, inverse])
             }
-            ("sin", &[a]) => self.call(Call::Sin, a),
-            ("cos", &[a]) => self.call(Call::Cos, a),
-            ("exp", &[a]) => self.call(Call::Exp, a),
-            ("sqrt", &[a]) => self.call(Call::Sqrt, a),
-            _ => return None,
+            (name, ids) => self.call(Call::of(name, ids.len())?, ids),
         })
     }
 
@@ -258,7 +249,8 @@ impl Dag {
             Node::Leaf(kind, _) => *kind == Kind::Parameter,
             Node::Sum(terms) => terms.iter().all(|&(_, id)| self.parametric[id]),
             Node::Product(_, factors) => factors.iter().all(|&id| self.parametric[id]),
-            Node::Power(id, _) | Node::Call(_, id) => self.parametric[*id],
+            Node::Power(id, _) => self.parametric[*id],
+            Node::Call(_, ids) => ids.iter().all(|&id| self.parametric[id]),
         };
         let id = self.nodes.len();
         self.nodes.push(node);
@@ -272,8 +264,12 @@ impl Dag {
         self.intern(Key::Number(value.to_bits()), Node::Number(value))
     }
 
-    fn call(&mut self, call: Call, argument: Id) -> Id {
-        self.intern(Key::Call(call, argument), Node::Call(call, argument))
+    fn call(&mut self, call: Call, arguments: &[Id]) -> Id {
+        let arguments = arguments.to_vec();
+        self.intern(
+            Key::Call(call, arguments.clone()),
+            Node::Call(call, arguments),
+        )
     }
 
     /// The numeric multiple and the powers that a factor consists of; named quantities stay whole.

@@ -107,7 +107,7 @@ fn faults_of_an_ir_are_named() {
     let mut dag = Dag::new(&model(""), &Passes::default()).unwrap();
     for (text, part) in [
         (r#""nowhere""#, "unknown name `nowhere`"),
-        (r#"["tanh", "x.a"]"#, "`tanh` with 1 arguments"),
+        (r#"["tanh", "x.a", "x.b"]"#, "`tanh` with 2 arguments"),
         (r#"[1, 2]"#, "without an operator"),
     ] {
         let message = dag.build(&expr(text), "lift").unwrap_err().to_string();

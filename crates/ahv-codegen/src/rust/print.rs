@@ -1,7 +1,7 @@
 //! Prints expressions and statements as Rust.
 
 use super::format::{ADDENDS, SECTION, TRAILING};
-use crate::graph::{Call, Kind};
+use crate::graph::Kind;
 use crate::schedule::tree::{Binding, Expr, Operation, Sign, Source, Statement};
 
 /// A sum of this many addends is written one a line, so that a new one is one line of a diff.
@@ -17,16 +17,6 @@ pub(super) fn literal(value: f64) -> String {
         2.0 => "R::TWO".to_owned(),
         0.5 => "R::HALF".to_owned(),
         _ => format!("R::from_f64({value:?})"),
-    }
-}
-
-/// The name of a function of the scalar.
-fn function(call: Call) -> &'static str {
-    match call {
-        Call::Sin => "sin",
-        Call::Cos => "cos",
-        Call::Exp => "exp",
-        Call::Sqrt => "sqrt",
     }
 }
 
@@ -54,8 +44,13 @@ pub(super) fn expression(expr: &Expr) -> String {
             text
         }
         Expr::Reciprocal(part) => format!("{}.recip()", enclosed(part, Binding::Atom)),
-        Expr::Call(call, part) => {
-            format!("{}.{}()", enclosed(part, Binding::Atom), function(*call))
+        Expr::Call(call, arguments) => {
+            let [first, others @ ..] = arguments.as_slice() else {
+                return String::new();
+            };
+            let others: Vec<String> = others.iter().map(expression).collect();
+            let (first, others) = (enclosed(first, Binding::Atom), others.join(", "));
+            format!("{first}.{}({others})", call.name())
         }
     }
 }

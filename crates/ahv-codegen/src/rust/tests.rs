@@ -9,7 +9,8 @@ use crate::schedule::given::Given;
 use crate::schedule::tree::{Body, Statement};
 use crate::schedule::{Cost, Prepared, body};
 use crate::testing::{
-    Draw, LEAVES, NAMES, Point, choices_of_passes, expr, model, quantity, value_of_expr,
+    Draw, LEAVES, NAMES, Point, choices_of_passes, expr, model, quantity, value_of_call,
+    value_of_expr,
 };
 
 /// A function as it is emitted, with what `prepare` does for it.
@@ -148,11 +149,11 @@ fn value_of_rust(expr: &syn::Expr, scope: &Point) -> f64 {
             let receiver = value(&call.receiver);
             match call.method.to_string().as_str() {
                 "recip" => receiver.recip(),
-                "sin" => receiver.sin(),
-                "cos" => receiver.cos(),
-                "exp" => receiver.exp(),
-                "sqrt" => receiver.sqrt(),
-                other => panic!("{other}"),
+                name => {
+                    let others = call.args.iter().map(value);
+                    let arguments: Vec<f64> = std::iter::once(receiver).chain(others).collect();
+                    value_of_call(name, &arguments)
+                }
             }
         }
         syn::Expr::Field(field) => {

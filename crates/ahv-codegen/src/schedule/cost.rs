@@ -1,7 +1,9 @@
 //! The operations of a function as emitted.
 
+use std::collections::BTreeMap;
+
 use super::tree::{Body, Expr, Operation, Statement};
-use crate::graph::Call;
+use crate::call::Call;
 
 /// Operations by kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -10,8 +12,8 @@ pub(crate) struct Cost {
     pub(crate) multiplications: usize,
     pub(crate) divisions: usize,
     pub(crate) sin_cos: usize,
-    pub(crate) exp: usize,
-    pub(crate) sqrt: usize,
+    /// Calls of the other functions, by their names.
+    pub(crate) calls: BTreeMap<&'static str, usize>,
 }
 
 impl Cost {
@@ -28,8 +30,7 @@ impl Cost {
             }
             Expr::Reciprocal(_) => self.divisions += 1,
             Expr::Call(Call::Sin | Call::Cos, _) => self.sin_cos += 1,
-            Expr::Call(Call::Exp, _) => self.exp += 1,
-            Expr::Call(Call::Sqrt, _) => self.sqrt += 1,
+            Expr::Call(call, _) => *self.calls.entry(call.name()).or_default() += 1,
         }
     }
 
@@ -38,15 +39,15 @@ impl Cost {
         self.counted().iter().map(|(count, _)| count).sum()
     }
 
-    fn counted(&self) -> [(usize, &'static str); 6] {
-        [
+    fn counted(&self) -> Vec<(usize, &'static str)> {
+        let mut counted = vec![
             (self.additions, "addition"),
             (self.multiplications, "multiplication"),
             (self.divisions, "division"),
             (self.sin_cos, "sin_cos"),
-            (self.exp, "exp"),
-            (self.sqrt, "sqrt"),
-        ]
+        ];
+        counted.extend(self.calls.iter().map(|(&word, &count)| (count, word)));
+        counted
     }
 
     /// One line: `71 operations: 30 additions, 35 multiplications, 1 division, …`.
@@ -78,8 +79,9 @@ impl std::ops::AddAssign for Cost {
         self.multiplications += other.multiplications;
         self.divisions += other.divisions;
         self.sin_cos += other.sin_cos;
-        self.exp += other.exp;
-        self.sqrt += other.sqrt;
+        for (word, count) in other.calls {
+            *self.calls.entry(word).or_default() += count;
+        }
     }
 }
 

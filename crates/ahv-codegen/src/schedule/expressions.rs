@@ -31,7 +31,10 @@ impl Scope<'_> {
                 let steps = steps.map(|step| (Operation::Times, self.reference(step)));
                 Expr::Product(steps.collect())
             }
-            Node::Call(call, argument) => Expr::Call(call, Box::new(self.reference(argument))),
+            Node::Call(call, arguments) => {
+                let arguments = arguments.into_iter();
+                Expr::Call(call, arguments.map(|it| self.reference(it)).collect())
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::graph::{Call, Dag, Id, Kind, Node};
+use crate::graph::{Dag, Id, Kind, Node};
 use crate::ir;
 
 /// Longer names are not read; such a value is numbered under the quantity that it belongs to.
@@ -114,22 +114,21 @@ impl Names<'_> {
     }
 
     fn spell_call(&self, id: Id) -> Option<String> {
-        let Node::Call(call, argument) = *self.dag.node(id) else {
+        let Node::Call(call, arguments) = self.dag.node(id) else {
             return None;
         };
-        let function = match call {
-            Call::Sin => "sin",
-            Call::Cos => "cos",
-            Call::Exp => "exp",
-            Call::Sqrt => "sqrt",
-        };
-        let text = self.spell(argument)?;
+        let function = call.name();
+        let texts = arguments.iter().map(|&it| match self.dag.node(it) {
+            Node::Number(value) => number_word(*value).map(str::to_owned),
+            _ => self.spell(it),
+        });
+        let text = texts.collect::<Option<Vec<_>>>()?.join("_and_");
         let name = format!("{function}_{text}");
         // A quantity of that name is something else.
         let own = self.dag.quantities(id);
         let mut quantities = self.model.quantities.iter().zip(0..);
         let is_taken = quantities.any(|(it, place)| it.name == name && !own.contains(&place));
-        if is_taken || self.is_open(argument) {
+        if is_taken || arguments.iter().any(|&it| self.is_open(it)) {
             return Some(format!("{function}_of_{text}"));
         }
         Some(name)
@@ -251,8 +250,10 @@ pub(super) fn is_numbered(name: &str) -> bool {
 
 fn number_word(value: f64) -> Option<&'static str> {
     Some(match value {
+        0.0 => "zero",
         0.25 => "quarter",
         0.5 => "half",
+        1.0 => "one",
         2.0 => "two",
         3.0 => "three",
         4.0 => "four",

@@ -2,21 +2,25 @@
 
 use super::scope::Scope;
 use super::tree::Statement;
+use crate::call::Call;
 use crate::graph::passes::Pass;
-use crate::graph::{Call, Id, Node};
+use crate::graph::{Id, Node};
 
 impl Scope<'_> {
     /// The sine, the cosine and their angle, where a node is one of the two and the body needs the other as well.
     pub(super) fn sin_cos(&self, id: Id) -> Option<(Id, Id, Id)> {
-        let Node::Call(call, argument) = *self.dag.node(id) else {
+        let Node::Call(call, arguments) = self.dag.node(id) else {
+            return None;
+        };
+        let &[argument] = arguments.as_slice() else {
             return None;
         };
         let twin = match call {
             Call::Sin => Call::Cos,
             Call::Cos => Call::Sin,
-            Call::Exp | Call::Sqrt => return None,
+            _ => return None,
         };
-        let twin = self.dag.find_call(twin, argument)?;
+        let twin = self.dag.find_call(twin, &[argument])?;
         let is_open = self.uses.contains_key(&twin) && !self.bound.contains_key(&twin);
         if !is_open || !self.dag.has(Pass::SinCos) {
             return None;

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::graph::{Call, Kind};
+use crate::call::Call;
+use crate::graph::Kind;
 
 /// An expression. Sums and products are evaluated from left to right, so that every language has the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +19,7 @@ pub(crate) enum Expr {
     /// Factors, each multiplied by or divided by; the first is no divisor.
     Product(Vec<(Operation, Expr)>),
     Reciprocal(Box<Expr>),
-    Call(Call, Box<Expr>),
+    Call(Call, Vec<Expr>),
 }
 
 /// Where a component stands.
@@ -109,7 +110,8 @@ impl Expr {
         see(self);
         match self {
             Self::Number(_) | Self::Component(..) | Self::Name(_) => {}
-            Self::Negative(part) | Self::Reciprocal(part) | Self::Call(_, part) => part.walk(see),
+            Self::Negative(part) | Self::Reciprocal(part) => part.walk(see),
+            Self::Call(_, arguments) => arguments.iter().for_each(|part| part.walk(see)),
             Self::Sum(addends) => addends.iter().for_each(|(_, part)| part.walk(see)),
             Self::Product(factors) => factors.iter().for_each(|(_, part)| part.walk(see)),
         }

@@ -1,11 +1,12 @@
-//! Sine, cosine and exponential of doubles.
+//! Sine, cosine and exponential of doubles, and the reductions of their arguments.
 
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_4, LOG2_E};
 
+use super::{pair::Pair, tangent};
 use crate::Lane;
 
 /// (sin x − x)/x³ as a polynomial in x² for |x| ≤ π/4; relative error of sin x 2⁻⁵⁷.
-const SIN: [f64; 6] = [
+pub(super) const SIN: [f64; 6] = [
     -0.16666666666666644,
     0.008333333333324425,
     -0.00019841269831056066,
@@ -15,7 +16,7 @@ const SIN: [f64; 6] = [
 ];
 
 /// (cos x − 1 + x²/2)/x⁴ as a polynomial in x² for |x| ≤ π/4; relative error of cos x 2⁻⁶³.
-const COS: [f64; 6] = [
+pub(super) const COS: [f64; 6] = [
     0.04166666666666665,
     -0.0013888888888881452,
     2.480158729341395e-05,
@@ -47,7 +48,7 @@ const HALF_PI: [f64; 4] = [
 ];
 
 /// ln 2 in parts of 33 bits and the rest.
-const LN_2: [f64; 2] = [0.6931471804855391, 7.440617110012397e-11];
+pub(super) const LN_2: [f64; 2] = [0.6931471804855391, 7.440617110012397e-11];
 
 /// Adding 1.5·2⁵² rounds to a whole number and leaves it in the low bits.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -57,6 +58,9 @@ const LARGEST_ANGLE: f64 = 1e6;
 
 /// Larger exponents leave the normal numbers and take `libm`'s path.
 const LARGEST_EXPONENT: f64 = 708.0;
+
+/// The exponential of larger exponents is infinite or 0.
+const BEYOND: f64 = 800.0;
 
 impl Lane for f64 {
     const NAN: Self = f64::NAN;
@@ -90,6 +94,11 @@ impl Lane for f64 {
     fn moderate_exp(self) -> Self {
         normal_exp(self)
     }
+
+    #[inline(always)]
+    fn moderate_tan(self) -> Self {
+        tangent::moderate_tan(self)
+    }
 }
 
 /// Sine and cosine of an angle in rad; the sine of −0 is +0.
@@ -109,6 +118,23 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
 /// Sine and cosine of a moderate angle; for one below π/4 the bits of `kernel` without reduction.
 #[inline(always)]
 fn reduced_sin_cos(x: f64) -> (f64, f64) {
+    let (rest, low, quarter) = reduced(x);
+    let (sin, cos) = kernel(rest, low);
+    // A quarter turn swaps the two and turns the sign of the new cosine; a half turn turns both signs.
+    let swapped = (quarter & 1).wrapping_neg();
+    let (s, c) = (sin.to_bits(), cos.to_bits());
+    let exchange = (s ^ c) & swapped;
+    let sign_sin = (quarter & 2) << 62;
+    let sign_cos = (quarter.wrapping_add(1) & 2) << 62;
+    (
+        f64::from_bits((s ^ exchange) ^ sign_sin),
+        f64::from_bits((c ^ exchange) ^ sign_cos),
+    )
+}
+
+/// A moderate angle less a number of quarter turns, as a sum of two doubles, and that number in the low bits.
+#[inline(always)]
+pub(super) fn reduced(x: f64) -> (f64, f64, u64) {
     let shifted = x * FRAC_2_PI + ROUNDER;
     let turns = shifted - ROUNDER;
     let coarse = x - turns * HALF_PI[0];
@@ -120,18 +146,7 @@ fn reduced_sin_cos(x: f64) -> (f64, f64) {
     let lost = ((coarse - middle) - step) + ((middle - high) - low_step);
     let low = lost - turns * HALF_PI[3];
     let rest = high + low;
-    let (sin, cos) = kernel(rest, (high - rest) + low);
-    // A quarter turn swaps the two and turns the sign of the new cosine; a half turn turns both signs.
-    let quarter = shifted.to_bits();
-    let swapped = (quarter & 1).wrapping_neg();
-    let (s, c) = (sin.to_bits(), cos.to_bits());
-    let exchange = (s ^ c) & swapped;
-    let sign_sin = (quarter & 2) << 62;
-    let sign_cos = (quarter.wrapping_add(1) & 2) << 62;
-    (
-        f64::from_bits((s ^ exchange) ^ sign_sin),
-        f64::from_bits((c ^ exchange) ^ sign_cos),
-    )
+    (rest, (high - rest) + low, shifted.to_bits())
 }
 
 /// Sine and cosine of x + low for |x| ≤ π/4 and a low far smaller than x.
@@ -152,8 +167,18 @@ fn kernel(x: f64, low: f64) -> (f64, f64) {
 
 /// A polynomial of six coefficients by Estrin's scheme: three short chains instead of a long one.
 #[inline(always)]
-fn cubic_pairs(c: &[f64; 6], z: f64, z_2: f64) -> f64 {
+pub(super) fn cubic_pairs(c: &[f64; 6], z: f64, z_2: f64) -> f64 {
     (c[0] + c[1] * z) + z_2 * ((c[2] + c[3] * z) + z_2 * (c[4] + c[5] * z))
+}
+
+/// Tangent of an angle in rad.
+#[inline]
+pub(crate) fn tan(x: f64) -> f64 {
+    if x.is_moderate_angle() {
+        return x.moderate_tan();
+    }
+    let (sin, cos) = libm::sincos(x);
+    sin / cos
 }
 
 /// e to the power x.
@@ -168,17 +193,49 @@ pub(crate) fn exp(x: f64) -> f64 {
 
 #[inline(always)]
 fn normal_exp(x: f64) -> f64 {
+    let (r, low, doublings) = reduced_exponent(x);
+    let fraction = 1.0 + (r + (low + exp_tail(r)));
+    fraction * power_of_two(doublings)
+}
+
+/// e to the power high + low, also where it leaves the normal numbers; what 1 + r loses by rounding joins the small terms.
+#[inline(always)]
+pub(super) fn exp_of_sum(high: f64, low: f64) -> f64 {
+    let below = if high > BEYOND { BEYOND } else { high };
+    let moderate = if below < -BEYOND { -BEYOND } else { below };
+    let (r, lost, doublings) = reduced_exponent(moderate);
+    // The low part may be as large as the last bit of `high`.
+    let rest = Pair::ordered_sum(r, lost + low);
+    let main = Pair::ordered_sum(1.0, rest.high);
+    let fraction = main.high + (main.low + (exp_tail(rest.high) + rest.low));
+    // In two steps, of which only the second can round.
+    let half = ((doublings.wrapping_add(2048) & 0xfff) >> 1).wrapping_sub(1024);
+    (fraction * power_of_two(half)) * power_of_two(doublings.wrapping_sub(half))
+}
+
+/// eʳ − 1 − r
+#[inline(always)]
+fn exp_tail(r: f64) -> f64 {
+    let (r_2, c) = (r * r, &EXP);
+    let r_4 = r_2 * r_2;
+    let p = ((c[0] + c[1] * r) + r_2 * (c[2] + c[3] * r))
+        + r_4 * (((c[4] + c[5] * r) + r_2 * (c[6] + c[7] * r)) + r_4 * (c[8] + c[9] * r));
+    r_2 * p
+}
+
+/// A moderate exponent less a number of ln 2, as a sum of two doubles, and that number in the low bits.
+#[inline(always)]
+pub(super) fn reduced_exponent(x: f64) -> (f64, f64, u64) {
     let shifted = x * LOG2_E + ROUNDER;
     let doublings = shifted - ROUNDER;
     let high = x - doublings * LN_2[0];
     let step = doublings * LN_2[1];
     let r = high - step;
-    let low = (high - r) - step;
-    let (r_2, c) = (r * r, &EXP);
-    let r_4 = r_2 * r_2;
-    let p = ((c[0] + c[1] * r) + r_2 * (c[2] + c[3] * r))
-        + r_4 * (((c[4] + c[5] * r) + r_2 * (c[6] + c[7] * r)) + r_4 * (c[8] + c[9] * r));
-    let fraction = 1.0 + (r + (low + r_2 * p));
-    // The low bits hold the exponent; those above them fall off.
-    fraction * f64::from_bits((shifted.to_bits().wrapping_add(1023)) << 52)
+    (r, (high - r) - step, shifted.to_bits())
+}
+
+/// 2 to the power of what the low bits hold; those above them fall off.
+#[inline(always)]
+pub(super) fn power_of_two(doublings: u64) -> f64 {
+    f64::from_bits(doublings.wrapping_add(1023) << 52)
 }

@@ -2,6 +2,7 @@
 
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_4, LOG2_E};
 
+use super::tangent;
 use crate::Lane;
 
 /// (sin x − x)/x³ as a polynomial in x² for |x| ≤ π/4; relative error of sin x 2⁻²⁷.
@@ -93,6 +94,11 @@ impl Lane for f32 {
         let fraction = 1.0 + (r + (low + r_2 * p));
         // The low bits hold the exponent; those above them fall off.
         fraction * f32::from_bits(shifted.to_bits().wrapping_add(127) << 23)
+    }
+
+    #[inline(always)]
+    fn moderate_tan(self) -> Self {
+        tangent::moderate_tan(f64::from(self)) as f32
     }
 }
 

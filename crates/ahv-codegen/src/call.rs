@@ -1,0 +1,105 @@
+//! The functions of scalars that an expression may call: their names in the IR, which are the methods of `ahv_core::Real`.
+
+use ahv_core::Real;
+
+/// A function of one to four scalars.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Call {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Atan,
+    Atan2,
+    Exp,
+    Tanh,
+    Ln,
+    /// A real power.
+    Powr,
+    Sqrt,
+    Abs,
+    Min,
+    Max,
+    /// Of a, b, c, d: c where a < b, else d.
+    Select,
+}
+
+/// Most arguments of a function.
+pub(crate) const MOST: usize = 4;
+
+impl Call {
+    pub(crate) const ALL: [Self; 15] = [
+        Self::Sin,
+        Self::Cos,
+        Self::Tan,
+        Self::Asin,
+        Self::Atan,
+        Self::Atan2,
+        Self::Exp,
+        Self::Tanh,
+        Self::Ln,
+        Self::Powr,
+        Self::Sqrt,
+        Self::Abs,
+        Self::Min,
+        Self::Max,
+        Self::Select,
+    ];
+
+    /// The function of this name with so many arguments.
+    pub(crate) fn of(name: &str, arity: usize) -> Option<Self> {
+        let mut all = Self::ALL.into_iter();
+        all.find(|it| it.name() == name && it.arity() == arity)
+    }
+
+    /// Its name in the IR and in Rust; in C `ahv_` stands before it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Sin => "sin",
+            Self::Cos => "cos",
+            Self::Tan => "tan",
+            Self::Asin => "asin",
+            Self::Atan => "atan",
+            Self::Atan2 => "atan2",
+            Self::Exp => "exp",
+            Self::Tanh => "tanh",
+            Self::Ln => "ln",
+            Self::Powr => "powr",
+            Self::Sqrt => "sqrt",
+            Self::Abs => "abs",
+            Self::Min => "min",
+            Self::Max => "max",
+            Self::Select => "select",
+        }
+    }
+
+    /// How many arguments it has.
+    pub(crate) const fn arity(self) -> usize {
+        match self {
+            Self::Select => MOST,
+            Self::Atan2 | Self::Powr | Self::Min | Self::Max => 2,
+            _ => 1,
+        }
+    }
+
+    /// Its value; those of the arguments beyond its own are not looked at.
+    pub(crate) fn value<R: Real>(self, [a, b, c, d]: [R; MOST]) -> R {
+        match self {
+            Self::Sin => a.sin(),
+            Self::Cos => a.cos(),
+            Self::Tan => a.tan(),
+            Self::Asin => a.asin(),
+            Self::Atan => a.atan(),
+            Self::Atan2 => a.atan2(b),
+            Self::Exp => a.exp(),
+            Self::Tanh => a.tanh(),
+            Self::Ln => a.ln(),
+            Self::Powr => a.powr(b),
+            Self::Sqrt => a.sqrt(),
+            Self::Abs => a.abs(),
+            Self::Min => a.min(b),
+            Self::Max => a.max(b),
+            Self::Select => a.select(b, c, d),
+        }
+    }
+}
